@@ -9,7 +9,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The height of the energy, physics (26).
+// The height of the energy over the ground, the tip and the flat position [m], physics (26).
 EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
     const double h = std::sqrt(h2);
@@ -23,7 +23,7 @@ EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
 double radius_of(const Series& series) {
     constexpr double half_ulp = 1e-16;
     double radius = 1.0;
-    for (int i = 0; i < 3; ++i) {  // the size depends on the radius by a small power
+    for (int i = 0; i < 3; ++i) {  // iterated, since the size depends weakly on the radius
         const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
                                       std::abs(series[2]) * square(radius)});
         double least = infinity;
@@ -70,7 +70,7 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     if (from.rests || from.view.c2 == 0) return flow;
     set_motion(flow, phase_start(from));
     flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
-    // The steps of the map end 1e-9 of the path before the tip.
+    // With a tail, the steps end 1e-9 of the path before the tip: here the path is not from them.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path =
             path_from_flat(from.view.long_axis, from.view.short_axis, 1.0, 0.0);
@@ -114,7 +114,7 @@ DoubleDouble time_since_flat(const RollingFlow& flow, const PhasePoint<double>& 
 }
 
 double time_of_passing(const RollingFlow& flow, double theta, double heading) {
-    // The ellipse of the start, turned on by the angle since then.
+    // The angle from the start to theta, by which the ellipse of the start is turned on.
     const double turn = theta - flow.from.theta;
     const FlatView& at = flow.from.view;
     double sin = at.sin * std::cos(turn) + at.cos * std::sin(turn);

@@ -51,7 +51,7 @@ struct RollingStart {
 
 RollingStart rolling_start(const Body& body, double theta, double omega);
 
-// The constants of the integrand.
+// The constants of the integrand of the time, physics (29).
 template <class T>
 struct PhaseIntegrand {
     T short_axis;     // S
@@ -65,27 +65,27 @@ struct PhaseIntegrand {
     Mask<T> rotates;
 };
 
-// The constants of the coordinate.
+// The constants of the coordinate y, physics (61).
 template <class T>
 struct PhaseMap {
-    T quarter;  // Y; infinite on the separatrix
+    T quarter;  // Y, the tip or turning point; infinite on the separatrix
     T step;     // step of the trapezoidal rule for a quarter
     T steps;    // number of steps in a quarter, or from the flat to where the tail begins
-    // The quarter is longer than the steps, which end at the tip within rounding. A body with a
-    // tail is computed alone.
+    // Whether the quarter is longer than its steps, which end at the tip within rounding. A body
+    // with a tail is computed alone.
     Mask<T> has_tail;
-    T grade;  // g
+    T grade;  // g of physics (61)
     T kappa;
     T speed;        // dw/dy
-    T sine_scale;   // C
+    T sine_scale;   // C, the factor of sc
     T flat_scale2;  // (g C)^2
     T tip_scale2;   // (kappa C)^2
     T a[4];
     T b[3];
 };
 
-// A point of the coordinate, y = quarters Y + offset, with the nearest quarter unless a function
-// says otherwise.
+// A place in the coordinate, y = quarters Y + offset; `quarters` is the nearest quarter unless a
+// function says otherwise.
 template <class T>
 struct PhasePlace {
     T quarters;
@@ -107,10 +107,10 @@ struct PhaseIncrement {
     T path;
 };
 
-// Rates at several places. The places of one body are computed side by side, one Pack of the widest
-// level at a time.
+// Doubles in the widest Pack: the rates of one body are computed at several places side by side,
+// one such Pack at a time.
 inline constexpr int widest_pack = 8;
-inline constexpr int most_places = 48;  // nodes of a panel and its end
+inline constexpr int most_places = 48;  // room for nodes of a panel and its end
 
 template <class T>
 struct alignas(64) PhaseRates {
@@ -150,7 +150,7 @@ struct PhaseMotion {
     PhaseTime<T> phase;
     T direction;                // direction of a rotation; +1 for libration
     T amplitude;                // sin phi_max of a libration; 1 for rotation
-    Mask<T> on_way_back;        // a libration starts with its phase beyond +-pi/2
+    Mask<T> on_way_back;        // whether a libration starts with its phase beyond +-pi/2
     PhasePoint<T> start_phase;  // phase of the start, less half a turn on the way back
     PhasePlace<T> start_place;
 };
@@ -185,7 +185,7 @@ inline bool may_be_short(const RollingStart& from, double t) {
 // The state at a time |t| <= longest_time.
 FlowSample sample(const RollingFlow& flow, double t);
 
-// 1e15 half turns [s]; beyond, a double does not resolve the phase.
+// The time of 1e15 half turns [s]; beyond, a double does not resolve the phase.
 double longest_time(const RollingFlow& flow);
 
 // Throws std::invalid_argument for a time that is not finite or, in size, above `longest`.

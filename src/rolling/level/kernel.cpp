@@ -31,7 +31,7 @@ int key_of(const RollingStart& start, double t) {
     if (may_be_short(start, t)) return no_key;
     const PhaseIntegrand<double> integrand = phase_integrand(phase_start(start));
     const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
-    // The length of a quarter grows as this falls, to 0 on the separatrix.
+    // The square of kappa g, 0 on the separatrix: the smaller it is, the longer is a quarter.
     const double complement2 = square(integrand.kappa) * grade2;
     if (!(complement2 > 1e-20 && integrand.kappa > largest_tail_kappa)) return no_key;
     return 2 * std::min(-std::ilogb(complement2), most_keys / 2 - 1) + integrand.rotates;

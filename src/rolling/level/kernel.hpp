@@ -15,7 +15,7 @@ namespace rolling_ellipse {
 
 inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
-inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
+inline constexpr int series_columns = 4;  // angle, omega, path and one more: a row fills a register
 
 // Power series in time of angle, angular velocity and path about a place. The last row is zero,
 // since rows are read in pairs.
@@ -27,12 +27,12 @@ struct TableSeries {
 struct TablePlace {
     double y;         // the coordinate of rolling/level/flow.hpp
     double sin, cos;  // sine and cosine of the angle from the flat position
-    double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
-    double angle;     // angle from the position named by `quarters`
+    double quarters;  // 0 if the flat position is nearer, 1 if the tip is
+    double angle;     // angle from the flat position or tip named by `quarters`
     double omega;
-    double time, path;  // increments since the previous place
+    double time, path;  // time and path since the previous place
     double radius;      // half the interval of the series, in units of its variable
-    double holds;       // 1 if the series has full double precision there, otherwise 0
+    double holds;       // 1 if the series has full double precision in its radius, otherwise 0
 };
 
 // The series of an interval of times since the flat position.
@@ -40,7 +40,7 @@ struct FlowPiece {
     DoubleDouble centre;
     double low;
     double high;
-    double quarters;  // from the flat position to the origin of angle and path
+    double quarters;  // quarters from the flat position to the origin of angle and path
     TableSeries series;
 };
 
@@ -50,24 +50,24 @@ struct FlowReader {
     const double* ends;  // ends of the pieces, then infinities: 2 half - 1 numbers
     int half;
     double last_end;
-    double per_unit;  // the variable of the series is this times the time [1/s]
-    // The time of a half turn, and the time of the start since the flat position.
+    double per_unit;  // the variable of a series is per_unit times the time [1/s]
+    // The time of a half turn; start_time is the time from the flat position to the start.
     DoubleDouble half_turn;
     double half_turns_per_time;
     DoubleDouble start_time;
-    // Sign of the motion after an even number of half turns, and 1 if each half turn changes it.
+    // `spin`: sign of the motion after even half turns; `alternates`: 1 if a half turn changes it.
     double spin;
     double alternates;
     double quarters_per_half_turn;
-    // The start, as quarters and an offset.
+    // Quarter turns from the flat position to the flat position or tip nearest to the start.
     double quarters;
-    DoubleDouble angle;  // theta less the offset of the angle
-    double path;         // path offset
+    DoubleDouble angle;  // theta of the start less its angle from `quarters`
+    double path;         // path from the position `quarters` to the start
     double quarter_path;
     double theta;
     double x;
     double start_radius;  // largest |t| of the series about the start [s]
-    TableSeries start;    // about t = 0, with angle and path since then
+    TableSeries start;    // series about t = 0, with angle and path since then
 };
 
 // Arrays of the samples of many times.
@@ -97,15 +97,15 @@ struct Kernel {
     // bodies one by one.
     void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
                    int count, FlowSample* samples, bool* is_open);
-    // The motion at the coordinate of each place.
+    // Computes the motion at each place from the coordinate y of the place.
     void (*states)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                    double amplitude, TablePlace* places, int count);
-    // The series of the pieces about places, in units of time and length; the path starts at 0.
+    // Writes the series about places into pieces, in these units; the path starts at 0.
     void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
                    TablePlace* places, int count, FlowPiece* pieces);
     // Index of the first time that is NaN or larger than `most` in size; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
-    // The motion at many times. Where no piece reaches, theta is NaN; returns whether one is.
+    // Samples a motion at many times. Where no piece reaches, theta is NaN; true if one is.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
                  const FlowColumns& out);
 };
@@ -137,7 +137,7 @@ struct FlowTable {
     FlowReader reader;
 };
 
-// No table where no series holds.
+// The table of a motion; empty where no series holds.
 std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
 // Sampler of a motion, to which it refers, for an expected number of times. A few times need no

@@ -22,7 +22,7 @@ void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
     }
 }
 
-// Bodies with times that are refused are left open.
+// States of bodies side by side; bodies with times that are refused are left open.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
@@ -185,7 +185,7 @@ inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     return {column(0), column(1), column(2)};
 }
 
-// A series at one time, with its columns and its even and odd rows side by side.
+// Evaluates a series at one time, with its columns and its even and odd rows side by side.
 inline void alone(const TableSeries& series, double z, Block& found, int i) {
     constexpr int parts = 2 * series_columns / lanes;
     const double z2 = z * z;
@@ -221,7 +221,7 @@ inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     return motion.pieces[i];
 }
 
-// The series of all times.
+// Evaluates for each time of the block the series of the piece that holds it.
 void sample_series(const FlowReader& motion, int n, Block& block) {
     const FlowPiece* recent = motion.pieces;
     for (int i = 0; i < n; i += lanes) {
@@ -254,7 +254,7 @@ void sample_series(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// The motion from its series. Beyond the pieces theta is NaN; returns whether one is.
+// The samples of a block from its series. Beyond the pieces theta is NaN; returns whether one is.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;

@@ -14,7 +14,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// A quarter turn has 15 to 85 pieces; the number grows near the separatrix.
+// Most pieces of a quarter turn. Usual motions have 15 to 85; on the separatrix it is over 200.
 constexpr std::size_t most_pieces = 1000;
 
 // Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
@@ -48,7 +48,7 @@ class TableMaker {
         body_ = series_constants(flow, unit_);
     }
 
-    // No table where no series holds.
+    // The table of the motion; empty where no series holds.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
         // The first one suffices for series of this order in nearly all motions.
@@ -66,7 +66,7 @@ class TableMaker {
     }
 
   private:
-    // Places from the flat position to the end of the quarter.
+    // Sets the places of the series, from the flat position to the end of the quarter.
     void place(double spacing) {
         constexpr double wider = 1.5;  // factor of the spacing beyond 45 degrees of the phase
         // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
@@ -86,7 +86,7 @@ class TableMaker {
 
     std::size_t count() const { return places_.size(); }
 
-    // Half the time to the place before, or to the next one.
+    // Half the time to the place before; half_way_on: half the time to the next place.
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
@@ -104,7 +104,7 @@ class TableMaker {
                            [](const TablePlace& place) { return place.holds > 0; });
     }
 
-    // The times of the pieces, counted from the nearer end of the quarter.
+    // Sets the times of the pieces, counted from the nearer end of the quarter.
     void add_times() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
@@ -128,7 +128,7 @@ class TableMaker {
         }
     }
 
-    // The paths of the pieces, counted from the flat position or, near the tip, from the tip.
+    // Sets the paths of the pieces, counted from the flat position or, near the tip, from the tip.
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
@@ -147,7 +147,7 @@ class TableMaker {
             path(i - 1) = path(i) - places_[i].path;
     }
 
-    // The series about t = 0, with the largest radius of some tries.
+    // Adds the series about t = 0, with the largest radius of some tries.
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
@@ -180,7 +180,7 @@ class TableMaker {
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
         reader.pieces = pieces.data();
-        // The last piece is taken for all later times.
+        // The ends beyond the last piece are infinite: it is taken for all later times.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
         reader.ends = table_.ends.data();
@@ -220,8 +220,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // A table costs as much as ten single times. Below 40 times there is none, so that a search for
-    // a root, which asks for a few times again and again, always gets the same bits.
+    // Number of times below which there is no table: it costs as much as ten single times. A search
+    // for a root, which asks for a few times again and again, so always gets the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

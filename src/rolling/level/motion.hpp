@@ -11,14 +11,14 @@
 namespace rolling_ellipse {
 namespace {
 
-// The numbers of a RollingStart.
+// The numbers of a RollingStart, for one body or for one in each lane.
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
     T sin, cos;  // sine and cosine of the angle from the flat position
     T gyration2, gravity;
     T theta, omega;
-    T total, over_tip, over_flat;  // heights of the energy
+    T total, over_tip, over_flat;  // H and its distances from the tip and the flat
 };
 
 inline PhaseStart<double> phase_start(const RollingStart& from) {
@@ -69,7 +69,7 @@ inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
     return sqrt(shape_factor2(integrand, sin_phi * sin_phi));
 }
 
-// Sets the motion of a start.
+// Sets the motion that begins at a start.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     set_phase_time(motion.phase, phase_integrand(at));
@@ -120,7 +120,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.integrand.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
-    // The time without whole turns, or swings.
+    // Whole turns (of a libration: swings) are taken off the time.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
     const T turns = nearest<T>(t / turn.high);
     const TwoParts<T> in_turns = two_product(turns, turn.high);
@@ -175,7 +175,7 @@ struct MotionSeries {
     std::array<T, order + 1> path;
 };
 
-// The constants of a motion, for time in this unit [s].
+// The constants of the series of a motion, with `time_unit` [s] as the unit of time.
 inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
     const PhaseIntegrand<double>& integrand = flow.phase.integrand;
     const double length = flow.from.view.long_axis;

@@ -14,7 +14,7 @@ namespace {
 // At this offset the tip is reached within rounding, and the square of sinh is still a double.
 constexpr double largest_offset = 300.0;
 
-// The largest kappa of a quarter with a tail is a little below this.
+// Bound of kappa for a quarter with a tail: the largest such kappa is a little below it.
 constexpr double largest_tail_kappa = 5e-9;
 
 // Sets A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
@@ -49,14 +49,14 @@ inline T sine_ratio(const PhaseMap<C>& map, T x) {
 template <class T>
 void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     constexpr double steps_per_unit = 4.0;
-    constexpr double largest_complement = 0.70710678118654752;  // q = 1/32
+    constexpr double largest_complement = 0.70710678118654752;  // largest kappa g, with q = 1/32
     constexpr double before_tail = 20.0;                        // y of the last step, less log(2/g)
     constexpr double falling_at_tail = 2.0611536224385579e-9;   // e^-before_tail
     map.kappa = kappa;
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_at_tail * largest_grade;
-    // Whole steps of it give a nome a little below that of k'.
+    // Rounded to whole steps, this length gives a nome a little below the nome of k'.
     const T length = any(map.has_tail) ? before_tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
@@ -78,7 +78,7 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     const T cos = abs(phase.cos);
     const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
     const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
-    // sc(y) = ratio for x = sinh y: Newton's method, from the root with B = 1, A = A_0 - 2 q c.
+    // x = sinh y with sc(y) = ratio: Newton's method, from the root with B = 1, A = A_0 - 2 q c.
     const T complement = map.kappa * map.grade;
     const T q2 = -map.a[1];
     T x = 2 * ratio * (1 - q2) /
@@ -113,7 +113,7 @@ PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     return {sign * (at_tip ? cos : sin), sign * (at_tip ? -sin : cos)};
 }
 
-// The place at a distance from another one, with the nearest quarter.
+// The place at a distance in y from another one, counted from its nearest quarter.
 template <class T>
 PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distance) {
     const T offset = from.offset + distance;
@@ -138,14 +138,14 @@ inline T shape_factor2(const PhaseIntegrand<C>& integrand, T sin2_phi) {
 template <class C, class T>
 inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
                                        C quarters, T offset) {
-    constexpr double farthest = 150.0;  // e^(4 of it) is a double
+    constexpr double farthest = 150.0;  // e^(4 farthest) is a double
     const C one = filled<C>(1.0);
     const C half_turn = 2 * map.quarter;
     const T tip_here = filled<T>(quarters != 0 ? one : C{});
     const T scale2_here = filled<T>(quarters != 0 ? map.tip_scale2 : map.flat_scale2);
     const T scale2_there = filled<T>(quarters != 0 ? map.flat_scale2 : map.tip_scale2);
-    // The nearest flat position or tip: the origin of the offset, or a place one or two quarters
-    // on.
+    // The distance to the nearest flat position or tip: the origin of the offset, or a place one or
+    // two quarters on.
     const T from_here = abs(offset);
     const T a_turn_on = abs(from_here - half_turn);
     const T same = from_here < a_turn_on ? from_here : a_turn_on;

@@ -81,7 +81,7 @@ struct Integral {
     PhaseIncrement<T> end;
 };
 
-// The interval from one offset to another, by panels.
+// Integrates from one offset to another, panel by panel.
 template <class T>
 Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T end) {
     const T panels = 1 + rounded_down<T>(abs<T>(end - begin) / longest_panel);
@@ -114,13 +114,13 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
             {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
 }
 
-// The interval from one offset to another; bodies side by side have no tails.
+// Integrates from one offset to another; bodies side by side have no tails.
 inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin,
                                        Pack end) {
     return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// The interval from one offset to another. Around a tip that is far away only the time grows, at a
+// Integrates from one offset to another. Around a tip that is far away only the time grows, at a
 // constant rate: for minutes near the separatrix, and without end on it.
 inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
                                          double begin, double end) {
@@ -130,7 +130,7 @@ inline Integral<double> integral_between(const PhaseTime<double>& phase, double 
     if (map.quarter <= edge || abs(end - begin) <= long_interval) {
         return integral_by_panels(phase, quarters, begin, end);
     }
-    // The ends of this part, as sizes of the offset.
+    // Only the time grows where `from` <= |offset| <= `to`.
     const double from = quarters == 0 ? edge : 0.0;
     const double to = quarters == 0 ? 2 * map.quarter - edge : map.quarter - edge;
     for (const double limit : {-to, -from, from, to}) {
@@ -243,7 +243,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
         for (int i = first; i < first + count; ++i) {
             const auto is_end = i == 0 ? n > -1 : n == i;
             const T weight = is_end ? filled<T>(0.5) : n > i ? filled<T>(1.0) : T{};
-            // even about the end
+            // dt/dy is even about the end
             f[i] = n < i ? f[i - 2] : rates.time[i - first];
             add<T>(sum, weight * (rates.time[i - first] - beyond));
             path += weight * rates.path[i - first];
@@ -259,7 +259,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
         phase.quarter_turn = (phase.quarter_turn + tail.high) + tail.low;
         if (any(map.quarter == infinity)) phase.quarter_turn = {map.quarter, T{}};
     }
-    // The integrals of the cubics.
+    // The time since the flat at the steps: integrals of the cubics.
     phase.time[0] = T{};
     for (int i = 0; i < most; ++i) {
         phase.time[i + 1] = phase.time[i] + map.step * (13.0 / 24 * (f[i] + f[i + 1]) -

@@ -18,9 +18,9 @@
 namespace rolling_ellipse {
 
 struct SlopeFlow {
-    MotionKind kind;  // `uniform` for a circle, which accelerates evenly; `rotation` until two
-                      // turning points are found
-    double theta;     // angle, angular velocity and position at the start [rad, rad/s, m]
+    // `uniform` for a circle, which accelerates evenly; `rotation` before it has turned twice.
+    MotionKind kind;
+    double theta;  // angle, angular velocity and position at the start [rad, rad/s, m]
     double omega;
     double x;
     SlopeBody body;
@@ -28,15 +28,15 @@ struct SlopeFlow {
     double acceleration;  // acceleration of a circle
     SlopePlace start;
     SlopeEnergy energy;
-    std::vector<SlopePiece> foot;  // first half turn of a climb, where a sum loses digits
+    std::vector<SlopePiece> foot;  // first half turn of a climb, where the sum loses digits
     std::optional<SlopeRun> climb;
     std::vector<SlopePiece> pieces;
     std::vector<DoubleDouble> turnings;  // times of the first two turning points
-    std::optional<SlopePlace> downhill;  // first place from which it runs downhill for good
+    std::optional<SlopePlace> downhill;  // first place from which the body runs downhill for good
     std::optional<SlopeRun> run;
 };
 
-// A body that rolls on a slope other than 0.
+// The flow of a body that rolls on a slope other than 0.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
 // Extend the pieces until the motion is known up to a time [s].

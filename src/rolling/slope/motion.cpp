@@ -9,8 +9,8 @@ namespace rolling_ellipse {
 namespace {
 
 // h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
-// difference of its terms would be a rounding; a slope with equilibria uses the product of physics
-// (62).
+// difference of its two terms would be a rounding; a slope with equilibria uses the product of
+// physics (62).
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
     if (!body.equilibria) {
         const double h2 = body.short_axis2 + body.c2 * square(s);
@@ -33,11 +33,11 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
     // Pairs of series. Two pairs on a line are multiplied: first by first, second by second.
-    TwoSeries p_q, w_w;           // the rates of u and p
-    TwoSeries u_u, inertia_h;     // the mass u D h^2, u h
-    TwoSeries w_h;                // series of omega^2 and h^2 in time
-    TwoSeries p_uh, load_drive;   // their products: the terms of omega and of gravity
-    TwoSeries mass_h, turning_w;  // factors of omega' u D h^2 and of the path's rate h omega
+    TwoSeries p_q, w_w;           // products: the rates of u and p
+    TwoSeries u_u, inertia_h;     // products: the mass u D h^2, and u h
+    TwoSeries w_h;                // squares: omega^2 and h^2
+    TwoSeries p_uh, load_drive;   // products: the terms of omega and of gravity
+    TwoSeries mass_h, turning_w;  // products: omega' u D h^2, and the path's rate h omega
     const double centrifugal = -body.long_axis2 * body.short_axis2;
     const double sin2 = square(sin);
     const double u0 = body.short_axis2 + body.c2 * sin2;
@@ -100,7 +100,7 @@ double turning_in(const SlopePiece& piece) {
 }  // namespace
 
 std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline) {
-    // Both tangents solve a quadratic equation; the product of its roots is known.
+    // The tangents of both angles solve one quadratic equation; the product of its roots is known.
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double both = 2 * long_axis * short_axis * incline;
     const double root = (c2 - both) * (c2 + both);
@@ -209,7 +209,7 @@ DoubleDouble time_of_turning(const SlopePiece& piece) {
     return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
 }
 
-// A piece may pass the tip and come back: the search ends where it turns.
+// The first time at which a piece passes the tip: it may come back, so the search ends at its turn.
 double time_of_tip(const SlopePiece& piece) {
     const double until = std::min(piece.lasts, turning_in(piece));
     if (std::isinf(until)) return infinity;
@@ -230,7 +230,7 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
-    constexpr double accurate = 0.1;  // least share of W in the sum of the sizes of its terms
+    constexpr double accurate = 0.1;  // for omega from W: least share of W in its terms' sizes
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, energy, place, here);

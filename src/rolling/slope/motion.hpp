@@ -18,15 +18,15 @@ struct Equilibria {
     double upright;  // angle from the tip, 0 or less
 };
 
-// Empty where the slope is too steep for equilibria. `incline` is the tangent of the slope.
+// The equilibria, empty where the slope is too steep. `incline` is the tangent of the slope.
 std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline);
 
 // Body and ground in units of their own, powers of two. The slope falls to the side of growing
 // angles; a slope that falls to the other side is seen from behind.
 struct SlopeBody {
-    double length;  // unit [m]
-    double time;    // unit [s]
-    double side;    // +1, or -1 if seen from behind
+    double length;  // unit of length [m]
+    double time;    // unit of time [s]
+    double side;    // +1, or -1 if the slope is seen from behind
     double long_axis;
     double short_axis;
     double short_axis2;
@@ -40,7 +40,7 @@ struct SlopeBody {
     double pull;          // gravity times c2, the factor of physics (62)
     double slowest;       // rate at which gravity moves a body that starts at rest
     double quarter_path;  // path of the centre in a quarter turn
-    double gain;          // of W = D omega^2/2 in half a turn downhill, physics (58)
+    double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
 };
 
 SlopeBody slope_body(const Body& body, double slope);
@@ -62,8 +62,8 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // The path of the centre from the flat position of quarter 0.
 double path_at(const SlopeBody& body, double quarters, double angle);
 
-// Height of the centre at one place minus its height at another, as a product: the difference of
-// two heights of a nearly round body would be a rounding.
+// Height of the centre at `from` minus its height at `to`, as a product: the difference of two
+// heights of a nearly round body would be a rounding.
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 
 // The start of a motion, from which physics (58) has the energy W = D omega^2/2 at other places.
@@ -74,7 +74,7 @@ struct SlopeEnergy {
 
 SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
 
-// W at a place.
+// The energy W = D omega^2/2 at a place.
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here);
 
@@ -100,8 +100,8 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from);
 // The place at a time since the begin of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
 
-// Times of the motion at which it turns back in the piece, and at which it passes the tip before it
-// turns; infinite if it does not. A turning point or tip at the begin of the piece does not count.
+// Time of turning back in the piece, and of passing the tip before that, both since the start of
+// the motion; infinite if there is none. At the begin of a piece neither of them counts.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 

@@ -6,7 +6,7 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr double least_levels = 4;      // W/w from which the sums below are used
+constexpr double least_levels = 4;      // W/w from which sums over half turns are used
 constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
 
 // sqrt(w) R(W/w) of physics (60).
@@ -34,7 +34,7 @@ FirstRates first_rates(double level, double gain) {
     return first;
 }
 
-// The sum over j = 0 ... n - 1.
+// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1, W = level, w = gain.
 double sum_of_rates(double level, const FirstRates& first, double gain, double n) {
     constexpr double few = 4;
     const double others = n - first.count;
@@ -120,7 +120,7 @@ void add_panel(SlopeRun& run, const Centre& centre, double gap, double low, doub
 }  // namespace
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega) {
-    // The height of the tip as a product, exact for nearly round bodies, too.
+    // The height of the tip over the centre, as a product exact for nearly round bodies, too.
     const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
     const double above = energy - body.gravity.into * to_tip;
     const double levels = above / body.gain - least_levels;

@@ -17,10 +17,10 @@
 
 namespace rolling_ellipse {
 
-// Gauss rule of a part of a panel, where the integrand is the polynomial through its nodes.
+// Nodes of the Gauss rule of a part of a panel: the integrand is the polynomial through them.
 inline constexpr int part_order = 16;
 inline const GaussRule& part_rule() { return gauss_rule(part_order); }
-using PartArray = std::array<double, part_order>;  // numbers at its nodes
+using PartArray = std::array<double, part_order>;  // numbers at the nodes of a part
 
 // Nodes of Gauss rules: weight times sqrt(D/2), and W in the first half turn.
 struct RunNodes {
@@ -34,7 +34,7 @@ struct FirstRates {
     double count;  // number of terms
     double sum;
     double level;
-    double root;       // root of the level
+    double root;       // square root of the level
     double remainder;  // remainder of the formula at the level
 };
 
@@ -50,7 +50,7 @@ struct RunPanel {
     double last;
     std::size_t begin = 0;  // index of the panel's first node in `SlopeRun::nodes`
     std::size_t end = 0;
-    std::size_t part = 0;  // index of its first part
+    std::size_t part = 0;  // index of the panel's first part
     int parts = 0;
 };
 
@@ -59,16 +59,16 @@ struct SlopeRun {
     SlopePlace from;
     double turns;    // whole half turns before `from`, in quarters
     double heading;  // +1 downhill, -1 uphill
-    double path;     // at `from`, counted from the flat position at `turns`
+    double path;     // path at `from`, from the flat position at `turns`
     Geometry at;     // geometry at `from`
     double energy;   // W at `from`
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;
-    std::vector<FirstRates> first;  // one for each node, downhill only
-    double mass;                    // sum of all weights
+    std::vector<FirstRates> first;  // first terms of each node, downhill only
+    double mass;                    // sum of all weights, int sqrt(D/2) dphi
     double half_turn;               // time of the first half turn
-    double half_turns;              // largest number of half turns
+    double half_turns;              // largest number of half turns of the run
 };
 
 // The run from a place: uphill for as many half turns as `may_run` allows, downhill for any number.
@@ -87,7 +87,7 @@ DoubleDouble time_of(const SlopeRun& run, double half_turns);
 // W at a place in the first half turn.
 double level(const SlopeRun& run, double quarters, double angle, const Geometry& here);
 
-// The angular velocity at a place with that level, n half turns later.
+// The angular velocity at a place n half turns after the first half turn has W = level there.
 double omega_after(const SlopeRun& run, double half_turns, double level, const Geometry& here);
 
 // The place at v in a panel during the half turn after the first n.
@@ -112,11 +112,11 @@ class RunReader {
     SlopePlace place_at(double rest);
 
     const SlopeRun& run_;
-    double half_turns_ = 0.0;  // number before the current half turn
-    DoubleDouble begin_;       // time of the current half turn since `from`
+    double half_turns_ = 0.0;  // half turns before the current one
+    DoubleDouble begin_;       // time from `from` to the begin of the current half turn
     double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
     std::vector<double> panel_times_;
-    std::vector<double> part_times_;  // negative where not computed yet
+    std::vector<double> part_times_;  // times of the parts; negative if not known yet
     std::size_t part_ = 0;            // the part whose Legendre coefficients are kept
     PartArray coefficients_{};
 };

@@ -9,7 +9,7 @@ namespace {
 
 // First guess of the number of half turns in a time, as if D and W were constant.
 double guess(const SlopeRun& run, double time) {
-    const double speed = run.mass / run.half_turn;  // sqrt(W)
+    const double speed = run.mass / run.half_turn;  // a mean of sqrt(W)
     const double change = run.heading * run.body.gain * time / (4 * run.mass);
     return std::max(std::floor(time / run.mass * (speed + change)), 0.0);
 }
@@ -38,7 +38,7 @@ PartArray legendre_coefficients(const PartArray& times) {
 // The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
 double place_in_part(const PartArray& coefficients, double time) {
     constexpr int most_tries = 60;
-    constexpr double converged = 1e-9;  // Newton's method squares it
+    constexpr double converged = 1e-9;  // smaller steps are squared by Newton's method
     double x = std::clamp(time / coefficients[0] - 1, -1.0, 1.0);
     double low = -1.0;
     double high = 1.0;
@@ -75,7 +75,7 @@ RunReader::RunReader(const SlopeRun& run)
 // The current half turn is reused only well inside it, so that the answer does not depend on
 // earlier calls.
 SlopePlace RunReader::operator()(DoubleDouble time) {
-    constexpr double margin = 1e-9;  // many times the rounding of a time
+    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
     const DoubleDouble since = time - run_.from.time;
     double rest = double(since - begin_);
     if (!(rest > margin * lasts_ && rest < (1 - margin) * lasts_)) {

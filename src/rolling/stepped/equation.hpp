@@ -27,8 +27,8 @@ struct Invariants {
     double residual;
 };
 
-// D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0, physics (18), for
-// y = (theta, omega), alpha the slope, D = k^2 + h^2 + h'^2.
+// The equation of rolling D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0, physics
+// (18), for y = (theta, omega), alpha the slope, D = k^2 + h^2 + h'^2.
 class RollingEquation {
   public:
     static constexpr int size = 2;
@@ -55,7 +55,7 @@ class RollingEquation {
         return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
     }
 
-    // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
+    // Derivatives of the rate of y: physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
     Matrix<2> jacobian(double, const Vector<2>& y) const {
         const Geometry at = geometry(axes_, y[0]);
         const double omega = y[1];
@@ -71,7 +71,7 @@ class RollingEquation {
         return jacobian;
     }
 
-    // physics (17)
+    // Energy per mass, physics (17).
     SpecificEnergy energy(const Geometry& at, double omega, double x) const {
         return {0.5 * inertia_about_contact(gyration2_, at) * omega * omega,
                 gravity_.into * at.h - gravity_.along * x};
@@ -126,7 +126,7 @@ class RollingEquation {
     }
 
     Axes axes_;
-    Squares turned_[2];  // after an even number of quarter turns; after an odd one, exchanged
+    Squares turned_[2];  // squares of the axes: after even quarter turns, after odd ones
     double gyration2_;
     GroundGravity gravity_;
     double long_axis_;

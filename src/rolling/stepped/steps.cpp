@@ -40,7 +40,7 @@ class PathSeries {
           c2_((axes.a - axes.b) * (axes.a + axes.b)),
           off_axis_(std::atanh(std::fmin(axes.a, axes.b) / std::fmax(axes.a, axes.b))) {}
 
-    // centre_path to 2 ulp. Its bits do not depend on earlier calls, nor on the sign of theta.
+    // centre_path(theta) to 2 ulp. Its bits depend neither on earlier calls nor on the sign.
     double operator()(double theta) {
         const double angle = std::abs(theta);
         if (!here_.holds(angle)) move_to(angle);
@@ -59,7 +59,7 @@ class PathSeries {
     };
 
     void move_to(double angle) {
-        constexpr std::size_t most_known = 256;  // the thinnest body has about 100 in a half turn
+        constexpr std::size_t most_known = 256;  // intervals kept; thin bodies use 100 a half turn
         if (!(angle <= largest_in_quarters)) {
             here_ = {angle, angle, angle, {centre_path(axes_, angle)}};
             return;
@@ -82,8 +82,8 @@ class PathSeries {
         return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
     }
 
-    // The longest of the halves of halves of [n, n + 1) about an angle that is at most a 3.5th of
-    // the distance: the 17 terms then leave out less than 1e-17 of h times the interval.
+    // An interval about an angle by halving [n, n + 1), until its width is at most a 3.5th of the
+    // distance: the 17 terms then leave out less than 1e-17 of h times the interval.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval found;

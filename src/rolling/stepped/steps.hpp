@@ -18,7 +18,7 @@ struct SteppedRolling {
     Axes axes;
     Settings settings;
     DoubleDouble theta_base;  // angle at which half turns and remainder are 0
-    DoubleDouble x_base;      // x there
+    DoubleDouble x_base;      // x at theta_base
     double half_turn_path;    // path of the centre in a half turn
     Steps<2> steps;
 };
@@ -45,7 +45,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
-// Energies along a motion that took so many evaluations; its constraint residuals are 0.
+// Energies at points along a motion that took so many `evaluations`; constraint residuals are 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse
