@@ -20,7 +20,7 @@ struct Contact {
 };
 
 // u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) has more digits for
-// a light body that turns fast, the difference above for a body that hardly moves into the ground.
+// a light body that turns fast, u - v gtn/gtt for a body that hardly moves into the ground.
 Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
@@ -45,8 +45,8 @@ Contact contact(const Scene& scene, const Geometry& at, const State& state, doub
 struct Reaction {
     double tangential = 0.0;
     double normal = 0.0;
-    double rebound = 0.0;  // u afterwards
-    bool sticks = false;   // ends with v = 0
+    double rebound = 0.0;  // u after the collision
+    bool sticks = false;   // whether the collision ends with v = 0
 };
 
 // Infinite friction: the limit of the law below, physics (42), without a product infinity * 0.
@@ -74,8 +74,8 @@ class ImpulsePath {
     ImpulsePath(const Contact& c, double restitution, Restitution law)
         : u_(c.u), restitution_(restitution), rebound_(-restitution * c.u), law_(law) {}
 
-    // Goes on with du/dp and a tangential impulse per normal one, up to a normal impulse; false if
-    // restitution ends before.
+    // Follows the path with du/dp = `du` and `tangential` impulse per normal one, for a normal
+    // impulse of at most `most`; false if restitution ends before.
     bool go_on(double du, double tangential, double most) {
         double left = most;
         if (u_ < 0) {
@@ -127,10 +127,10 @@ class ImpulsePath {
 
     double u_;
     double restitution_;
-    double rebound_;  // rebound by Newton's law
+    double rebound_;  // final u by Newton's law
     Restitution law_;
-    double work_ = 0.0;         // left for restitution by Stronge's law
-    double last_normal_ = 0.0;  // at the end of restitution by Poisson's law
+    double work_ = 0.0;         // work left for restitution by Stronge's law
+    double last_normal_ = 0.0;  // normal impulse at the end by Poisson's law
     double normal_ = 0.0;
     double tangential_ = 0.0;
 };
@@ -228,8 +228,8 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // Next to the flat position the slide would end at a time that doubles cannot distinguish from
-    // 0.
+    // So small an angle counts as 0: the slide would end at a time that doubles cannot distinguish
+    // from 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;

@@ -18,11 +18,11 @@ struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]
     double reaction_z;
-    double free_omega;          // without the ground's reaction: the report's eq 48
+    double free_omega;          // angular velocity without the ground: the report's eq 48
     double slip_removed = 0.0;  // given slip that infinite friction stops at once [m/s]
-    double energy_lost = 0.0;   // energy lost with that slip [J]
-    double gap_rate = 0.0;      // with its own digits; 0 in contact [m/s]
-    bool touching = false;      // the body was on the ground before
+    double energy_lost = 0.0;   // energy lost when the slip stops [J]
+    double gap_rate = 0.0;      // rate of the gap, with its own digits; 0 in contact [m/s]
+    bool touching = false;      // the body was on the ground before the impulse
 };
 
 inline constexpr Field<InitialState> start_fields[] = {
@@ -33,16 +33,16 @@ inline constexpr Field<InitialState> start_fields[] = {
 
 InitialState initial_state(const Scene& scene);
 
-// The kinetic energy after the impulse without the ground, which can only lower it, by m g times
-// the long semi-axis.
+// The kinetic energy after the impulse if there were no ground, which can only lower it, in units
+// of m g times the long semi-axis.
 double energy_after_impulse(const Scene& scene);
 
 // The least coefficient of friction with which the contact does not slip after the applied impulse;
-// infinite if no finite one is enough. The scene's own does not count. Any larger one leads to the
-// same state.
+// infinite if no finite one is enough. The coefficient of the scene itself has no influence. Any
+// larger one leads to the same state.
 double sticking_friction(const Scene& scene);
 
-// The kinetic energy [J] lost in a collision; not negative by rounding.
+// The kinetic energy [J] lost in a collision; rounding does not make it negative.
 double energy_lost(const Scene& scene, const State& before, const State& after);
 
 // The rate of the gap: the velocity of the lowest point away from the ground.

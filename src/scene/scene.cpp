@@ -9,10 +9,10 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr double aspect_limit = 1e3;
-constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the rounding of a point on it
+constexpr double blow_margin = 1e-12;  // for rounding, as a share of the long semi-axis
 
-// The inertia as a moment or as k^2. Its bounds compare k^2 with the square of the long semi-axis,
-// so that the k^2 of a valid scene is valid for a body, too.
+// Refuses an inertia, a moment or k^2, out of bounds. They compare k^2 with the square of the long
+// semi-axis, so that the k^2 of a valid scene is valid for a body, too.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-6;
@@ -26,12 +26,12 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
     }
 }
 
-// The line of action of a blow must meet the body: its distance from the centre is at most that of
-// the parallel tangents, physics (1) across the line.
+// The line of action of a blow must meet the body: it is at most as far from the centre as the
+// tangents parallel to it, physics (1) across the line.
 void require_reach(const Scene& scene, const Impulse& blow) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
-    const double jx = blow.jx / larger;  // whose square is in range for every blow
+    const double jx = blow.jx / larger;  // jx scaled: its square is in range for every blow
     const double jz = blow.jz / larger;
     const double size = root_of_squares(jx, jz);
     const double across_x = -jz / size;

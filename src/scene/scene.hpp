@@ -210,7 +210,7 @@ Scene in_units(const Scene& scene, const Units& units);
 
 State in_units(const State& state, const Units& units);
 
-// Written out and inline, since every sample goes through it.
+// A state in SI units; written out and inline, since every sample goes through it.
 inline State in_si(const State& state, const Units& units) {
     const auto& [theta, omega, x, z, x_dot, z_dot, mode] = state;
     const auto& [length, time, mass] = units;

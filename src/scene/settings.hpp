@@ -41,13 +41,13 @@ struct Settings {
     Method method;
     double rtol;
     double atol;
-    std::optional<double> step;  // [s]; absent: chosen by error control
+    std::optional<double> step;  // size of steps [s]; absent: error control chooses it
     std::optional<int> stages;   // stages of "gauss"; 4 if absent
     Stabilization stabilization;
     std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;
     long max_events;
-    std::optional<double> rest_speed;  // [m/s] under which bounces are summed; absent: by size
+    std::optional<double> rest_speed;  // slower bounces are summed [m/s]; absent: by size
 };
 
 inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model},
