@@ -6,7 +6,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The extremes of the forces, each with the place or time of its occurrence.
+// A phrase with the extremes of the forces, each with the place or time of its occurrence.
 std::string extremes(double normal, const std::string& normal_at, double friction_needed,
                      const std::string& friction_at, double friction) {
     return "the smallest N is " + brief(normal) + " N (" + normal_at + "), the largest |F|/N is " +
@@ -92,7 +92,7 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
     if (ending == Ending::completed) return {};  // avoids the cost of the text below
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     const bool in_contact =
-        settings.model == Model::contact;  // the contact model has no steps with an error
+        settings.model == Model::contact;  // the contact model has no steps of controlled error
     switch (ending) {
         case Ending::completed:
             break;

@@ -9,11 +9,11 @@
 namespace rolling_ellipse {
 namespace {
 
-// The settings with "auto" resolved: no more model than the scene needs.
+// The settings with "auto" replaced by the simplest model that the scene needs, and its method.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
         const bool fixed =
-            settings.method != Method::automatic;  // only the rolling model has methods
+            settings.method != Method::automatic;  // a method asks for the rolling model
         settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
@@ -56,8 +56,8 @@ Proof prove(const Scene& scene, Beginning& from) {
     return {end_of_rolling(met), end ? end->time : infinity};
 }
 
-// Is the motion computed by the contact model, which proves arcs one by one, up to the last time
-// only?
+// Whether the contact model computes the motion: it proves each arc of rolling, up to the last time
+// only.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (asked.model == Model::contact) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&

@@ -19,16 +19,16 @@ struct Solution : Integration<Motion> {
     Method method = Method::exact;
     double valid_until = infinity;  // time at which the model stops being valid
     std::string message = {};
-    std::optional<ContactWatch> watch = {};  // forces of a motion without a proof
+    std::optional<ContactWatch> watch = {};  // contact forces seen, if there is no proof
 };
 
-// Energy and constraints lost by an integrated motion.
+// Numerical errors of an integrated motion in its energy and its constraints.
 struct Losses {
     // Largest change of the energy over the largest kinetic + |potential| energy. The height is 0
     // on the ground where the motion starts: so the result does not depend on the origin of x.
     double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
-    double projected = 0.0;    // that maximum within a step, before its projection
+    double projected = 0.0;    // largest constraint residual after a step, before its projection
 };
 
 // The certificate of the motion that starts from the scene, and one sentence that explains it.
@@ -57,16 +57,16 @@ std::string reason(const Scene& scene, const Solution& solution);
 // std::invalid_argument where it does not repeat.
 double period(const Scene& scene);
 
-// A number with six digits.
+// A number as text with six digits.
 std::string brief(double value);
 
-// Impulse and energy of a given slip that infinite friction stops; empty without one.
+// A sentence on a given slip that infinite friction stops: impulse and energy; empty without.
 std::string slip_removal(const InitialState& start);
 
-// The choice made for a body that may roll and may fly; empty for any other.
+// A sentence on the choice made for a body that may roll and may fly; empty for any other.
 std::string why_it_rolls(const Continuation& next);
 
-// The reason why a start does not roll; empty for one that rolls.
+// A sentence on why a start does not roll; empty for one that rolls.
 std::string why_not_rolling(const Scene& scene, const State& start);
 
 // Why rolling is the right model of a motion, or where it ends: as proved by a certificate, or as
