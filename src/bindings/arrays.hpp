@@ -80,8 +80,8 @@ py::array_t<Number> array_of(const std::vector<Number>& values) {
     return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// Refuse an array of another shape: std::invalid_argument with its name. A matrix may have any
-// number of rows, which is returned, unless one is given.
+// Refuse an array of another shape: std::invalid_argument with its name. require_matrix takes any
+// number of rows unless one is given, and returns the number.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);
 py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns,
                            std::optional<py::ssize_t> rows = {});

@@ -91,8 +91,8 @@ const double* read(Struct& to, const Field<Struct> (&table)[N], const double* fr
 // The state given by arrays q and q_dot of shape (1, 5); other shapes are refused.
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
-// An event as a row: t, the code of its kind, and the states before and after, each with the code
-// of its mode.
+// Numbers of an event as a row: t, the code of its kind, and the states before and after, each with
+// the code of its mode.
 inline constexpr std::size_t event_numbers = 2 + 2 * (std::size(state_fields) + 1);
 using EventRow = std::array<double, event_numbers>;
 py::tuple event_columns();

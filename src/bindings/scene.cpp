@@ -21,7 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
-        scene.z = a + b;  // above the ground at any angle: it may move down from there
+        scene.z = a + b;  // above the ground at any angle: any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
         validate(scene.body());                // first: a refusal then names gyration2

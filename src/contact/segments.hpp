@@ -55,7 +55,7 @@ struct Motion {
     std::vector<Event> events;
 };
 
-// The law of a segment, whether it is stored there or behind a pointer (Apart).
+// The law of a segment, whether it is stored in the segment or behind a pointer (Apart).
 template <class Law>
 const Law& itself(const Law& law) {
     return law;

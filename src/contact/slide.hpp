@@ -34,7 +34,7 @@ struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
     double unit;   // unit of time of the series
-    double reach;  // range of the clock
+    double reach;  // largest reading of the clock
     SlideMotion motion;
 };
 

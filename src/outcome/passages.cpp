@@ -68,7 +68,7 @@ struct Search {
             int side;
         };
         std::vector<Crossing> crossings;
-        std::size_t next = 0;  // the reading after the last one that is not 0
+        std::size_t next = 0;  // index of the reading after the last one that is not 0
         int before = 0;        // sign of the last reading that is not 0; 0 if none
         for (std::size_t i = 0; i < readings.size(); ++i) {
             const int now = sign_of(readings[i].excess);

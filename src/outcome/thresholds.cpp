@@ -13,7 +13,7 @@ namespace {
 // A position of rolling, by its angle and the height of its centre.
 struct Position : ShapePlace {
     double angle;      // phi, the angle from the flat position
-    double over_flat;  // h - S
+    double over_flat;  // h - S, its height over the flat position
 };
 
 Position position(const Shape& shape, double sin2, double cos2) {

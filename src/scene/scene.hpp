@@ -140,8 +140,8 @@ inline bool rolls(const State& state) {
 
 // The force of the ground on a body.
 struct ContactForce {
-    double normal;    // [N]
-    double friction;  // [N], on the body, along x
+    double normal;    // normal force [N]
+    double friction;  // friction force on the body, along x [N]
 };
 
 inline constexpr Field<ContactForce> force_fields[] = {
@@ -153,8 +153,8 @@ struct ContactSample {
     ContactForce force;
 };
 
-// An angular velocity below 1e-100 rad/s counts as rest. An angle of that size counts as 0 if its
-// square matters, which is not a normal double.
+// An angular velocity below 1e-100 rad/s counts as rest. Where the square of an angle matters, an
+// angle of that size counts as 0, too.
 inline double zero_if_negligible(double value) {
     return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }

@@ -70,7 +70,7 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     if (from.rests || from.view.c2 == 0) return flow;
     set_motion(flow, phase_start(from));
     flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
-    // With a tail, the steps end 1e-9 of the path before the tip: here the path is not from them.
+    // With a tail the steps end 1e-9 of the path too early: the quarter's path is computed anew.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path =
             path_from_flat(from.view.long_axis, from.view.short_axis, 1.0, 0.0);
@@ -139,7 +139,7 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         half_turns = on_way_back == flow.on_way_back ? 0.0 : 1.0;
     }
     DoubleDouble time = time_since_flat(flow, {sin, cos}) - time_since_flat(flow, flow.start_phase);
-    // An angle behind the start, in its direction, is passed in the next swing.
+    // An angle passed just before the start, in the same direction, is passed in the next swing.
     if (flow.kind == MotionKind::libration && half_turns == 0 && time.high < 0) half_turns = 2.0;
     if (half_turns != 0) {
         if (std::isinf(flow.phase.half_turn.high)) return infinity;

@@ -82,8 +82,8 @@ class PathSeries {
         return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
     }
 
-    // An interval about an angle by halving [n, n + 1), until its width is at most a 3.5th of the
-    // distance: the 17 terms then leave out less than 1e-17 of h times the interval.
+    // An interval about an angle by halving [n, n + 1), at most 1/3.5 as wide as its distance from
+    // a root of h: the 17 terms then leave out less than 1e-17 of h times the interval.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval found;
