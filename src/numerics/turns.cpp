@@ -59,7 +59,7 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                std::vector<double>& times) {
     constexpr double roundings = 1000;  // roundings allowed: the inverse basis has a norm of 300
     constexpr int deepest = 16;
-    std::size_t halvings = 64 * parts.size();  // a limit, since halving does not help against noise
+    std::size_t halvings = 64 * parts.size();  // most halvings, which do not help against noise
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;

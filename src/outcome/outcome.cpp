@@ -80,7 +80,7 @@ struct GripByBounds {
     }
 
   private:
-    // Is the sign negative at one place, provably?
+    // Is mu^2 P^2 - G Q^2 negative at one place, provably?
     bool fails(Tracked normal, Tracked friction, Tracked slope_square) const {
         const double most = std::abs(normal.value) + margin(normal);
         const double least = std::abs(friction.value) - margin(friction);
@@ -89,7 +89,7 @@ struct GripByBounds {
                rounding * held * square(most) < needed * least_slope * square(least);
     }
 
-    // Is the sign positive on the whole part, provably?
+    // Is mu^2 P^2 - G Q^2 positive on the whole part, provably?
     bool holds(const ForcesOnPart& part) const {
         double most_slope = 0.0;
         for (const Tracked c : part.slope_square.coefficients) {

@@ -27,7 +27,7 @@ constexpr double rounding = 1e-12;
 // The margin of the law for friction to one side, a polynomial of the share 0 <= x <= 1 of a piece.
 struct LawWatch::Law {
     double side;
-    double size;  // the sum of the sizes of its terms
+    double size;  // sum of the sizes of the terms of the law
     std::array<double, degree + 1> coefficients;
 
     Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
