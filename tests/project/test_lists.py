@@ -75,7 +75,8 @@ KINDS = {
     ),
     "a law of restitution": Kind(
         ["Stronge", "Poisson", "Newton"],
-        ("tests/border/test_stub.py", "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py"),
+        ("src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
+         "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py"),
     ),
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
