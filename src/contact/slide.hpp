@@ -34,7 +34,7 @@ struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
     double unit;   // unit of time of the series
-    double reach;  // largest reading of the clock
+    double reach;  // reading of the clock at the end of the piece
     SlideMotion motion;
 };
 

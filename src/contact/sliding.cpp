@@ -98,15 +98,16 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
     SlideSeries slide;
     auto& [motion, slip, rolled, pressure, response, u, work] = slide;
     auto& [angle, w, x_dot, path, time] = motion;
-    // Pairs of series; two pairs on a line are multiplied, for the two products behind them.
-    TwoSeries p_q, spread;   // products p angle', q angle'
-    TwoSeries w_u;           // squares omega^2, u^2
-    TwoSeries h_bend, h_w2;  // products h^2, (a b - u)(a b + u) omega^2
-    TwoSeries p_u, lever_h;  // products p L, u h
-    TwoSeries u_h, v_v;      // products u V, h V
-    TwoSeries c_w;           // products L C and h omega, with L = lever_h
-    TwoSeries loads, gains;  // products (u V) omega', (h V) impulse'
-    TwoSeries rate_c, w_h;   // products dt/dtau omega, C h
+    // Each name stands for a pair of series. Two pairs on a line are multiplied: first by first,
+    // second by second.
+    TwoSeries p_q, spread;   // (p, q) by (angle', angle')
+    TwoSeries w_u;           // (omega, u) by itself
+    TwoSeries h_bend, h_w2;  // (h, (a b - u)(a b + u)) by (h, omega^2)
+    TwoSeries p_u, lever_h;  // (p, u) by (L, h)
+    TwoSeries u_h, v_v;      // (u, h) by (V, V)
+    TwoSeries c_w;           // (C, omega) by (L, h), which is lever_h
+    TwoSeries loads, gains;  // (u V, h V) by (omega', impulse')
+    TwoSeries rate_c, w_h;   // (dt/dtau, C) by (omega, h)
     LongSeries h, rate, impulse, pull;
     w[0] = omega;
     angle[0] = path[0] = time[0] = impulse[0] = work[0] = 0.0;

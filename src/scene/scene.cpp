@@ -26,8 +26,8 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
     }
 }
 
-// The line of action of a blow must meet the body: it is at most as far from the centre as the
-// tangents parallel to it, physics (1) across the line.
+// Refuses a blow whose line of action misses the body. A tangent parallel to that line has the
+// distance `reach` from the centre: h of physics (1), in the direction across the line.
 void require_reach(const Scene& scene, const Impulse& blow) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;

@@ -20,7 +20,7 @@ CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """Return theta, psi, r, sin(psi - theta), cos(psi - theta) of q; `others` must broadcast."""
+    """Return theta, psi, r, sin(psi - theta), cos(psi - theta) of q; other arguments must fit q."""
     found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]

@@ -114,7 +114,7 @@ def simulate(
         atol=atol,
         step=step,
         max_steps=max_steps,
-        max_events=1,  # "multipliers" has no events
+        max_events=1,  # the least allowed: "multipliers" has no events
         **{name: value for name, value in how.items() if value is not None},
     )
     if corrected:

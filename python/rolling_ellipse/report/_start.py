@@ -13,7 +13,7 @@ from ..geometry import support, support_curvature, support_slope
 from ._rows import direction, masses, rows
 
 _EPS = float(np.finfo(float).eps)
-_ULPS = 16.0  # allowed error of each coordinate and rate [ulp], as in `kinematics`
+_ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: as large as one of `kinematics`
 _NAMES = (
     ("f2", "m"), ("f3", "m"), ("f4", "rad"),
     ("f1", "m/s"), ("rate of f2", "m/s"), ("rate of f3", "m/s"), ("rate of f4", "rad/s"),

@@ -56,7 +56,7 @@ template <class T>
 struct PhaseIntegrand {
     T short_axis;     // S
     T c2;             // L^2 - S^2
-    T energy_height;  // H
+    T energy_height;  // H = E/(m g), physics (26)
     T amplitude2;
     T scale2;
     T kappa;
@@ -127,11 +127,10 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // time in which the phase advances by pi
     T quarter_path;            // path of the centre in a quarter of a rotation
-    // Data for the first guess of the place at a time: dt/dy at the steps of the map and one step
-    // beyond its ends, and the time since the flat by cubics through them.
-    static constexpr int most_steps = 160;
-    T slope[most_steps + 3];
-    T time[most_steps + 2];
+    // For the first guess of the place at a time:
+    static constexpr int most_steps = 160;  // largest number of steps of a map
+    T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond both ends
+    T time[most_steps + 2];                 // time since the flat at the steps, by cubics for dt/dy
 };
 
 // The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis

@@ -69,7 +69,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     map.tip_scale2 = kappa * kappa * sine_scale2;
 }
 
-// The coordinate y of a phase, by Newton's method.
+// The coordinate y, physics (61), of a phase given by its sine and cosine, by Newton's method.
 template <class T>
 PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     constexpr double converged = 1e-8;
@@ -179,10 +179,10 @@ inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const
     const T time =
         sqrt((time_factor * inertia) * graded * ((integrand.energy_height + h) * inverse));
     const T size = map.speed * sqrt(graded * along) * per_q;
-    // The angle of a libration falls beyond its turning point.
     const T to_tip = quarters > 0 ? -offset : offset;
     const auto goes_on =
         quarters != 0 ? (to_tip > 0) & (to_tip < half_turn) : abs(to_tip) < map.quarter;
+    // The rate of the angle of a libration is negative beyond its turning point.
     const T swung = goes_on ? size : -size;
     const T angle = integrand.rotates ? size : swung;
     return {time, angle, h * angle};

@@ -32,12 +32,13 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
                          double cos, double omega, double drive) {
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
-    // Pairs of series. Two pairs on a line are multiplied: first by first, second by second.
-    TwoSeries p_q, w_w;           // products: the rates of u and p
-    TwoSeries u_u, inertia_h;     // products: the mass u D h^2, and u h
-    TwoSeries w_h;                // squares: omega^2 and h^2
-    TwoSeries p_uh, load_drive;   // products: the terms of omega and of gravity
-    TwoSeries mass_h, turning_w;  // products: omega' u D h^2, and the path's rate h omega
+    // Each name stands for a pair of series. Two pairs on a line are multiplied: first by first,
+    // second by second.
+    TwoSeries p_q, w_w;           // (p, q) by (omega, omega): the rates of u and p
+    TwoSeries u_u, inertia_h;     // (u, u) by (D h^2, h)
+    TwoSeries w_h;                // (omega, h) by itself
+    TwoSeries p_uh, load_drive;   // (p, u h) by (load, drive): the terms of omega and of gravity
+    TwoSeries mass_h, turning_w;  // (u D h^2, h) by (omega', omega); h omega is the path's rate
     const double centrifugal = -body.long_axis2 * body.short_axis2;
     const double sin2 = square(sin);
     const double u0 = body.short_axis2 + body.c2 * sin2;

@@ -20,7 +20,7 @@ double remainder(double level, double gain) {
     return ratio / std::sqrt(level) * series;
 }
 
-// The terms (W + j w)^(-1/2) before the level is high enough for the asymptotic formula.
+// Sums the terms (W + j w)^(-1/2), W = level, w = gain, up to the level of `asymptotic_from`.
 FirstRates first_rates(double level, double gain) {
     FirstRates first{};
     while (level < asymptotic_from * gain) {
@@ -84,7 +84,7 @@ void add_nodes(const SlopeRun& run, const RunPanel& panel, double first, double 
 struct Centre {
     double quarters;
     double angle;
-    double grade_angle;  // imaginary part of the nearest singularity of the integrand
+    double grade_angle;  // about the imaginary part of the nearest singularity of dt/dphi
     double at() const { return quarters * half_pi + angle; }
 };
 

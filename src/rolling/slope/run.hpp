@@ -42,8 +42,8 @@ struct FirstRates {
 // integral over the whole panel has one Gauss rule, an integral over a part of it the finer rules
 // of its parts.
 struct RunPanel {
-    double quarters;  // quarters of the centre
-    double angle;     // angle of the centre beyond its quarters
+    double quarters;  // quarter turns of the flat position or tip at or beside the centre
+    double angle;     // angle of the centre from there: beyond those quarter turns [rad]
     double scale;
     double grade;
     double first;

@@ -7,7 +7,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// First guess of the number of half turns in a time, as if D and W were constant.
+// First guess of the number of half turns in a time, as if W grew evenly with their number.
 double guess(const SlopeRun& run, double time) {
     const double speed = run.mass / run.half_turn;  // a mean of sqrt(W)
     const double change = run.heading * run.body.gain * time / (4 * run.mass);
