@@ -30,12 +30,13 @@ py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, 
 // Outcomes of a scene on level ground by each of n blows instead of its own: jx, jz, dx, dz.
 py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Array, 4>& impulses) {
     const Arguments<4> of({"jx", "jz", "dx", "dz"}, impulses, n);
+    const Geometry at = geometry(scene.axes(), scene.theta);
     return computed(n, [&](py::ssize_t i) {
         Scene struck = scene;
         const auto [jx, jz, dx, dz] = of[i];
         struck.impulse = Impulse{jx, jz, dx, dz};
         try {
-            validate_blow(struck);
+            validate_blow(struck, at);
             return std::tuple(code(outcome(struck, [] {})));
         } catch (const std::invalid_argument& error) {
             throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));

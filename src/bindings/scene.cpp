@@ -26,9 +26,9 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.z_dot = z_dot;
         validate(scene.body());                // first: a refusal then names gyration2
         validate(scene, most_energy_reached);  // the widest limit, as gravity is arbitrary here
-        const State before = state_before_impulse(scene);
-        const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
-        const State after = collision(scene, before, approach, law).after;
+        const Geometry at = geometry(scene.axes(), theta);
+        const State before = state_before_impulse(scene, at);
+        const State after = collision(scene, at, before, gap_rate(before, at), law).after;
         return std::tuple(after.x_dot, after.z_dot, after.omega);
     };
     return computed_from<9>(

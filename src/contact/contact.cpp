@@ -91,7 +91,8 @@ class ContactRun {
     }
 
     void rest() {
-        add_segment(Standing{state_, rolling_force(scene_, state_.theta, state_.omega)});
+        add_segment(
+            Standing{state_, rolling_force(scene_, geometry(axes(), state_.theta), state_.omega)});
         finish();
     }
 
@@ -128,7 +129,8 @@ class ContactRun {
     // At the limit of the law rounding cannot decide whether the body rolls or slips. With slightly
     // more friction it rolls until this is decided.
     double friction_to_roll() const {
-        const ContactForce force = rolling_force(scene_, state_.theta, state_.omega);
+        const ContactForce force =
+            rolling_force(scene_, geometry(axes(), state_.theta), state_.omega);
         return at_the_limit(force, scene_.friction) ? beyond_the_limit(scene_.friction)
                                                     : scene_.friction;
     }
@@ -211,7 +213,7 @@ class ContactRun {
     }
 
     void hit(const State& before, const Geometry& at, double approach) {
-        const auto [after, rebound] = collision(scene_, before, approach);
+        const auto [after, rebound] = collision(scene_, at, before, approach);
         state_ = after;
         // A rebound slower than a rounding of the speed of a fall counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {

@@ -304,7 +304,7 @@ Settling settling(const Scene& scene, const State& start, const Bounce& first) {
         turned += moving.omega * hop;
         moving.x_dot += gained;
         moving.z_dot = at.dh * moving.omega - speed;
-        const auto [after, next] = collision(scene, moving, -speed);
+        const auto [after, next] = collision(scene, at, moving, -speed);
         moving = after;
         if (!(next < largest_ratio * speed)) break;
         speed = std::max(next, 0.0);

@@ -194,8 +194,9 @@ double side_of(double v) { return std::copysign(1.0, v); }
 
 // Whether the body stays where it is.
 bool rests(const Scene& scene, const State& state, const Geometry& at) {
+    if (state.omega != 0) return false;
     const double incline = std::tan(scene.slope);
-    return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
+    return is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
 // The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
@@ -235,7 +236,7 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
     }
     if (slip != 0) return slide_or_leave(scene, at, state.omega, side_of(slip), true);
     if (rests(scene, state, at)) return {Mode::rest};
-    const ContactForce force = rolling_force(scene, state.theta, state.omega);
+    const ContactForce force = rolling_force(scene, at, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
     if (may_roll && force.normal > 0 && held) {
         Continuation next{Mode::rolling};
@@ -277,13 +278,12 @@ State with_angle(const Axes& axes, State state, const Axes& new_axes, double the
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene.body(), scene.mass);
-    const Scene body = in_units(scene, units);
+    Scene seen = in_units(scene, units);
+    const Axes axes = seen.axes();
     const State state = in_units(start, units);
     const QuarterView angle = quarter_view({resolved(state.theta), 0.0});
-    Scene seen = body;
     if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
-    return continuation(seen, with_angle(body.axes(), state, seen.axes(), angle.rest.high),
-                        may_roll);
+    return continuation(seen, with_angle(axes, state, seen.axes(), angle.rest.high), may_roll);
 }
 
 }  // namespace rolling_ellipse

@@ -227,15 +227,16 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
 double press_to(const Scene& scene, double distance, double omega) {
     require_finite("distance", unit::length, distance);
     validate_motion(scene.body(), scene.theta, omega);
-    const State state = state_before_impulse(scene);
-    const Geometry at = geometry(scene.axes(), state.theta);
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    const State state = state_before_impulse(scene, at);
     const double k2 = scene.body().gyration2;
     const double wanted = inertia_about_contact(k2, at) * omega;
     const double there = k2 * state.omega + at.h * state.x_dot + at.dh * state.z_dot;
     const double force = scene.mass * (wanted - there) / (distance - at.dh);
     Scene pressed = scene;
     pressed.impulse = Impulse{0.0, -force, distance, 0.0};
-    return energy_after_impulse(pressed) <= most_energy ? force : std::copysign(infinity, force);
+    return energy_after_impulse(pressed, at) <= most_energy ? force
+                                                            : std::copysign(infinity, force);
 }
 
 double speed_to_the_tip(const Scene& scene) {

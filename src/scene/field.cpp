@@ -38,7 +38,7 @@ void refuse(std::string_view name, const std::string& requirement, const std::st
 
 std::string in_brackets(const Unit& unit) { return std::string(" [") + unit.symbol + "]"; }
 
-void require_finite(std::string_view name, const Unit& unit, double value) {
+void require_finite(const char* name, const Unit& unit, double value) {
     if (!(std::abs(value) <= largest_number)) {
         refuse(name, "a finite number" + in_brackets(unit) + " of at most 1e50", value);
     }

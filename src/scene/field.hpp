@@ -17,9 +17,9 @@ struct Unit {
 
 // An integer power.
 inline double power(double base, int exponent) {
+    if (exponent < 0) return power(1 / base, -exponent);
     double found = 1.0;
     for (int i = 0; i < exponent; ++i) found *= base;
-    for (int i = 0; i > exponent; --i) found /= base;
     return found;
 }
 
@@ -57,7 +57,7 @@ std::string text(double value);
 std::string in_brackets(const Unit& unit);
 
 // Throws unless a position, velocity or impulse is finite and small enough.
-void require_finite(std::string_view name, const Unit& unit, double value);
+void require_finite(const char* name, const Unit& unit, double value);
 
 // Throws unless a quantity of a kind ("length [m]") is positive and of a size whose products stay
 // within the range of doubles.

@@ -214,9 +214,9 @@ double strike(const Scene& scene, const Impulse& j, const Geometry& at, State& s
 }  // namespace
 
 InitialState initial_state(const Scene& scene) {
-    InitialState result{state_before_impulse(scene), 0.0, 0.0, scene.omega};
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    InitialState result{state_before_impulse(scene, at), 0.0, 0.0, scene.omega};
     State& state = result.state;
-    const Geometry at = geometry(scene.axes(), state.theta);
     result.touching = state.z == at.h;
     const double rate =
         scene.impulse ? strike(scene, *scene.impulse, at, state) : gap_rate(state, at);
@@ -257,9 +257,9 @@ InitialState initial_state(const Scene& scene) {
     return result;
 }
 
-double energy_after_impulse(const Scene& scene) {
-    State state = state_before_impulse(scene);
-    strike(scene, *scene.impulse, geometry(scene.axes(), state.theta), state);
+double energy_after_impulse(const Scene& scene, const Geometry& at) {
+    State state = state_before_impulse(scene, at);
+    strike(scene, *scene.impulse, at, state);
     const double k2 = scene.inertia / scene.mass;
     return 0.5 * (square(state.x_dot) + square(state.z_dot) + k2 * square(state.omega)) /
            (scene.gravity * std::max(scene.a, scene.b));
@@ -268,8 +268,8 @@ double energy_after_impulse(const Scene& scene) {
 // The slip stops before the compression ends if |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn), and
 // does not start again if |Gtn| <= mu Gtt, physics (41).
 double sticking_friction(const Scene& scene) {
-    State state = state_before_impulse(scene);
-    const Geometry at = geometry(scene.axes(), state.theta);
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    State state = state_before_impulse(scene, at);
     if (state.z != at.h) return infinity;
     if (!is_struck(scene)) return rolls(state) ? 0.0 : infinity;
     const double rate = strike(scene, *scene.impulse, at, state);
@@ -295,8 +295,8 @@ double gap_rate(const State& state, const Geometry& at) {
     return state.z_dot - at.dh * state.omega;
 }
 
-Collision collision(const Scene& scene, const State& before, double gap_rate, Restitution law) {
-    const Geometry at = geometry(scene.axes(), before.theta);
+Collision collision(const Scene& scene, const Geometry& at, const State& before, double gap_rate,
+                    Restitution law) {
     const Contact c = contact(scene, at, before, gap_rate);
     if (!(c.u < 0)) return {before, c.u};
     const Reaction reaction = reaction_to(scene, c, scene.restitution, law);

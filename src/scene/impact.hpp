@@ -35,7 +35,7 @@ InitialState initial_state(const Scene& scene);
 
 // The kinetic energy after the impulse if there were no ground, which can only lower it, in units
 // of m g times the long semi-axis.
-double energy_after_impulse(const Scene& scene);
+double energy_after_impulse(const Scene& scene, const Geometry& at);
 
 // The least coefficient of friction with which the contact does not slip after the applied impulse;
 // infinite if no finite one is enough. The coefficient of the scene itself has no influence. Any
@@ -55,7 +55,7 @@ struct Collision {
     State after;
     double rebound;
 };
-Collision collision(const Scene& scene, const State& before, double gap_rate,
+Collision collision(const Scene& scene, const Geometry& at, const State& before, double gap_rate,
                     Restitution law = Restitution::stronge);
 
 }  // namespace rolling_ellipse

@@ -28,7 +28,7 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
 
 // Refuses a blow whose line of action misses the body. A tangent parallel to that line has the
 // distance `reach` from the centre: h of physics (1), in the direction across the line.
-void require_reach(const Scene& scene, const Impulse& blow) {
+void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
     const double jx = blow.jx / larger;  // jx scaled: its square is in range for every blow
@@ -36,10 +36,8 @@ void require_reach(const Scene& scene, const Impulse& blow) {
     const double size = root_of_squares(jx, jz);
     const double across_x = -jz / size;
     const double across_z = jx / size;
-    const double s = std::sin(scene.theta);
-    const double c = std::cos(scene.theta);
-    const double reach = root_of_squares(scene.a * (across_x * c - across_z * s),
-                                         scene.b * (across_x * s + across_z * c));
+    const double reach = root_of_squares(scene.a * (across_x * at.cos - across_z * at.sin),
+                                         scene.b * (across_x * at.sin + across_z * at.cos));
     const double distance = std::abs(blow.dx * across_x + blow.dz * across_z);
     if (distance <= reach + blow_margin * std::max(scene.a, scene.b)) return;
     refuse("impulse",
@@ -55,8 +53,10 @@ void require_in_size(std::string_view name, const Unit& unit, double value, doub
 
 }  // namespace
 
-std::optional<double> SceneField::of(const Scene& scene) const {
-    return std::visit([&](auto at) -> std::optional<double> { return scene.*at; }, number);
+double* SceneField::of(Scene& scene) const {
+    if (const auto* at = std::get_if<double Scene::*>(&number)) return &(scene.**at);
+    auto& given = scene.*std::get<std::optional<double> Scene::*>(number);
+    return given ? &*given : nullptr;
 }
 
 void SceneField::set(Scene& scene, std::optional<double> value) const {
@@ -83,17 +83,15 @@ Units natural_units(const Body& body, double mass) {
             std::ldexp(1.0, std::ilogb(mass))};
 }
 
-Scene in_units(const Scene& scene, const Units& units) {
-    Scene scaled{};
+Scene in_units(Scene scene, const Units& units) {
+    const Units inverse = units.inverse();
     for (const SceneField& field : scene_fields) {
-        if (const auto value = field.of(scene)) field.set(scaled, *value / units.of(field.unit));
+        if (double* const number = field.of(scene)) *number *= inverse.of(field.unit);
     }
-    return scaled;
+    return scene;
 }
 
-State in_units(const State& state, const Units& units) {
-    return in_si(state, {1 / units.length, 1 / units.time, 1 / units.mass});
-}
+State in_units(const State& state, const Units& units) { return in_si(state, units.inverse()); }
 
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
@@ -162,15 +160,16 @@ void validate(const Scene& scene, double most) {
     require_in_size("z", unit::length, scene.z.value_or(0.0), most * axis);
     require_in_size("x_dot", unit::speed, scene.x_dot.value_or(0.0), most_speed);
     require_in_size("z_dot", unit::speed, scene.z_dot.value_or(0.0), most_speed);
-    validate_blow(scene);
-    state_before_impulse(scene);
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    validate_blow(scene, at);
+    state_before_impulse(scene, at);
 }
 
-void validate_blow(const Scene& scene) {
+void validate_blow(const Scene& scene, const Geometry& at) {
     if (!scene.impulse) return;
     validate(*scene.impulse);
-    require_reach(scene, *scene.impulse);
-    const double energy = energy_after_impulse(scene);
+    require_reach(scene, at, *scene.impulse);
+    const double energy = energy_after_impulse(scene, at);
     if (energy <= most_energy) return;
     refuse("impulse",
            "weak enough to leave the body, were it free, a kinetic energy of at most 1e12 times "
@@ -178,8 +177,7 @@ void validate_blow(const Scene& scene) {
            energy);
 }
 
-State state_before_impulse(const Scene& scene) {
-    const Geometry at = geometry(scene.axes(), scene.theta);
+State state_before_impulse(const Scene& scene, const Geometry& at) {
     State state{scene.theta, zero_if_negligible(scene.omega), scene.x, at.h, 0.0, 0.0,
                 Mode::flight};
     const double z = scene.z.value_or(at.h);

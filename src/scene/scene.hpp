@@ -82,7 +82,8 @@ struct SceneField {
     Unit unit;
     double (*otherwise)(const Scene&) = nullptr;
 
-    std::optional<double> of(const Scene& scene) const;
+    // Null if the number is absent.
+    double* of(Scene& scene) const;
     // A number that must be given and is absent becomes NaN, which `validate` refuses.
     void set(Scene& scene, std::optional<double> value) const;
 };
@@ -199,6 +200,7 @@ struct Units {
     double of(const Unit& unit) const {
         return power(length, unit.length) * power(time, unit.time) * power(mass, unit.mass);
     }
+    Units inverse() const { return {1 / length, 1 / time, 1 / mass}; }
     bool are_si() const { return length == 1 && time == 1 && mass == 1; }
 };
 
@@ -206,7 +208,7 @@ struct Units {
 Units natural_units(const Body& body, double mass = 1.0);
 
 // A scene in other units, except its impulse.
-Scene in_units(const Scene& scene, const Units& units);
+Scene in_units(Scene scene, const Units& units);
 
 State in_units(const State& state, const Units& units);
 
@@ -238,10 +240,11 @@ void validate(const Impulse& impulse);
 void validate(const Scene& scene, double most = most_energy);
 
 // The impulse must be finite, meet the body and not make it too fast.
-void validate_blow(const Scene& scene);
+void validate_blow(const Scene& scene, const Geometry& at);
 
-// The state before any impulse. Absent values are filled in; values within 8 ulp of touching or of
-// rolling are set exactly. Throws if the body is under the ground or moves into it.
-State state_before_impulse(const Scene& scene);
+// The state before any impulse, by the geometry at its angle. Absent values are filled in; values
+// within 8 ulp of touching or of rolling are set exactly. Throws if the body is under the ground or
+// moves into it.
+State state_before_impulse(const Scene& scene, const Geometry& at);
 
 }  // namespace rolling_ellipse

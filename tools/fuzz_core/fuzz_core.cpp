@@ -67,7 +67,7 @@ void put_at_its_limit(Scene& scene, Bytes& bytes) {
     if (at.ddh < 0 && bytes.chance(128)) {
         scene.omega = bytes.sign() * beside * std::sqrt(scene.ground_gravity().into / -at.ddh);
     } else {
-        scene.friction = beside * friction_needed(rolling_force(scene, scene.theta, scene.omega));
+        scene.friction = beside * friction_needed(rolling_force(scene, at, scene.omega));
     }
 }
 
@@ -152,7 +152,7 @@ void check_no_gain(const Scene& scene, const State& before, const State& after) 
 }
 
 void check_start(const Scene& scene) {
-    const State before = state_before_impulse(scene);
+    const State before = state_before_impulse(scene, geometry(scene.axes(), scene.theta));
     const InitialState start = initial_state(scene);
     CHECK(is_finite(before) && is_finite(start.state));
     CHECK(std::isfinite(start.reaction_x) && std::isfinite(start.reaction_z));
@@ -175,7 +175,7 @@ void check_collision(const Scene& scene, Bytes& bytes) {
     before.x_dot = speed * bytes.between(-5, 5);
     before.z_dot = at.dh * before.omega - speed * bytes.power(-6, 1);
     if (!(before.z_dot < at.dh * before.omega)) return;
-    const State after = collision(scene, before, gap_rate(before, at)).after;
+    const State after = collision(scene, at, before, gap_rate(before, at)).after;
     CHECK(is_finite(after));
     CHECK(after.theta == before.theta && after.x == before.x);
     check_no_gain(scene, before, after);

@@ -133,9 +133,8 @@ class RollingEquation {
 };
 
 // The contact force of a rolling body.
-inline ContactForce rolling_force(const Scene& scene, double theta, double omega) {
-    const RollingEquation rolling(scene.body(), scene.slope);
-    return rolling.force(scene.mass, geometry(scene.axes(), theta), omega);
+inline ContactForce rolling_force(const Scene& scene, const Geometry& at, double omega) {
+    return RollingEquation(scene.body(), scene.slope).force(scene.mass, at, omega);
 }
 
 }  // namespace rolling_ellipse
