@@ -12,7 +12,7 @@ namespace {
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
                          double gyration2, double friction, double restitution) {
-        Scene scene{};
+        Scene scene = scene_of();
         scene.mass = scene.gravity = 1.0;  // any numbers: velocities do not depend on them
         scene.a = a;
         scene.b = b;
@@ -21,6 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
+        scene.slope = scene.x = 0.0;
         scene.z = a + b;  // above the ground at any angle: any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;

@@ -140,12 +140,13 @@ Onset painleve(const Shape& shape) {
 }
 
 Scene level_scene(const Body& body, double friction) {
-    Scene scene{};
+    Scene scene = scene_of();
     scene.a = body.a;
     scene.b = body.b;
     scene.mass = 1.0;
     scene.gravity = body.gravity;
     scene.inertia = body.gyration2;
+    scene.slope = 0.0;
     scene.friction = friction;
     return scene;
 }

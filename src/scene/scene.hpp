@@ -107,9 +107,10 @@ inline constexpr SceneField scene_fields[] = {
     {"x_dot", &Scene::x_dot, unit::speed},
     {"z_dot", &Scene::z_dot, unit::speed}};
 
-// The scene by its numbers in the order of the table; not validated.
+// The scene by its numbers in the order of the table; not validated. Without arguments every number
+// that must be given is NaN.
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
-Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impulse);
+Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
 enum class Mode : std::int8_t { rolling, sliding, flight, rest };
 

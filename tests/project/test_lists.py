@@ -87,7 +87,7 @@ PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
     "a model": r"Model::multipliers|SteppedMultipliers|model == \"multipliers\"",
-    "a field of Scene": r"\bScene \w+\{\}",
+    "a field of Scene": r"\bScene \w+\{\}|scene_of\(\)",
 }
 UNTESTED = {"rolling resistance", "another shape than the ellipse", "a way out of Python"}
 
