@@ -42,10 +42,10 @@ class Stagnation {
         for (int i = 0; i < Stages; ++i) {
             for (int k = 0; k < N; ++k) {
                 const double now = std::abs(changes[i][k]);
-                const double change = std::fmax(now, last_[i][k]);
+                const double change = std::max(last_[i][k], now);
                 last_[i][k] = now;
-                if (first) first_[k] = std::fmax(first_[k], now);
-                largest_[k] = std::fmax(largest_[k], change);
+                if (first) first_[k] = std::max(first_[k], now);
+                largest_[k] = std::max(largest_[k], change);
                 if (change != 0.0 && (change < smallest_[i][k] || std::isinf(change))) {
                     smallest_[i][k] = change;
                     shrinking = true;
