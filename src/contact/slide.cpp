@@ -62,13 +62,13 @@ std::optional<double> first_end(double reach, const Coefficient& coefficient) {
     return first_negative(bernstein(margin));
 }
 
-// The sine and cosine of an angle that has more digits than a double.
-std::pair<double, double> sin_cos(const DoubleDouble& angle) {
+// The geometry at an angle that has more digits than a double.
+Geometry geometry(const Axes& axes, const DoubleDouble& angle) {
     const double sin = std::sin(angle.high);
     const double cos = std::cos(angle.high);
     const double rest_sin = std::sin(angle.low);  // angle.low reaches 1 after 1e16 radians
     const double rest_cos = std::cos(angle.low);
-    return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
+    return geometry(axes, sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin);
 }
 
 // Height of the centre over the tip minus its height now.
@@ -77,8 +77,7 @@ double under_tip(const Axes& axes, const Geometry& at) {
 }
 
 double energy_of(const SlidingBody& body, const DoubleDouble& angle, double omega) {
-    const auto [sin, cos] = sin_cos(angle);
-    const Geometry at = geometry(body.axes, sin, cos);
+    const Geometry at = geometry(body.axes, angle);
     return 0.5 * square(omega) * (body.gyration2 + square(at.dh)) -
            body.gravity.into * under_tip(body.axes, at);
 }
@@ -103,13 +102,12 @@ class SlideIntegration {
     // Adds a piece. Returns the reason if the slide stops there.
     std::optional<SlideStop> step() {
         const SlidePoint& from = last_;
-        const auto [sin, cos] = sin_cos(from.angle);
-        const double unit =
-            std::ldexp(1.0, -std::ilogb(rate(geometry(slide_.body.axes, sin, cos))));
+        const Geometry at = geometry_here();
+        const double unit = std::ldexp(1.0, -std::ilogb(rate(at)));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
         SlideSeries series = slide_series(body,
-                                          {sin, cos, double(from.omega) * unit,
+                                          {at.sin, at.cos, double(from.omega) * unit,
                                            double(from.slip) * unit, double(from.x_dot) * unit},
                                           clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
@@ -141,10 +139,7 @@ class SlideIntegration {
     }
 
   private:
-    Geometry geometry_here() const {
-        const auto [sin, cos] = sin_cos(last_.angle);
-        return geometry(slide_.body.axes, sin, cos);
-    }
+    Geometry geometry_here() const { return geometry(slide_.body.axes, last_.angle); }
 
     // Takes omega from the energy where the body creeps over the tip. The series carry the
     // roundings of the fast motion before; the energy, counted from the tip, has smaller ones.

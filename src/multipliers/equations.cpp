@@ -47,8 +47,7 @@ MultiplierSolution contact_solution(const Axes& axes, const Geometry& at,
 
 CoordinateState coordinate_state(const Axes& axes, const State& state) {
     using namespace coordinate;
-    const CoordinateState kinematic = kinematics(axes, state.theta, state.omega);
-    CoordinateState result{kinematic.q, kinematic.q_dot};
+    CoordinateState result = kinematics(axes, state.theta, state.omega);
     result.q[x] = state.x;
     result.q[z] = state.z;
     result.q_dot[x] = state.x_dot;

@@ -251,9 +251,7 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
 // the position constraints, f1' + 2 alpha f1 = 0 for the velocity.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state) {
-    if (settings.stabilization != Stabilization::baumgarte) {
-        return body.solve(state);
-    }
+    if (settings.stabilization != Stabilization::baumgarte) return body.solve(state);
     const Axes& axes = body.axes();
     const auto [alpha, beta] = settings.baumgarte;
     Eigen::Vector4d demand = -constraint_drift(axes, state.q, state.q_dot);
