@@ -48,12 +48,15 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
 py::dict certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
     const Certificate& c = certified.certificate;
-    return py::dict("validity"_a = static_cast<int>(c.end.validity),
-                    "smallest_normal_force"_a = c.smallest_normal_force,
-                    "smallest_normal_force_angle"_a = c.smallest_normal_force_angle,
-                    "largest_friction_needed"_a = c.largest_friction_needed,
-                    "largest_friction_needed_angle"_a = c.largest_friction_needed_angle,
-                    "ends_at"_a = c.end.angle, "reason"_a = certified.reason);
+    py::dict found;
+    found["validity"] = static_cast<int>(c.end.validity);
+    found["smallest_normal_force"] = c.smallest_normal_force;
+    found["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
+    found["largest_friction_needed"] = c.largest_friction_needed;
+    found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
+    found["ends_at"] = c.end.angle;
+    found["reason"] = certified.reason;
+    return found;
 }
 
 Body valid_body(double a, double b, double gravity, std::optional<double> gyration2) {
@@ -67,12 +70,18 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     const Body of = valid_body(a, b, gravity, gyration2);
     validate_friction(friction);
     const Thresholds t = thresholds(of, friction);
-    return py::dict(
-        "roll_over_speed"_a = t.roll_over_speed, "contact_loss_speed"_a = t.contact_loss_speed,
-        "contact_loss_angle"_a = t.contact_loss_angle, "slip_speed"_a = t.slip_speed,
-        "slip_angle"_a = t.slip_angle, "friction_to_roll_over"_a = t.friction_to_roll_over,
-        "painleve_friction"_a = t.painleve_friction, "painleve_angle"_a = t.painleve_angle,
-        "rocking_rate"_a = t.rocking_rate, "tip_rate"_a = t.tip_rate);
+    py::dict found;
+    found["roll_over_speed"] = t.roll_over_speed;
+    found["contact_loss_speed"] = t.contact_loss_speed;
+    found["contact_loss_angle"] = t.contact_loss_angle;
+    found["slip_speed"] = t.slip_speed;
+    found["slip_angle"] = t.slip_angle;
+    found["friction_to_roll_over"] = t.friction_to_roll_over;
+    found["painleve_friction"] = t.painleve_friction;
+    found["painleve_angle"] = t.painleve_angle;
+    found["rocking_rate"] = t.rocking_rate;
+    found["tip_rate"] = t.tip_rate;
+    return found;
 }
 
 // Lift-off speed and the ranges of speeds that jam; slip_speed and painleve_friction are known.
