@@ -133,8 +133,7 @@ def drawn(side: str, count: int, seed: int) -> list[Mutant]:
         found = list(mutants_of(path))
         random_.shuffle(found)
         order += [((i + random_.random()) / len(found) ** 0.5, m) for i, m in enumerate(found)]
-    order.sort(key=lambda pair: (pair[0], pair[1].name))
-    return [mutant for _, mutant in order[:count]]
+    return [m for _, m in sorted(order, key=lambda pair: (pair[0], pair[1].name))[:count]]
 
 
 class Workshop:
