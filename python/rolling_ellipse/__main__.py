@@ -100,7 +100,9 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
 
 def _complain(error: Exception) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
-        print(f"{PROGRAM}: {' '.join(str(error).split())}", file=sys.stderr)
+        said = " ".join(str(error).split())
+        option = "--" if said.startswith("step ") else ""  # an argument of `simulate`
+        print(f"{PROGRAM}: {option}{said}", file=sys.stderr)
 
 
 def run() -> int:

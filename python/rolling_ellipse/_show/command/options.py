@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import re
+import sys
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -20,11 +22,11 @@ SCENE_OPTIONS = {
     "friction": "coefficient of friction",
     "restitution": "coefficient of restitution",
     "slope": "angle of the ground [rad]",
+    "gravity": "acceleration of gravity [m/s^2]",
+    "inertia": "moment of inertia about the centre [kg m^2] (default: a uniform disc)",
 }
 # Fields of a Scene without an option of their own, and the reasons.
 NOT_TYPED = {
-    "gravity": "other units of time show the same",
-    "inertia": "the bodies of the command line are uniform discs",
     "x": "a motion is the same from every place",
     "z": "the body starts on the ground, where a blow can press it down",
     "x_dot": "as z: it starts rolling",
@@ -35,7 +37,8 @@ _BASE = (
     "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
     "centre; options change it."
 )
-PROGRAM = "python -m rolling_ellipse"
+_SCRIPT = "rolling-ellipse"
+PROGRAM = _SCRIPT if Path(sys.argv[0]).stem == _SCRIPT else "python -m rolling_ellipse"
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -50,7 +53,9 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _scene_parser(prog: str, description: str, epilog: str | None = None) -> OneLineParser:
-    found = OneLineParser(prog=prog, description=f"{description} {_BASE}", epilog=epilog)
+    found = OneLineParser(
+        prog=prog, description=f"{description} {_BASE}", epilog=epilog, allow_abbrev=False
+    )
     for name, meaning in SCENE_OPTIONS.items():
         found.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
     found.add_argument(
@@ -73,6 +78,7 @@ def motion_parser() -> OneLineParser:
     found.add_argument("--step", type=float, metavar="S", help="size of fixed steps [s]")
     found.add_argument("--save", metavar="FILE", help="write an animation (.gif, .mp4, .html)")
     found.add_argument("--plot", metavar="FILE", help="write the overview figure")
+    found.add_argument("--version", action="version", version=f"{_SCRIPT} {version(_SCRIPT)}")
     found.add_argument("--json", action="store_true", help="print the summary as JSON")
     return found
 
