@@ -16,6 +16,7 @@ import numpy as np
 
 from . import _core
 from ._ask.check import FloatArray, broadcast, require, shaped
+from ._ask.words import understood
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",
@@ -78,3 +79,7 @@ def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
     Equal to ``centre_path + support_slope``; 2 pi gives the perimeter.
     """
     return _evaluate(_core.arc_length, theta, a, b)
+
+
+for _name in __all__:  # a call without the names of a and b says how to write it
+    globals()[_name] = understood(globals()[_name])

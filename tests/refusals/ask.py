@@ -53,6 +53,7 @@ REFUSALS: list[Row] = [
     }),
     *wrong(Impulse.press, {"F": 48.0, "d": 1.5}, F=[*NOT_FINITE, 1e51], d=[*NOT_FINITE, -1e51]),
     *wrong(Scene, {"a": 1e-20, "b": 1e-20, "z": 1e-9}, x_dot=[1e3], z_dot=[-1e3]),
+    *((TypeError, lambda _, of=of: of(a=2.0, b=1.0, mu=0.3)) for of in (Scene, rl.classify)),
     ("changes", lambda _: ROLLING.replace(color=1)),
     *wrong(ROLLING.replace, {}, omega=[NAN], z=[0.5], b=[-1.0]),
     # times and settings

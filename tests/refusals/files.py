@@ -105,6 +105,7 @@ HEADERS = [
 ]  # fmt: skip
 
 REFUSALS: list[Row] = [
+    ("path", lambda folder: MOTION.save(folder / "a.csv")),
     # members
     members(), members(t=npy(np.zeros(9))), members(z1=npy(1.0)),
     members(zipfile.ZIP_DEFLATED, t=npy(np.zeros(9))), members(t=npy(np.zeros(9), (2, 0))),

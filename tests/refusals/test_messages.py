@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 import rolling_ellipse
@@ -113,6 +113,28 @@ def test_each_call_is_refused_by_name(all_provoked: list[Provoked]) -> None:
 
 def test_a_picture_that_is_refused_leaves_no_figure(all_provoked: list[Provoked]) -> None:
     assert all_provoked and pyplot.get_fignums() == []
+
+
+ours: Any = rolling_ellipse  # types refuse these calls, too
+
+
+@pytest.mark.parametrize(
+    ("said", "call"),
+    [
+        ("did you mean restitution?", lambda: ours.Scene(2, 1, e=0.3)),
+        ("did you mean friction?", lambda: ours.Scene(2, 1, fricton=0.3)),
+        ("did you mean mass?", lambda: ours.scenes.report.replace(m=1.0)),
+        ("did you mean step or t?", lambda: ours.simulate(ours.scenes.report, 1.0, dt=0.1)),
+        ("did you mean friction?", lambda: ours.simulate_many({"a": 2, "b": 1, "mu": 1}, 1.0)),
+        ("called as thresholds(a, b, *, grav", lambda: ours.thresholds(ours.scenes.report)),
+        ("called as support(theta, *, a, b)", lambda: ours.geometry.support(0.3, 2, 1)),
+        ("did you mean x_dot?", lambda: ours.simulate(ours.scenes.report, 1.0).vx),
+    ],
+)
+def test_a_word_of_habit_is_answered_with_ours(said: str, call: Any) -> None:
+    with pytest.raises((TypeError, AttributeError)) as caught:
+        call()
+    assert said in str(caught.value)
 
 
 def raising(path: Path) -> Iterator[tuple[int, int, str]]:

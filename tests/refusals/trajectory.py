@@ -59,6 +59,7 @@ REFUSALS: list[Row] = [
       for given in ({}, {"theta": 1.0, "x": 2.0})),
     ("z", lambda _: TURNING.when(z=1.5)),
     ("function", lambda _: TURNING.when(function=lambda at: at.x)),
+    (AttributeError, lambda _: MOTION.vx),  # type: ignore[attr-defined]
     (AttributeError, lambda _: rl.nothing),  # type: ignore[attr-defined]
     (ImportError, lambda _: without("xarray", MOTION.to_xarray)),
     (ImportError, lambda _: without("pandas", MOTION.to_dataframe)),

@@ -33,7 +33,7 @@ def declared(kind: type) -> Iterator[str]:
     )
     for part in body:
         if isinstance(part, ast.If):
-            for each in ast.walk(part):
+            for each in (found for line in part.body for found in ast.walk(line)):
                 if isinstance(each, ast.FunctionDef):
                     yield each.name
                 elif isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store):
@@ -55,6 +55,12 @@ def test_each_is_a_method_of_its_name(name: str) -> None:
     bound = list(inspect.signature(getattr(motion, name)).parameters)
     assert bound == (parameters if name == "load" else parameters[1:])
     assert pickle.loads(pickle.dumps(getattr(motion, name))).__name__ == name
+
+
+def test_completion_shows_what_is_for_people() -> None:
+    shown = {name for name in dir(rl.simulate(rl.scenes.drop, 1.0)) if name[0] != "_"}
+    stored = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
+    assert not stored & shown and set(NAMES[Trajectory]) - {"_repr_html_"} < shown
 
 
 def test_help_tells_them() -> None:

@@ -39,14 +39,7 @@ def test_an_array_is_taken_as_it_is(times: Any) -> None:
     trajectory = simulate(rl.scenes.rocking, times)
     assert np.array_equal(trajectory.t, np.asarray(times, float))
     assert not np.shares_memory(trajectory.t, np.asarray(times))
-
-
-def test_the_given_times_are_left_alone() -> None:
-    times = np.linspace(0, 1, 5)
-    trajectory = simulate(rl.scenes.rocking, times)
-    assert times.flags.writeable
-    times[1] = 0.9
-    assert trajectory.t[1] == 0.25
+    assert not isinstance(times, np.ndarray) or times.flags.writeable
 
 
 # -------------------------------------------------------------------------------------- the end
@@ -108,16 +101,8 @@ def test_rolling_that_ends(scene: Scene) -> None:
     assert followed.model == "contact" and followed.valid_until == math.inf
     assert followed.reason == f"contact ({trajectory.reason})"
     assert followed.events[0].kind is rl.EventKind.SLIP and followed.events[0].t == end
-
-
-@pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
-def test_a_span_that_stops_before_the_end_is_completed(scene: Scene) -> None:
-    """No warning (it would be an error here) comes, and the motion ends the same."""
-    with pytest.warns(ValidityWarning):
-        whole = simulate(scene, 10.0, model="rolling")
-    short = simulate(scene, 0.99 * whole.valid_until, model="rolling")
-    assert short.status is Status.COMPLETED
-    assert short.valid_until == whole.valid_until
+    short = simulate(scene, 0.99 * end, model="rolling")  # a warning would be an error here
+    assert short.status is Status.COMPLETED and short.valid_until == end
 
 
 def test_what_cannot_start_rolling_is_valid_until_zero() -> None:

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypedDict, Unpack
 
 from .. import _core
 from .._core import Mode
@@ -15,6 +15,7 @@ from .check import number, shown
 from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .records import FieldsOnly, cached_property
+from .words import meant
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
 
@@ -62,6 +63,10 @@ class InitialState(Listed):
             f"{name} = {brief(getattr(self, name))} {unit}" for name, unit in STATE_UNITS.items()
         )
         return f"<InitialState {self.mode.name}: {numbers}>"
+
+
+class _Nothing(TypedDict):
+    """Arguments beyond those with a name: a type checker accepts none."""
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -151,9 +156,13 @@ class Scene(FieldsOnly, Listed):
         x_dot: float | None = x_dot,
         z_dot: float | None = z_dot,
         impulse: Impulse | None = impulse,
+        **unknown: Unpack[_Nothing],
     ) -> None:
         given = locals()
-        del given["self"]
+        del given["self"], given["unknown"]
+        for name in unknown:
+            hint = meant(name, given)
+            raise TypeError(f"Scene() got an unexpected keyword argument {name!r}{hint}")
         self._hold(given)
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
@@ -175,8 +184,8 @@ class Scene(FieldsOnly, Listed):
     @cached_property
     def core(self) -> _core.Scene:
         """The scene as the core's object, which pickles do not hold."""
-        numbers = self.__getstate__()
-        return _for_core(numbers, numbers.pop("impulse"), reached=True)
+        numbers = {name: self.__dict__[name] for name in SCENE_UNITS}
+        return _for_core(numbers, self.impulse, reached=True)
 
     def replace(self, **changes: Any) -> Scene:
         """Return a new scene with some of the arguments changed.
@@ -191,7 +200,8 @@ class Scene(FieldsOnly, Listed):
         names = [field.name for field in fields(self)]
         for name in changes:
             if name not in names:
-                raise TypeError(f"changes must be of {', '.join(names)}, got {name}")
+                hint = meant(name, names)
+                raise TypeError(f"changes must be of {', '.join(names)}, got {name}{hint}")
         return dataclasses.replace(self, **changes)
 
     @property

@@ -42,6 +42,8 @@ QUANTITIES = (
     Quantity("friction_needed", "1", "friction force over normal force"),
     Quantity("energy", "J", "kinetic and potential energy"),
     Quantity("kinetic_energy", "J", "kinetic energy"),
+    Quantity("translational_energy", "J", "kinetic energy of the centre"),
+    Quantity("rotational_energy", "J", "kinetic energy of the rotation about the centre"),
     Quantity("potential_energy", "J", "potential energy"),
 )
 MULTIPLIERS = (

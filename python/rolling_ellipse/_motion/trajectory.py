@@ -15,6 +15,7 @@ from .._ask.check import FloatArray, array, choice, number, shown
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import METHODS, MODELS, Method, Model, Settings
+from .._ask.words import meant
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, events
@@ -50,6 +51,8 @@ if TYPE_CHECKING:
 
     _Path = str | os.PathLike[str]
 
+# For files, pickles and `sol`, not for people
+_STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
@@ -100,8 +103,8 @@ class Trajectory(FieldsOnly):
         |F|/N (infinite where N <= 0 without F = 0).
     multipliers : ndarray, shape (n, 4)
         Lagrange multipliers of the four constraints; the first two are F and N.
-    energy, kinetic_energy, potential_energy : ndarray, shape (n,)
-        From the state itself [J].
+    energy, kinetic_energy, translational_energy, rotational_energy, potential_energy : ndarray
+        From the state itself [J], shape (n,).
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
     scene, model, method, status, message, reason : Scene, str, str, Status, str, str
@@ -276,9 +279,16 @@ class Trajectory(FieldsOnly):
         return (self.theta - self.scene.theta) / (2 * math.pi)
 
     @_derived
+    def translational_energy(self) -> FloatArray:
+        return 0.5 * self.scene.mass * (self.x_dot**2 + self.z_dot**2)
+
+    @_derived
+    def rotational_energy(self) -> FloatArray:
+        return 0.5 * (self.scene.mass * self.scene.gyration2) * self.omega**2
+
+    @_derived
     def kinetic_energy(self) -> FloatArray:
-        mass, inertia = self.scene.mass, self.scene.mass * self.scene.gyration2
-        return 0.5 * mass * (self.x_dot**2 + self.z_dot**2) + 0.5 * inertia * self.omega**2
+        return self.translational_energy + self.rotational_energy
 
     @_derived
     def potential_energy(self) -> FloatArray:
@@ -362,6 +372,15 @@ class Trajectory(FieldsOnly):
         def animate(self, path: _Path | None = None, **options: Any) -> RollingAnimation: ...
         @classmethod
         def load(cls, path: _Path) -> Self: ...
+
+    else:  # a type checker would take every name for an attribute
+
+        def __getattr__(self, name: str) -> Any:
+            hint = "" if name.startswith("_") else meant(name, dir(self))
+            raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}")
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in _STORED]
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trajectory):

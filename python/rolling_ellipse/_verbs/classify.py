@@ -13,6 +13,7 @@ from .. import _core
 from .._ask.check import evaluate, number, optional_number
 from .._ask.printing import Listed, with_unit
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
+from .._ask.words import understood
 from .._core import Outcome
 from .workers import shared
 
@@ -93,6 +94,7 @@ find_late(
 )
 
 
+@understood
 def classify(
     *,
     a: Any,
@@ -153,6 +155,7 @@ def classify(
     return Outcome(int(found)) if isinstance(found, float) else found
 
 
+@understood
 def thresholds(
     a: float,
     b: float,

@@ -12,6 +12,7 @@ from .._ask.categories import StabilityWarning, ValidityWarning
 from .._ask.check import FloatArray, array, flag, shown
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
+from .._ask.words import understood
 from .._motion.samples import even_times
 from .._motion.stability import advice
 from .._motion.status import COMPLETED, IntegrationError, Status
@@ -20,6 +21,7 @@ from .._motion.trajectory import Trajectory
 _DEFAULT_SAMPLES = 1001
 
 
+@understood
 def simulate(
     scene: Scene,
     t: Any,
@@ -146,9 +148,9 @@ def simulate(
         rest_speed,
     )  # fmt: skip
     trajectory = Trajectory.computed(scene, how, sample_times(t))
-    report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
+    report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=4)
     if sentence := advice(trajectory):
-        warnings.warn(sentence, StabilityWarning, stacklevel=2)
+        warnings.warn(sentence, StabilityWarning, stacklevel=3)
     return trajectory
 
 

@@ -39,16 +39,23 @@ _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span"
 def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
 
-    The file appears whole or not at all: if anything goes wrong, an old file stays.
+    Its name ends with .npz or has no suffix. The file appears whole or not at all: if anything goes
+    wrong, an old file stays.
 
     Raises
     ------
     ValueError
-        If the trajectory was changed in a way that `load` would refuse.
+        If the name has another ending, or the trajectory was changed in a way that `load` would
+        refuse.
     OSError
         If the file cannot be written.
     """
     name = file_name("path", path)
+    if (ending := os.path.splitext(name)[1]) not in ("", ".npz"):
+        raise ValueError(
+            f"path must end with .npz or without a suffix, got {ending!r}: to_dataframe() and "
+            "to_xarray() make tables, which write other files"
+        )
     text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
     _restored(type(trajectory), text, arrays)
     with replacing(name) as new, open(new, "wb") as file:

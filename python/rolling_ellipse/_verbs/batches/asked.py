@@ -18,6 +18,7 @@ import numpy as np
 from ... import _core
 from ..._ask.check import FloatArray, array, common_shape, shown
 from ..._ask.scene import OPTIONAL, Impulse, Scene
+from ..._ask.words import meant
 from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk
@@ -82,7 +83,8 @@ class SceneGrid:
     def __init__(self, arguments: Mapping[Any, Any]) -> None:
         for name in arguments:
             if name not in _DEFAULTS:
-                raise TypeError(f"scenes must have names of {', '.join(_DEFAULTS)}, got {name!r}")
+                hint, names = meant(str(name), _DEFAULTS), ", ".join(_DEFAULTS)
+                raise TypeError(f"scenes must have names of {names}, got {name!r}{hint}")
         for name in ("a", "b"):
             if name not in arguments:
                 raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")

@@ -11,6 +11,7 @@ from ..._ask.check import flag
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
+from ..._ask.words import understood
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
@@ -19,6 +20,7 @@ from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
 
+@understood
 def simulate_many(
     scenes: Iterable[Scene] | Mapping[str, Any],
     t: Any,

@@ -1,0 +1,52 @@
+"""Names that people type by habit, with the names that they mean here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from typing import ParamSpec, TypeVar
+
+_MEANT = {
+    "mu": "friction", "friction_coefficient": "friction", "m": "mass", "g": "gravity",
+    "e": "restitution", "cor": "restitution", "I": "inertia", "J": "inertia", "k2": "gyration2",
+    "alpha": "slope", "incline": "slope", "angle": "theta", "phi": "theta", "w": "omega",
+    "theta_dot": "omega", "y": "z", "vx": "x_dot", "vy": "z_dot", "vz": "z_dot", "v": "x_dot",
+    "y_dot": "z_dot", "dt": "step t", "h": "step", "t_eval": "t", "t_span": "t", "t_end": "t",
+    "time": "t", "times": "t", "tol": "rtol", "solver": "method", "integrator": "method",
+    "n_jobs": "workers", "threads": "workers", "N": "normal_force", "F": "friction_force",
+    "ke": "kinetic_energy", "pe": "potential_energy", "E": "energy",
+    "rotations": "turns",
+}  # fmt: skip
+
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
+
+
+def meant(word: str, names: Iterable[str]) -> str:
+    """Return the end of a message about an unknown name, with the names that may be meant."""
+    known = list(names)
+    found = [name for name in _MEANT.get(word, "").split() if name in known]
+    found = found or get_close_matches(word, known, 1, 0.7)
+    return f"; did you mean {' or '.join(found)}?" if found else ""
+
+
+def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """Let the TypeError of a call that does not fit the arguments say which ones are meant."""
+
+    @wraps(function)
+    def call(*given: _Given.args, **named: _Given.kwargs) -> _Found:
+        try:
+            return function(*given, **named)
+        except TypeError as error:
+            if error.__traceback__ is None or error.__traceback__.tb_next:
+                raise  # of the function itself
+            takes = signature(function).parameters.values()
+            names = [each.name for each in takes]
+            unknown = [meant(name, names) for name in named if name not in names]
+            plain = Signature([each.replace(annotation=Parameter.empty) for each in takes])
+            hint = "".join(unknown) or f"; it is called as {function.__name__}{plain}"
+            raise TypeError(f"{error}{hint}") from None
+
+    return call
