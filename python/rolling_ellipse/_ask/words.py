@@ -8,7 +8,7 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import ParamSpec, TypeVar
 
-_MEANT = {
+MEANT = {
     "mu": "friction", "friction_coefficient": "friction", "m": "mass", "g": "gravity",
     "e": "restitution", "cor": "restitution", "I": "inertia", "J": "inertia", "k2": "gyration2",
     "alpha": "slope", "incline": "slope", "angle": "theta", "phi": "theta", "w": "omega",
@@ -27,7 +27,7 @@ _Found = TypeVar("_Found")
 def meant(word: str, names: Iterable[str]) -> str:
     """Return the end of a message about an unknown name, with the names that may be meant."""
     known = list(names)
-    found = [name for name in _MEANT.get(word, "").split() if name in known]
+    found = [name for name in MEANT.get(word, "").split() if name in known]
     found = found or get_close_matches(word, known, 1, 0.7)
     return f"; did you mean {' or '.join(found)}?" if found else ""
 

@@ -15,7 +15,7 @@ from .._ask.check import FloatArray, array, choice, number, shown
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import METHODS, MODELS, Method, Model, Settings
-from .._ask.words import meant
+from .._ask.words import MEANT, meant
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, events
@@ -376,8 +376,9 @@ class Trajectory(FieldsOnly):
     else:  # a type checker would take every name for an attribute
 
         def __getattr__(self, name: str) -> Any:
-            hint = "" if name.startswith("_") else meant(name, dir(self))
-            raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}")
+            hint = meant(name, dir(self)) if name in MEANT else ""
+            known = {} if hint else {"name": name, "obj": self}  # Python shows a near name
+            raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}", **known)
 
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name not in _STORED]
