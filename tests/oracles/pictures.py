@@ -80,13 +80,17 @@ def luminance(colour: Any) -> float:
 
 
 def shows_something(figure: Figure) -> bool:
-    """True if each axes has finite limits and an artist at a finite place, and none at infinity."""
+    """True if each axes has a point of a curve, a body or a text inside its frame.
+
+    Lines and grounds across the whole axes, whose places are shares of it, do not count.
+    """
+    figure.draw_without_rendering()
     for ax in figure.axes:
-        points = [np.asarray(line.get_xydata(), float) for line in ax.lines]
-        points += [np.asarray(body.get_extents().get_points()) for body in ax.patches]
-        places = np.concatenate(points)
-        if np.any(np.isinf(places)) or not np.any(np.all(np.isfinite(places), axis=1)):
-            return False
-        if not np.all(np.isfinite([*ax.get_xlim(), *ax.get_ylim()])):
+        points = [np.empty((0, 2)), *(text.get_window_extent().get_points() for text in ax.texts)]
+        for line in ax.lines:
+            if line.get_transform().contains_branch(ax.transData):
+                points.append(line.get_transform().transform(line.get_xydata()))
+        points += [body.get_window_extent().get_points() for body in ax.patches]
+        if not ax.get_window_extent().padded(1).count_contains(np.concatenate(points)):
             return False
     return len(figure.axes) > 0

@@ -2,7 +2,6 @@
 
 import dataclasses
 import itertools
-import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
-from oracles.pictures import figure_of, luminance, shows_something
+from oracles.pictures import figure_of, luminance
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
 
@@ -53,45 +52,10 @@ def test_many_motions_are_named_now_and_then(
 
 def test_a_picture_of_its_own(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     shown = picture(report)
-    ax = shown.ax if hasattr(shown, "ax") else shown.axes[0]
-    assert plt.get_fignums() == [ax.figure.number]
-    assert len(ax.figure.axes) == (2 if picture in TWO_PANELS else 1)
-    plt.close(ax.figure)
-
-
-def test_an_empty_picture_is_seen() -> None:
-    ax = new_axes()
-    for values, shown in (([0.0, 1.0], True), ([0.0, math.nan], True), ([0.0, math.inf], False)):
-        (line,) = ax.plot([0.0, 1.0], values)
-        assert shows_something(figure_of(ax)) == shown
-        line.remove()
-    ax.plot([0.0, 1.0], [math.nan, math.nan])
-    assert not shows_something(figure_of(ax))
-
-
-@pytest.mark.parametrize(
-    ("scene", "span"),
-    [
-        (rl.scenes.rolling, 0.0), (rl.scenes.rolling, 1e-6), (rl.scenes.rolling, 1e4),
-        (rl.Scene(2.0, 1.0), 1.0), (rl.Scene(1.0, 1.0), 1.0),
-    ],
-)  # fmt: skip
-def test_any_span_a_single_sample_and_rest(
-    picture: Callable[..., Any], scene: rl.Scene, span: float
-) -> None:
-    trajectory = rl.simulate(scene, span)
-    for motions in (trajectory, [trajectory, trajectory]):
-        ax = new_axes()
-        picture(motions, ax=ax)
-        figure_of(ax).draw_without_rendering()
-        assert shows_something(figure_of(ax))
-
-
-@pytest.mark.parametrize("span", [0.0, 1e-6, 1e5])
-def test_an_overview_of_any_span(span: float) -> None:
-    shown = rl.plot(rl.simulate(rl.scenes.rolling, span), figure=Figure(layout="constrained"))
-    shown.figure.draw_without_rendering()
-    assert shows_something(shown.figure) and len(shown.strobe.bodies) == 13
+    assert plt.get_fignums() == [shown.figure.number]
+    assert list(shown.axes) == shown.figure.axes and shown.ax is shown.axes[0]
+    assert len(shown.axes) == (2 if picture in TWO_PANELS else 1)
+    plt.close(shown.figure)
 
 
 @pytest.fixture(params=["one", "several", "thin"])
@@ -182,7 +146,7 @@ def test_paths_that_are_not_valid_have_grey_ground(
 MOTION = rl.simulate(rl.scenes.jump, 1.0)
 DRAWN: dict[str, tuple[Callable[..., Any], str]] = {
     "Overview": (
-        lambda: rl.plot(MOTION, figure=Figure()), "figure, strobe, theta, .*, 18 marks"
+        lambda: rl.plot(MOTION, figure=Figure()), "7 axes, strobe, phase, .*, 18 marks"
     ),
     "Strobe": (lambda: rl.plot_strobe(MOTION, ax=axes(), count=7), "ax, 7 bodies, 7 hands, .*"),
     "Phase": (lambda: rl.plot_phase([MOTION, MOTION], ax=axes()), "ax, 2 motions, .*"),

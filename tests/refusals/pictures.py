@@ -98,7 +98,9 @@ def page(folder: Path, **options: Any) -> None:
 REFUSALS: list[Row] = [
     # curves
     *wrong(rl.plot, {}, trajectory=[None, *ANYTHING, EMPTY, [MOTION, MOTION]]),
-    *wrong(rl.plot, {"trajectory": MOTION}, figure=ANYTHING, t_end=ANYTHING, count=[*but(42), 0]),
+    *wrong(rl.plot, {"trajectory": MOTION}, figure=ANYTHING, t_end=ANYTHING, count=[*but(42), 0],
+           path=[3, "", b"a.png"], figsize=[*but([1, 2], np.array([1.0, 2.0])), (0, 1), (1, 2, 3)]),
+    ("figsize", lambda _: rl.plot_phase(MOTION, ax=axes(1), figsize=(3, 4))),
     *wrong(rl.plot_strobe, {}, trajectory=[None, *ANYTHING, [MOTION, MOTION], FAR]),
     *wrong(rl.plot_strobe, {"trajectory": MOTION}, t_end=[9.0], count=["x", 0, 10**6, 10**12],
            ax=[*ANYTHING, Figure(), axes(3), axes(3).tolist()]),

@@ -14,7 +14,7 @@ from matplotlib import rcParams, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from .._ask.check import shown
+from .._ask.check import positive, shown
 from .alone import Alone
 
 _Given = ParamSpec("_Given")
@@ -25,13 +25,19 @@ _with_figures = Alone()  # pyplot numbers its figures: two threads could get the
 
 _SHARED = {
     "ax": """ax : matplotlib Axes, optional
-    Where to draw; without it, in a new pyplot figure.""",
+    Where to draw; without it, in a new pyplot figure.
+{figsize}""",
+    "figsize": """figsize : (float, float), optional
+    Width and height of the new figure [inch]; without it, those of the style, or what fits.""",
     "motions": """labels : sequence of str, optional
     Names of the motions; without it, what they differ in.
 colors : sequence of matplotlib colours, optional
     One for each motion.
 **options
-    Properties of `matplotlib.lines.Line2D` for all curves.
+    Properties of `matplotlib.lines.Line2D` for all curves.""",
+}
+"""Parts of docstrings, each in the place of its `{name}`."""
+_RETURNS = """
 
 Returns
 -------
@@ -41,12 +47,10 @@ Returns
 Raises
 ------
 ValueError
-    If there is no trajectory, one has no samples, there are not as many labels or colours as
-    trajectories, or another argument is not as above.
+    If an argument is out of range or not as above, or there is nothing to show.
 TypeError
-    If something is no trajectory, or an argument of another wrong kind.""",
-}
-"""Parts of docstrings, each in the place of its `{name}`."""
+    If something is no trajectory, or an argument of another wrong kind.
+"""
 
 
 def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
@@ -54,14 +58,14 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
     @wraps(draw)
     def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
+        _check_size(**options)
         figures: list[Figure] = []
         before = _opened.set(figures)
         try:
             return draw(*args, **options)
         except BaseException:
-            with _with_figures():
-                for figure in figures:
-                    plt.close(figure)
+            for figure in figures:
+                close(figure)
             raise
         finally:
             _opened.reset(before)
@@ -69,13 +73,14 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
     text = inspect.getdoc(draw) or ""
     for name, part in _SHARED.items():
         text = text.replace(f"{{{name}}}", part)
+    text += "" if "\nReturns\n" in text else _RETURNS
     drawn.__doc__ = text.replace("{drawn}", draw.__annotations__["return"])
     return drawn
 
 
-def axes_of(ax: Axes | None, size: tuple[float, float]) -> Axes:
-    """Return the given Axes, or the Axes of a new pyplot figure of a size [inch]."""
-    return _new_figure(size).add_subplot() if ax is None else require_axes(ax)
+def axes_of(ax: Axes | None, size: tuple[float, float], figsize: Any = None) -> Axes:
+    """Return the given Axes, or the Axes of a new pyplot figure; `size` [inch] is what fits."""
+    return _new_figure(size, figsize).add_subplot() if ax is None else require_axes(ax)
 
 
 def require_axes(ax: Any) -> Axes:
@@ -85,10 +90,10 @@ def require_axes(ax: Any) -> Axes:
     return ax
 
 
-def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
+def panels_of(ax: Axes | Sequence[Axes] | None, figsize: Any) -> list[Axes]:
     """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
     if ax is None:
-        return list(_new_figure((7, 5)).subplots(2, sharex=True))
+        return list(_new_figure((7, 5), figsize).subplots(2, sharex=True))
     panels = listed(ax)
     if not all(isinstance(panel, Axes) for panel in panels):
         raise TypeError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
@@ -106,10 +111,10 @@ def listed(ax: Any) -> list[Any]:
     return [ax]
 
 
-def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
-    """Return the figure given, or a new pyplot figure of a size [inch]."""
+def figure_of(figure: Any, size: tuple[float, float], figsize: Any) -> Figure:
+    """Return the figure given, or a new pyplot figure; `size` [inch] is what fits."""
     if figure is None:
-        return _new_figure(size)
+        return _new_figure(size, figsize)
     if not isinstance(figure, FigureBase):  # base class of Figure and SubFigure
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
     whole = figure.get_figure(root=True)
@@ -126,7 +131,26 @@ def pyplot_figure(**options: Any) -> Figure:
     return figure
 
 
-def _new_figure(size: tuple[float, float]) -> Figure:
-    """Open a pyplot figure of the size that the style asks for, else of a size [inch]."""
+def close(figure: Figure) -> None:
+    """Take a figure out of pyplot; it can still be drawn and written."""
+    with _with_figures():
+        plt.close(figure)
+
+
+def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: Any) -> None:
+    """Raise ValueError unless a size is two positive numbers, and of a new figure."""
+    if figsize is None:
+        return
+    wanted = "figsize must be the width and the height [inch] of a new figure"
+    try:
+        width, height = (positive("figsize", side) for side in figsize)
+    except (TypeError, ValueError):
+        raise ValueError(f"{wanted}, got {shown(figsize)}") from None
+    if ax is not None or figure is not None:
+        raise ValueError(f"{wanted}, got {width:g} x {height:g} for a figure that has a size")
+
+
+def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
+    """Open a pyplot figure of the size asked for, or of that of the style, or of what fits."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
-    return pyplot_figure(figsize=None if styled else size, layout="constrained")
+    return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")

@@ -34,6 +34,7 @@ def plot_constraints(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
     ax: Axes | Sequence[Axes] | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     **options: Any,
@@ -54,10 +55,11 @@ def plot_constraints(
     ax : matplotlib Axes or two of them, optional
         Where to draw the panels; in a single one both are drawn, of each the worst. Without it,
         in a new pyplot figure.
+    {figsize}
     {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).for_dots()
-    panels = panels_of(ax)
+    panels = panels_of(ax, figsize)
     lines: list[list[Line2D]] = [[] for _ in panels]
     for motion, style in shown:
         of_panels = _errors_of(motion, len(panels), style)

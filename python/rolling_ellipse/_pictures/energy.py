@@ -42,6 +42,7 @@ def plot_energy(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     kind: Literal["energies", "error"] | None = None,
@@ -67,7 +68,7 @@ def plot_energy(
     default = "energies" if shown.alone else "error"
     wanted = choice("kind", default if kind is None else kind, KINDS)
     shown = shown.over_time() if wanted == "energies" else shown.for_dots()
-    ax = axes_of(ax, (7, 3.4))
+    ax = axes_of(ax, (7, 3.4), figsize)
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []
     for motion, style in shown:

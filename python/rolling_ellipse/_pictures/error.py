@@ -46,6 +46,7 @@ def plot_error(
     reference: Trajectory | None = None,
     *,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     **options: Any,
@@ -73,13 +74,14 @@ def plot_error(
     compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
     compared.over_time()
-    ax = axes_of(ax, (7, 3.4))
+    ax = axes_of(ax, (7, 3.4), figsize)
     errors = []
     for (motion, style), right in zip(compared, references, strict=True):
         error, label = _error(motion, right, quantity), style.label or "error"
         errors.append(draw_error(ax, motion, error, label, 0, style, ls=style.dash))
     compared.restyle(*errors)
-    dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}")
+    none = f"no error beside the {'exact motion' if reference is None else 'reference'}"
+    dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}", none)
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
     return Error(ax, tuple(errors), references, marks)
 

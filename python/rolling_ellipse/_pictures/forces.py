@@ -19,7 +19,7 @@ from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
 from .palette import palette_of
-from .panels import DASHES, RANGE, draw_forces, dress_forces, finish
+from .panels import DASHES, RANGE, Stems, dot, draw_forces, dress_forces, finish
 from .sampling import are_ranges, curve
 
 _LIMIT = ":"
@@ -30,14 +30,16 @@ _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite wher
 class Forces(Artists):
     """Artists of `plot_forces`; item i belongs to motion i, but for `axes` and `marks`.
 
-    `limits` are None where friction has no limit; `needed` and `available` (the coefficients of
-    friction) are empty where only one Axes was given.
+    `limits` are None where friction has no limit, `impulses` where nothing hits the ground, else
+    stems normal to the ground and along it; `needed` and `available` (the coefficients of friction)
+    are empty where only one Axes was given.
     """
 
     axes: tuple[Axes, ...]
     normal: tuple[Line2D, ...]
     friction: tuple[Line2D, ...]
     limits: tuple[PolyCollection | None, ...]
+    impulses: tuple[Stems | None, ...]
     needed: tuple[Line2D, ...]
     available: tuple[Line2D | None, ...]
     marks: tuple[Artist, ...]
@@ -48,6 +50,7 @@ def plot_forces(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
     ax: Axes | Sequence[Axes] | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     **options: Any,
@@ -55,11 +58,12 @@ def plot_forces(
     """Draw the normal force and friction of one motion or of several, and the friction needed.
 
     The upper panel shows N and F [N], F over the band +-friction N; where a spike towers over the
-    weight, the scale is linear up to about the weight and logarithmic beyond. The lower panel shows
-    |F|/N against the coefficient of friction; it is infinite where N <= 0. The ground of the curves
-    is hatched while the body slides, grey in flight, where both forces are 0, and dotted at rest
-    (of several motions, each has a row at the top); dotted lines mark events, those of a single
-    motion with their names where there is room. Where the model is not valid, all ground is grey.
+    weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
+    impacts, as mean forces over the time that the legend tells. The lower panel shows |F|/N against
+    the coefficient of friction; it is infinite where N <= 0. The ground of the curves is hatched
+    while the body slides, grey in flight, where both forces are 0, and dotted at rest (of several
+    motions, each has a row at the top); dotted lines mark events, those of a single motion with
+    their names where there is room, or counted. Where the model is not valid, all ground is grey.
 
     The curves are those of the motion itself, whatever samples the trajectory has. More half turns
     than can be told apart are drawn as ranges: from the least to the largest value in each of 800
@@ -71,12 +75,13 @@ def plot_forces(
     ax : matplotlib Axes or two of them, optional
         Where to draw the forces, and |F|/N if there is a second one; without it, both in a new
         pyplot figure.
+    {figsize}
     {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
-    panels = panels_of(ax)
+    panels = panels_of(ax, figsize)
     drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
-    dress_forces(panels[0], shown.motions)
+    impulses = dress_forces(panels[0], shown)
     needed: list[Line2D] = []
     available: list[Line2D | None] = []
     if len(panels) == 2:
@@ -87,15 +92,19 @@ def plot_forces(
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
+    if not shown.alone:
+        handles += [stems[0] for stems in impulses if stems][:1]
     marks = finish(panels, shown, handles)
-    return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
+    return Forces(
+        tuple(panels), normal, friction, limits, impulses, tuple(needed), tuple(available), marks
+    )
 
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
     colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
     options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
     t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **options)[0]
+    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **options, **dot(t))[0]
 
 
 def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:
@@ -111,6 +120,7 @@ def _dress_needed(ax: Axes, shown: Comparison, limited: bool) -> None:
     values.append(np.array([motion.scene.friction for motion in shown.motions]))
     finite = np.concatenate([v[np.isfinite(v)] for v in values])
     reach = min(float(np.max(finite, initial=0.0)), _STEEP)
-    ax.set_ylim(0, 1.15 * reach or 1.0)
+    top = 1.15 * reach or 1.0
+    ax.set_ylim(-0.03 * top, top)
     ax.set_ylabel("|F|/N")
     name_curves(ax, quantity_handles([("μ", _LIMIT)], shown.palette) if limited else [])

@@ -1,4 +1,4 @@
-"""Legends above the axes, in as few rows as there is room for."""
+"""Legends and titles above the curves, in as few rows as there is room for."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
 
 from .palette import Palette
 
 _Entry = TypeVar("_Entry")
 
+_NARROW = 180.0  # width of axes with small letters [points]
 _NAMED = 8  # most names of motions: more would fill the picture
 
 
@@ -34,13 +36,39 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
     if entries:
         ax.legend(
             handles=entries, ncols=_columns(ax, entries), loc="lower right", bbox_to_anchor=(1, 1),
-            frameon=False, fontsize="small", borderaxespad=0.1, handlelength=1.8,
-            columnspacing=1.2, markerscale=2,
+            frameon=False, fontsize=_size(ax), borderaxespad=0.1, handlelength=1.8,
+            columnspacing=1.2, markerscale=1.3,
         )  # fmt: skip
+    ax.set_axes_locator(_Within(ax))
 
 
-def title_beside_legend(ax: Axes, text: str) -> None:
+class _Within:
+    """A locator of axes that keeps legend, title and labels in their box if no layout does.
+
+    Axes with equal scales are fitted anew into each box: matplotlib only widens their limits.
+    """
+
+    def __init__(self, ax: Axes) -> None:
+        self.get_subplotspec = ax.get_subplotspec  # `tight_layout` asks for it
+
+    def __call__(self, ax: Any, renderer: Any) -> Bbox:
+        box: Bbox = ax.get_position(original=True)
+        page, seen = ax.figure.bbox, ax.dataLim
+        if ax.get_adjustable() == "datalim" and ax.get_autoscalex_on():
+            ax.set_xlim(seen.x0, seen.x1, auto=True)
+            ax.set_ylim(seen.y0, seen.y1, auto=True)
+        if ax.get_figure(root=True).get_layout_engine() is None:
+            head = ax.get_legend(), ax.title, ax._left_title
+            tops = [part.get_window_extent(renderer).y1 for part in head if part is not None]
+            box.y1 -= max(0.0, max(tops) - ax.get_window_extent().y1) / page.height
+            box.y0 += 1.4 * ax.xaxis.label.get_window_extent(renderer).height / page.height
+            box.x0 += 1.4 * ax.yaxis.label.get_window_extent(renderer).width / page.width
+        return box
+
+
+def title_beside_legend(ax: Axes, *remarks: str) -> None:
     """Set a title on the left, beside the legend, or above it where there is no room."""
+    text = "; ".join(filter(None, remarks))
     title, legend = ax.set_title(text, loc="left", fontsize="medium"), ax.get_legend()
     if legend is None or not text:
         return
@@ -52,10 +80,19 @@ def title_beside_legend(ax: Axes, text: str) -> None:
 
 def _columns(ax: Axes, entries: Sequence[Any]) -> int:
     """Return the largest number of columns that are together no wider than the axes."""
-    points = FontProperties(size="small").get_size_in_points()
-    room = ax.get_window_extent().width * 72 / ax.figure.dpi
+    points = FontProperties(size=_size(ax)).get_size_in_points()
+    room = _width(ax)
     widths = [points * (3.6 + 0.56 * len(str(entry.get_label()))) for entry in entries]
     columns = len(entries)
     while columns > 1 and sum(map(max, np.array_split(widths, columns))) > room:
         columns -= 1
     return columns
+
+
+def _size(ax: Axes) -> str:
+    return "small" if _width(ax) > _NARROW else "x-small"
+
+
+def _width(ax: Axes) -> float:
+    """Return the width of axes [points]."""
+    return float(ax.get_window_extent().width) * 72 / ax.figure.dpi

@@ -6,17 +6,17 @@ its curves have grey ground.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from .._ask.check import FloatArray
 from .._core import EventKind, Mode
 from .._motion.events import Event
+from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .labels import label_times
 from .palette import Palette, palette_of
@@ -27,7 +27,17 @@ _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, a
     Mode.FLIGHT: (0.1, 0.1, ""),
     Mode.REST: (0.02, 0.28, "..."),
 }
+_FEW_EVENTS = 8  # more of them are counted, not named
 _ROW = 0.05  # height of the row of one motion, in heights of the axes
+
+
+def ending_of(*motions: Trajectory) -> str:
+    """Return the remark of a title on motions that stop early or are at rest; "" for others."""
+    for motion in motions:
+        if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
+            return f"ends at {motion.t_end:.4g} s: {motion.status.name}"
+    still = all(not np.any([m.omega, m.x_dot, m.z_dot]) and np.ptp(m.t) for m in motions)
+    return "at rest" if still else ""
 
 
 def events_shown(motion: Trajectory) -> list[Event]:
@@ -63,14 +73,12 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
     """
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
     edge = {"edgecolor": colour, "lw": 0.8} if colour else {"lw": 0}
+    upright = {"transform": ax.get_xaxis_transform(), "zorder": 0}
     shades: list[Artist] = []
     for mode, spans in mode_spans(motion).items():
         if spans:
-            shading = _shading(mode, palette_of(ax)) | edge
-            upright = ax.get_xaxis_transform()
-            shades.append(
-                ax.broken_barh(spans, (bottom, height), transform=upright, zorder=0, **shading)
-            )
+            style = _shading(mode, palette_of(ax)) | edge | upright
+            shades.append(ax.broken_barh(spans, (bottom, height), label=mode.name.lower(), **style))
     return shades
 
 
@@ -79,28 +87,22 @@ def _shading(mode: Mode, palette: Palette) -> dict[str, Any]:
     return {"facecolor": palette.shade(face), "edgecolor": palette.shade(edge), "hatch": hatch}
 
 
-def mode_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Patch]:
-    """Return entries of a legend for the modes that are shaded."""
-    found = [mode_spans(motion) for motion in motions]
-    return [
-        Patch(label=mode.name.lower(), lw=0, **_shading(mode, palette))
-        for mode in _SHADES
-        if any(spans[mode] for spans in found)
-    ]
+def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:
+    """Draw dotted lines at the events.
 
-
-def mark_events(ax: Axes, motion: Trajectory, colour: str) -> list[Artist]:
-    """Draw dotted lines at the events."""
-    moments, upright = [event.t for event in events_shown(motion)], ax.get_xaxis_transform()
-    if not moments:
+    If `named`, a few have their names above the curves; more, or crowded ones, are counted in the
+    label of the lines.
+    """
+    events, upright = events_shown(motion), ax.get_xaxis_transform()
+    if not events:
         return []
-    return [ax.vlines(moments, 0, 1, transform=upright, color=colour, lw=1, ls=":")]
-
-
-def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
-    """Write the names of events along their lines, above the curves; none where they crowd."""
-    events = events_shown(motion) if motion.model == "contact" else []
-    return [*label_times(ax, [(event.t, EVENT_NAMES[event.kind]) for event in events])]
+    moments, kinds = zip(*((event.t, EVENT_NAMES[event.kind]) for event in events), strict=True)
+    few = list(zip(moments, kinds, strict=True)) if len(events) <= _FEW_EVENTS else []
+    names = label_times(ax, few) if named else []
+    word = kinds[0] if len(set(kinds)) == 1 else "event"
+    label = f"{len(events)} {word}{'s'[: len(events) - 1]}" if named and not names else "_events"
+    style: dict[str, Any] = {"color": colour, "lw": 1, "ls": ":", "label": label}
+    return [ax.vlines(moments, 0, 1, transform=upright, **style), *names]
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:

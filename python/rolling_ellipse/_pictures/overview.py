@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from .._ask.check import FloatArray
+from .._ask.check import FloatArray, file_name
 from .._motion.relative_errors import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
 from .artists import Artists
-from .axes import figure_of, picture
+from .axes import close, figure_of, picture
 from .comparison import Comparison
 from .legends import name_curves
-from .modes import mode_handles
 from .panels import (
+    Stems,
     draw_curve,
     draw_energies,
     draw_error,
@@ -29,22 +30,30 @@ from .panels import (
     dress_over_time,
     note_of,
 )
+from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots
 from .strobe import Strobe, check_strobe, plot_strobe
+
+_SHARE = 0.16  # height of the bodies' axes over the width of the figure
 
 
 @dataclass(frozen=True, repr=False)
 class Overview(Artists):
-    """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity."""
+    """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
-    figure: Figure
+    `phase` is None for angles that `plot_phase` refuses.
+    """
+
+    axes: tuple[Axes, ...]
     strobe: Strobe
+    phase: Phase | None
     theta: Line2D
     omega: Line2D
     height: Line2D
     normal_force: Line2D
     friction_force: Line2D
     friction_limit: PolyCollection | None
+    impulses: Stems | None
     energy: Line2D
     kinetic_energy: Line2D
     potential_energy: Line2D
@@ -57,48 +66,62 @@ class Overview(Artists):
 @picture
 def plot(
     trajectory: Trajectory,
+    path: str | PathLike[str] | None = None,
     *,
-    figure: Figure | None = None,
+    figure: Figure | SubFigure | None = None,
+    figsize: tuple[float, float] | None = None,
     count: int = 13,
     t_end: float | None = None,
 ) -> Overview:
-    """Draw one figure of a motion: positions, angle, speed, height, forces, energies and errors.
+    """Draw one figure of a motion: positions, phase plane, curves over time and errors.
 
     Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
     Where the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
     ranges, as in `plot_forces`; the title then says so.
-
     Parameters
     ----------
     trajectory : Trajectory
+    path : path, optional
+        File to write, in any format of matplotlib: "motion.png", .pdf, .svg. A new figure is then
+        closed in pyplot.
     figure : matplotlib Figure or SubFigure, optional
         Where to draw; one without a layout engine gets the constrained one. Without it, in a new
         pyplot figure.
+    {figsize}
     count, t_end
         For the positions, as in `plot_strobe`; the curves show the whole motion.
-
-    Returns
-    -------
-    Overview
-        The artists.
     """
     check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
     shown = Comparison(trajectory).over_time()
     (motion,) = shown.motions
-    figure = figure_of(figure, (8.6, 8.0))
-    grid = figure.add_gridspec(4, 2, height_ratios=[1.35, 1, 1, 1])
-    strobe = plot_strobe(trajectory, ax=figure.add_subplot(grid[0, :]), count=count, t_end=t_end)
-    panels = [figure.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]
+    name = None if path is None else file_name("path", path)
+    whole = figure_of(figure, (8.6, 8.0), figsize)
+    grid = whole.add_gridspec(4, 2, height_ratios=[1.6, 1, 1, 1])
+    top = grid[0, :].subgridspec(1, 2, width_ratios=[2, 3])
+    strobe = plot_strobe(trajectory, ax=whole.add_subplot(top[0]), count=count, t_end=t_end)
+    seen = strobe.ax.viewLim
+    share = min(max(_SHARE * seen.width / seen.height, 0.4), 0.7)
+    top.set_width_ratios([share, 1 - share])
+    beside = whole.add_subplot(top[1])
+    phase = plot_phase(trajectory, ax=beside) if knows_turns(trajectory) else None
+    panels = [whole.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]
     theta = _draw_state(panels[0], motion, motion.theta, "θ [rad]")
     omega = _draw_state(panels[1], motion, motion.omega, "ω [rad/s]")
     height = _draw_state(panels[2], motion, motion.z, "z of centre [m]")
     forces = draw_forces(panels[3], motion)
-    dress_forces(panels[3], [motion])
+    (impulses,) = dress_forces(panels[3], shown)
     energies = draw_energies(panels[4], motion)
     errors = _draw_errors(panels[5], for_dots(trajectory))
     marks = _dress_panels(panels, shown)
-    figure.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
-    return Overview(figure, strobe, theta, omega, height, *forces, *energies, *errors, marks)
+    whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
+    if name is not None:
+        whole.get_figure(root=True).savefig(name)
+        if figure is None:
+            close(whole)
+    return Overview(
+        (strobe.ax, *panels), strobe, phase, theta, omega, height, *forces, impulses,
+        *energies, *errors, marks,
+    )  # fmt: skip
 
 
 def _headline(trajectory: Trajectory, note: str) -> str:
@@ -134,6 +157,8 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
 
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
     """Give two columns of three panels one time axis, and legends to panels of several lines."""
+    for panel in panels[4:]:
+        name_curves(panel)  # before the marks, which the legend of the forces explains
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)
@@ -142,10 +167,7 @@ def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ..
         if panel not in (panels[2], panels[5]):
             panel.set_xlabel("")
             panel.tick_params(labelbottom=False)
-    modes = mode_handles(shown.motions, shown.palette)
-    name_curves(panels[3], [*panels[3].get_legend_handles_labels()[0], *modes])
-    for panel in panels[4:]:
-        name_curves(panel)
+    name_curves(panels[3])
     panels[0].figure.align_ylabels(panels[:3])
     panels[0].figure.align_ylabels(panels[3:])
     return tuple(marks)

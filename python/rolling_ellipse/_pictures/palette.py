@@ -76,18 +76,21 @@ def palette_of(where: Axes | FigureBase | None = None) -> Palette:
 
 
 def _styled(background: str) -> Palette:
-    """Return the colours of a style with its own; similar ones are left out."""
+    """Return the colours of a style with its own, those first that differ most from others."""
     plain = Palette(background, "", "", "", "", "", "", "")
-    found: list[str] = [plain.text]
-    for properties in rcParams["axes.prop_cycle"]:
-        if is_color_like(colour := properties.get("color")) and all(
-            _difference(colour, other) > _APART for other in (*found[:1], background)
-        ):
-            found.append(to_hex(colour))
-    others = found[1:] or [plain.shade(0.5)]
-    blue, orange, sky, plum = (others[i % len(others)] for i in range(4))
+    given = [properties.get("color") for properties in rcParams["axes.prop_cycle"]]
+    left = [to_hex(colour) for colour in given if is_color_like(colour)]
+    taken = [background, plain.text]
+    while left:
+        apart, best = max((min(_difference(c, other) for other in taken), c) for c in left)
+        if apart < _APART:
+            break
+        left.remove(best)
+        taken.append(best)
+    others = taken[2:] or [plain.shade(0.5)]
+    orange, blue, sky, plum = (others[i % len(others)] for i in range(4))
     return Palette(
-        background, found[0], blue, orange, plain.shade(0.5), plain.shade(0.12), sky, plum
+        background, plain.text, blue, orange, plain.shade(0.5), plain.shade(0.12), sky, plum
     )
 
 

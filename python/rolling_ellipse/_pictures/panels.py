@@ -18,19 +18,36 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import SymmetricalLogLocator
 
 from .._ask.check import FloatArray
+from .._core import EventKind
 from .._motion.trajectory import Trajectory
 from .comparison import PLAIN, Comparison, Style
 from .legends import name_curves, title_beside_legend
-from .modes import mark_events, mode_handles, name_events, shade_invalid, shade_modes
+from .modes import ending_of, events_shown, mark_events, shade_invalid, shade_modes
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns, ranges
 
+Stems = tuple[Line2D, Line2D]
+"""The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
 RANGE = 0.6  # how opaque a range is: there may be one over another
 _DOTS = (".", "x", "+", "1", "2")
 # The axis of errors reaches at least ten times this, so that rounding looks small
 _ROUNDING = 1e-13
+_LEAST = 1e-17  # lower end of the axis of errors
 _SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
+
+
+def say(ax: Axes, sentence: str) -> None:
+    """Write a sentence into axes that show nothing else."""
+    ax.text(
+        0.5, 0.5, sentence, ha="center", va="center", transform=ax.transAxes, fontsize="small",
+        color=palette_of(ax).text, bbox={"fc": palette_of(ax).background, "ec": "none"},
+    )  # fmt: skip
+
+
+def dot(t: FloatArray) -> dict[str, Any]:
+    """Return the options of a line that make it visible if it has only one point."""
+    return {"marker": "o", "ms": 3} if t.size == 1 else {}
 
 
 def draw_curve(
@@ -39,7 +56,7 @@ def draw_curve(
     """Draw the quantity of a rank (0, 1, 2) of a motion over its times."""
     t, values = curve(motion.t, values)
     name = ", ".join(filter(None, (style.label, label)))
-    colour, options = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
+    colour, options = style.colour or palette_of(ax).curves[rank], sparse_markers(style) | dot(t)
     dash = DASHES[rank]
     if are_ranges(motion):
         dash, options = "-", options | {"alpha": RANGE}
@@ -62,16 +79,18 @@ def draw_error(
 ) -> Line2D:
     """Draw an error as dots, because rounding jumps, or with properties of a `line`.
 
-    A log scale leaves out exact zeros; the label of an error that is always 0 says so.
+    A log scale leaves out exact zeros; the label of an error that is always 0, or that the ground
+    does not hold, says so.
     """
     palette = palette_of(ax)
     colour = style.colour or (*palette.curves[:3], palette.plum, palette.grey)[rank]
-    label = label if np.nan_to_num(values).any() else f"{label} = 0"
+    if not np.nan_to_num(values).any():
+        label += " = 0" if np.isfinite(values).any() else " free"
     t = motion.t
     if are_ranges(motion):
         t, _, values = ranges(t, values)
     dots = {"ls": "none", "marker": style.marker or _DOTS[rank], "ms": 3, "mew": 0.7}
-    return ax.plot(t, values, color=colour, label=label, **(line or dots))[0]
+    return ax.plot(t, values, color=colour, label=label, **((line | dot(t)) if line else dots))[0]
 
 
 def draw_forces(
@@ -92,13 +111,18 @@ def draw_forces(
     return normal, friction, limit
 
 
-def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
-    """Scale the force axis: linear, or beyond the weight logarithmic, where spikes tower."""
+def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems | None, ...]:
+    """Draw and return the impulses of impacts for each motion, and scale the force axis.
+
+    It is linear, or beyond the weight logarithmic, where spikes tower.
+    """
     ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     ax.set_ylabel("force [N]")
+    motions = shown.motions
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
     largest = max(float(np.max(np.abs(m.normal_force))) for m in motions)
-    if largest == 0:  # flight all the time: the forces give no scale
+    impulses = _draw_impulses(ax, shown, max(weight, largest))
+    if largest == 0 and not any(impulses):  # flight all the time: the forces give no scale
         ax.set_ylim(-weight, weight)
     if largest > _SPIKE * weight:
         decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
@@ -107,14 +131,44 @@ def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
         ticks.set_params(numticks=ax.yaxis.get_tick_space())
         ax.yaxis.set_major_locator(ticks)
         ax.set_ylabel(f"force [N]\nlog beyond {decade:g}")
-        _fit_forces(ax, motions)
+        _fit_lines(ax)
+    return impulses
 
 
-def _fit_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
-    """Make room for the forces alone, not for a limit of friction far below them."""
-    forces = [values for m in motions for values in (m.normal_force, m.friction_force)]
-    scale = ax.yaxis.get_transform()
-    low, high = scale.transform([min(map(np.min, forces)), max(map(np.max, forces))])
+def _draw_impulses(ax: Axes, shown: Comparison, largest: float) -> tuple[Stems | None, ...]:
+    """Draw impulses as stems as high as the mean force over a time that their label tells.
+
+    This time is a round number by which no stem is higher than the `largest` force [N].
+    """
+    found = []
+    for motion in shown.motions:
+        hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
+        states = [(hit.state_after.reaction_z, hit.state_after.reaction_x) for hit in hits]
+        found.append((np.array([hit.t for hit in hits]), np.array(states).reshape(-1, 2).T))
+    hardest = max(float(np.max(np.abs(parts), initial=0.0)) for _, parts in found)
+    if hardest == 0:
+        return (None,) * len(found)
+    decade = 10.0 ** math.floor(math.log10(hardest / largest))
+    time = next((n * decade for n in (1, 2, 5) if n * decade * largest >= hardest), 10 * decade)
+    name = f"impulse / {time:g} s"
+    drawn: list[Stems | None] = []
+    for (t, parts), (_, style) in zip(found, shown, strict=True):
+        upright, along = (
+            ax.plot(
+                np.repeat(t, 3), np.outer(part, [0, 1 / time, np.nan]).ravel(), lw=1.2, marker="o",
+                color=style.colour or palette_of(ax).curves[rank], ms=2.5,
+                markevery=slice(1, None, 3), label="_" if rank else name,
+            )[0]
+            for rank, part in enumerate(np.where(parts == 0, np.nan, parts))  # frictionless: none
+        )  # fmt: skip
+        drawn.append((upright, along) if t.size else None)
+    return tuple(drawn)
+
+
+def _fit_lines(ax: Axes) -> None:
+    """Make room for the lines alone, not for a limit of friction far below them."""
+    scale, values = ax.yaxis.get_transform(), [line.get_ydata() for line in ax.lines]
+    low, high = scale.transform([min(map(np.nanmin, values)), max(map(np.nanmax, values))])
     air = 0.05 * (high - low)
     ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
@@ -131,12 +185,19 @@ def draw_energies(
     )
 
 
-def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:
-    """Scale the axis of errors: logarithmic, from below rounding to above the largest."""
+def dress_errors(
+    ax: Axes, lines: Sequence[Line2D], label: str, none: str = "exactly 0 throughout"
+) -> None:
+    """Scale the axis of errors: logarithmic, from below rounding to above the largest.
+
+    A sentence tells of errors that have no place on it.
+    """
     largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
-    ax.set_ylim(1e-17, 10 * max(largest, _ROUNDING))  # first: nothing but zeros has no log scale
+    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # first: nothing but zeros has no log scale
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(label)
+    if largest < _LEAST:
+        say(ax, f"less than {_LEAST:g} throughout" if largest else none)
 
 
 def dress_grid(ax: Axes) -> None:
@@ -149,7 +210,7 @@ def dress_grid(ax: Axes) -> None:
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
     """Label the time axis; mark modes, events and where a model is not valid.
 
-    If `named`, events of a single motion have their names where there is room.
+    If `named`, events of a single motion have their names, or are counted where there is no room.
     """
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
@@ -158,23 +219,26 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
     for row, (motion, style) in enumerate(shown):
         colour = None if shown.alone else style.colour
         marks += shade_modes(ax, motion, row, colour)
-        marks += mark_events(ax, motion, colour or palette_of(ax).grey)
+        marks += mark_events(ax, motion, colour or palette_of(ax).grey, named and shown.alone)
         marks += shade_invalid(ax, motion, colour, 1 / len(shown.motions))
-    if shown.alone and named:
-        marks += name_events(ax, shown.motions[0])
     return tuple(marks)
 
 
 def note_of(shown: Comparison) -> str:
-    """Return the remark of a title on curves that show ranges; empty if none does."""
+    """Return the remark of a title on curves that show ranges, and on how a motion ends."""
     long = [motion for motion in shown.motions if are_ranges(motion)]
-    if not long:
-        return ""
-    return f"{max(map(half_turns, long)):_.0f} half turns: ranges".replace("_", "\u202f")
+    count = f"{max(map(half_turns, long)):_.0f} half turns: ranges" if long else ""
+    return "; ".join(filter(None, [count.replace("_", "\u202f"), ending_of(*shown.motions)]))
+
+
+def entries_of(marks: Sequence[Artist]) -> list[Artist]:
+    """Return entries of a legend for modes and counted events, one of each name."""
+    found = {str(mark.get_label()): mark for mark in marks}
+    return [mark for name, mark in found.items() if name and not name.startswith("_")]
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Dress one panel or two; the first gets the title and a legend of `handles` and modes.
+    """Dress one panel or two; the first gets the title and a legend of `handles` and marks.
 
     The upper one of two has no label of a shared time axis.
     """
@@ -184,6 +248,6 @@ def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) ->
     if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
         panels[0].set_xlabel("")
         panels[0].figure.align_ylabels(panels)
-    name_curves(panels[0], [*handles, *mode_handles(shown.motions, shown.palette)])
+    name_curves(panels[0], [*handles, *entries_of(marks)])
     title_beside_legend(panels[0], note_of(shown))
     return tuple(marks)

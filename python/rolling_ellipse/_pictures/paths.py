@@ -19,8 +19,8 @@ from .axes import axes_of, picture
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
-from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
-from .palette import Palette, palette_of
+from .modes import EVENT_NAMES, draw_invalid_ground, ending_of, events_shown
+from .palette import palette_of
 from .panels import sparse_markers
 from .sampling import between, span_of, turned_until
 from .strobe import dress_ground_axes, figure_size
@@ -59,6 +59,7 @@ def plot_paths(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     **options: Any,
@@ -67,9 +68,9 @@ def plot_paths(
 
     That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
     is down. The path of the contact ends where the body leaves the ground and goes on where it hits
-    it; markers on it are events. Of a long path the first three turns are shown, or the first swing
-    to and fro (the title then says so). Where the model is not valid, the path of the centre has
-    grey ground.
+    it; markers on it are events. Dots and an outline show the start. Of a long path the first three
+    turns are shown, or the first swing (the title then says so). Where the model is not valid, the
+    path of the centre has grey ground.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def plot_paths(
     end = max(turned_until(motion, SHOWN_TURNS, "x_dot") for motion in motions)
     shown.motions = motions = tuple(_until(motion, end) for motion in motions)
     view = _view(motions, end)
-    ax = axes_of(ax, figure_size(view))
+    ax = axes_of(ax, figure_size(view), figsize)
     places = np.concatenate([motion.x for motion in motions])
     ground = drawing.draw_ground(ax, motions[0].scene, places)
     drawn = [
@@ -102,8 +103,10 @@ def plot_paths(
     shown.restyle(*centres, *tips, *contacts)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
     dress_ground_axes(ax, motions[0].scene, view)  # last, because artists may widen the view
-    name_curves(ax, [*handles, *_event_handles(motions, shown.palette)])
-    title_beside_legend(ax, f"the first {end:.3g} s of {last:.4g} s" if end < last else "")
+    kinds = {line.get_label(): line for lines in events for line in lines}
+    name_curves(ax, [*handles, *kinds.values()])
+    part = f"the first {end:.3g} s of {last:.4g} s" if end < last else ""
+    title_beside_legend(ax, part, ending_of(*motions))
     return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
 
 
@@ -124,19 +127,24 @@ def _draw_paths(
     """Draw the three paths of a motion; `share` of the motions are drawn before it."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
     palette = palette_of(ax)
+    body = drawing.body_patch(motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
+    body.set_transform(on_slope)
+    ax.add_patch(body)
     colours = [style.colour or own for own in (palette.orange, palette.blue, palette.ink)]
+    start: dict[str, Any] = {"marker": ".", "ms": 6, "markevery": [0]}
     name = f"{style.label}, " if style.label else ""
     (centre,) = ax.plot(
         motion.x, motion.z, color=colours[0], ls=_CENTRE, lw=1.8, label=f"{name}centre",
-        transform=on_slope, zorder=5, **sparse_markers(style),
+        transform=on_slope, zorder=5, **(sparse_markers(style) or start),
     )  # fmt: skip
     (tip,) = ax.plot(
         *drawing.tip(motion), color=colours[1], ls=_TIP, lw=1.2, label=f"{name}end of axis a",
-        transform=on_slope, zorder=4,
+        transform=on_slope, zorder=4, **start,
     )  # fmt: skip
     (contact,) = ax.plot(  # narrower than the contacts below it, so that all are seen
         *drawing.contact_points(motion), color=colours[2], lw=2.4 + 4 * share,
         solid_capstyle="butt", label=f"{name}contact", transform=on_slope, zorder=3 - share,
+        **start,
     )  # fmt: skip
     return centre, tip, contact
 
@@ -152,22 +160,10 @@ def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...
         x = places[kinds == kind.value]
         lines += ax.plot(
             x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mec=colour, mew=1.2,
-            mfc=palette_of(ax).background, label=f"_{EVENT_NAMES[kind]}", transform=on_slope,
+            mfc=palette_of(ax).background, label=EVENT_NAMES[kind], transform=on_slope,
             zorder=6,
         )  # fmt: skip
     return tuple(lines)
-
-
-def _event_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Line2D]:
-    kinds = dict.fromkeys(event.kind for motion in motions for event in events_shown(motion))
-    return [
-        Line2D(
-            [], [], ls="none", marker=_EVENTS[kind], ms=3, mfc=palette.background, mec=palette.ink,
-            mew=1.0,
-            label=EVENT_NAMES[kind],
-        )
-        for kind in kinds
-    ]  # fmt: skip
 
 
 def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MultipleLocator
 
 from .. import _core
 from .._ask.check import FloatArray, flag
@@ -20,7 +20,7 @@ from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
-from .modes import draw_invalid_ground
+from .modes import draw_invalid_ground, ending_of
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
@@ -29,6 +29,7 @@ from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
+_TICK = 0.45  # room for a tick [inch]
 _SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
 
@@ -54,6 +55,7 @@ def plot_phase(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
     fold: bool | None = None,
@@ -86,7 +88,7 @@ def plot_phase(
     parts, notes = zip(*map(_part, shown.motions), strict=True)
     motions = shown.motions = parts
     fold = flag("fold", fold)
-    ax = axes_of(ax, (6.4, 4.2))
+    ax = axes_of(ax, (6.4, 4.2), figsize)
     flat = flat_angle(motions[0].scene)
     lines: list[Line2D] = []
     starts: list[Line2D] = []
@@ -106,7 +108,7 @@ def plot_phase(
     _dress_phase(ax)
     handles = [] if shown.alone else shown.motion_handles(solid=False)
     name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
-    title_beside_legend(ax, next(filter(None, notes), ""))
+    title_beside_legend(ax, next(filter(None, notes), ""), ending_of(*motions))
     return Phase(ax, tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
 
 
@@ -150,10 +152,15 @@ def _path(
     return np.insert(theta - math.pi * cell, places, folds), np.insert(omega, places, speeds)
 
 
+def knows_turns(motion: Trajectory) -> bool:
+    """True if a double knows the angles of a motion to parts of a turn."""
+    return bool(np.spacing(np.abs(motion.theta).max()) <= _COARSE)
+
+
 def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
     for motion in motions:
-        farthest = float(np.abs(motion.theta).max())
-        if np.spacing(farthest) > _COARSE:
+        if not knows_turns(motion):
+            farthest = float(np.abs(motion.theta).max())
             raise ValueError(
                 "trajectories must have angles of which a double knows thousandths of a radian, up "
                 f"to 4e12 rad, got theta = {farthest:.6g} rad: start as many half turns nearer to 0"
@@ -228,20 +235,10 @@ def _dress_phase(ax: Axes) -> None:
     dress_grid(ax)
     left, right = ax.get_xlim()
     if QUARTER < right - left < _FEW_TURNS * 3 * math.pi:
-        ax.xaxis.set_major_locator(_QuarterTurns())
+        room = max(ax.get_window_extent().width / ax.figure.dpi / _TICK, 1.0)
+        doublings = max(math.ceil(math.log2((right - left) / QUARTER / room)), 0)
+        ax.xaxis.set_major_locator(MultipleLocator(QUARTER * 2**doublings))
         ax.xaxis.set_major_formatter(_quarters)
-
-
-class _QuarterTurns(MaxNLocator):
-    """Ticks at every 1, 2, 4, ... quarter turns, as many as there is room for."""
-
-    def tick_values(self, vmin: float, vmax: float) -> list[float]:
-        room = self.axis.get_tick_space()  # type: ignore[union-attr]
-        step = QUARTER
-        while (vmax - vmin) / step > max(room, 1):
-            step *= 2
-        first, last = math.ceil(vmin / step), math.floor(vmax / step)
-        return [step * i for i in range(first, last + 1)]
 
 
 def _quarters(angle: float, _position: float | None = None) -> str:

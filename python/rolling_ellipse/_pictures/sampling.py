@@ -158,8 +158,8 @@ def half_turns(motion: Trajectory) -> float:
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
     """Return the time [s] after so many turns or, if earlier, a path of `turns` 2 pi max(a, b).
 
-    It is at most the time of the last sample, and of the second turning point, where a rate
-    ("omega", "x_dot") changes its sign.
+    It is at most the time of the last sample, and of the end of the first whole swing: of the
+    second turning point, where a rate ("omega", "x_dot") changes its sign, or starts from 0.
     """
     begin, end = span_of(motion)
     if not is_at_hand(motion):
@@ -223,7 +223,7 @@ def _jumps(motion: Trajectory, begin: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """Return the time of so many turns, or of the second turning point if it is earlier.
+    """Return the time of so many turns, or of the end of the first swing if it is earlier.
 
     It is infinite if neither is among the samples.
     """
@@ -233,7 +233,8 @@ def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
     used = np.maximum.accumulate(np.maximum(turned, moved)) / turns
     found = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
     speed = getattr(seen, rate)
-    for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[1:2]:
+    swung = int(speed[0] != 0)  # turning points before the end of a swing; 0 from a turning point
+    for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[swung : swung + 1]:
         zero = t[i] + (t[i + 1] - t[i]) * speed[i] / (speed[i] - speed[i + 1])
         found = min(found, float(zero))
     return found

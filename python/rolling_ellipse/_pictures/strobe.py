@@ -22,6 +22,7 @@ from .axes import axes_of, picture
 from .comparison import require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
 from .legends import name_curves, title_beside_legend
+from .modes import ending_of
 from .palette import palette_of
 from .sampling import at_times, between, span_of, turned_until
 
@@ -53,6 +54,7 @@ def plot_strobe(
     trajectory: Trajectory,
     *,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
     count: int = 13,
     t_end: float | None = None,
     **options: Any,
@@ -72,21 +74,9 @@ def plot_strobe(
         Number of positions, even in time from the first sample to `t_end`.
     t_end : float, optional
         Last time shown [s]. Without it the whole motion is shown, or its first three turns, or
-        its first swing to and fro, where it is longer (the title then says so).
+        its first swing, where it is longer (the title then says so).
     **options
         Properties of `matplotlib.patches.Ellipse` for all bodies.
-
-    Returns
-    -------
-    Strobe
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If `count` or `t_end` is out of range, or the trajectory has no samples.
-    TypeError
-        If it is no Trajectory, `ax` no Axes, or something no number.
     """
     check_strobe(trajectory, count, t_end)
     first, last = span_of(trajectory)
@@ -94,7 +84,7 @@ def plot_strobe(
     at = at_times(trajectory, even_times(first, end, count))
     path = between(trajectory, first, end, HALF_TURNS)
     view = drawing.view_of(path.scene, path.x, path.z)
-    ax = axes_of(ax, figure_size(view))
+    ax = axes_of(ax, figure_size(view), figsize)
     ground = drawing.draw_ground(ax, path.scene, path.x)
     bodies, hands = _draw_bodies(ax, at)
     for body in bodies:
@@ -103,7 +93,10 @@ def plot_strobe(
     dress_ground_axes(ax, path.scene, view)
     name_curves(ax)
     part = "" if end == last else f"the first {end - first:.3g} s of "
-    title_beside_legend(ax, f"{count} positions over {part}{last - first:.4g} s")
+    title = (
+        f"{count} positions over {part}{last - first:.4g} s" if first < last else f"at {first:g} s"
+    )
+    title_beside_legend(ax, title, ending_of(trajectory))
     return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground)
 
 
@@ -119,8 +112,9 @@ def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> Non
 def figure_size(view: tuple[float, float, float, float]) -> tuple[float, float]:
     """Return the size [inch] of a figure that fits a view: left, right, bottom, top [m]."""
     left, right, bottom, top = view
-    tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
-    return 10, tall
+    slope = (top - bottom) / (right - left)
+    tall = min(max(9 * slope, 1.5), 4)
+    return 1 + min(9, max(tall / slope, 3)), 0.8 + tall
 
 
 def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[Line2D, ...]]:

@@ -74,6 +74,7 @@ def plot_phase_map(
     resolution: int = 400,
     workers: Any = -1,
     ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
 ) -> PhaseMap:
     """Colour the outcome of `classify` for uniform discs at the flat position, over two quantities.
 
@@ -111,19 +112,7 @@ def plot_phase_map(
         Number of threads, -1 for all, or an executor, as of `classify`.
     ax : matplotlib Axes, optional
         Where to draw; without it, in a new pyplot figure. Limits set before stay.
-
-    Returns
-    -------
-    PhaseMap
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If an argument is none of the names or out of its range, x and y do not go together, or a
-        quantity is given that is along an axis or follows from another.
-    TypeError
-        If something is no number, or `resolution` no whole one.
+    {figsize}
     """
     if ax is not None:
         require_axes(ax)  # refuses a wrong ax before the work
@@ -133,7 +122,7 @@ def plot_phase_map(
     edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
     codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
-    ax = axes_of(ax, (6.4, 4.4))
+    ax = axes_of(ax, (6.4, 4.4), figsize)
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
     free = ax.get_autoscalex_on(), ax.get_autoscaley_on()
     _dress_map(ax, plane)

@@ -1,0 +1,114 @@
+"""No picture is empty, and no text in it covers another, whatever the motion is."""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+from oracles.curves import PICTURES, data, legend_of, new_axes
+from oracles.pictures import figure_of, legend_in, shows_something
+
+ALL: dict[str, Any] = {"overview": rl.plot, "strobe": rl.plot_strobe, **PICTURES}
+JAMMING = rl.Scene(2.0, 0.2, theta=-1.2, x_dot=-3.0, omega=0.0, friction=1.5)
+MOTIONS: dict[str, tuple[rl.Scene, float, str]] = {
+    "rest": (rl.Scene(2.0, 1.0), 1.0, "default"),
+    "circle at rest": (rl.Scene(1.0, 1.0), 1e-6, "dark_background"),
+    "one sample": (rl.scenes.rolling, 0.0, "default"),
+    "jam": (JAMMING, 3.0, "default"),
+    "bounce": (rl.scenes.bounce, 20.0, "dark_background"),
+    "slope": (rl.scenes.slope, 30.0, "default"),
+    "long": (rl.scenes.rolling, 1e5, "default"),
+}
+
+
+def texts_of(figure: Figure) -> Iterator[Bbox]:
+    """Boxes of titles, legends, labels of axes and texts in them."""
+    for ax in figure.axes:
+        titles = ax.title, ax._left_title  # type: ignore[attr-defined]
+        texts = [text for text in (*titles, *ax.texts) if text.get_text()]
+        for part in (*texts, ax.get_legend(), ax.xaxis.label, ax.yaxis.label):
+            if part is not None:
+                yield part.get_window_extent()
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_no_picture_is_empty_and_no_text_covers_another(name: str) -> None:
+    scene, span, style = MOTIONS[name]
+    motion = rl.simulate(scene, span)
+    for picture, draw in ALL.items():
+        with plt.style.context(style):
+            figure = draw(motion).figure
+        assert shows_something(figure), picture
+        boxes = [box.padded(-1) for box in texts_of(figure)]  # the layout rounds to pixels
+        assert all(figure.bbox.x0 < box.x0 and box.x1 < figure.bbox.x1 for box in boxes), picture
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+        plt.close(figure)
+
+
+def test_an_empty_picture_is_seen() -> None:
+    for values, shown in (([0.0, 1.0], True), ([0.0, np.nan], True), ([2.0, 3.0], False)):
+        ax = new_axes()
+        ax.plot([0.0, 1.0], values)
+        ax.set_ylim(-0.1, 1.1)
+        assert shows_something(figure_of(ax)) == shown
+
+
+def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout() -> None:
+    axes = np.ravel(np.array(Figure().subplots(2, 2)))
+    jump, bounce = rl.simulate(rl.scenes.jump, 3.0), rl.simulate(rl.scenes.bounce, 20.0)
+    rl.plot_forces(jump, ax=axes[0])
+    rl.plot_energy(bounce, ax=axes[1])
+    rl.plot_paths(jump, ax=axes[2])
+    rl.plot_strobe(bounce, ax=axes[3])
+    figure = figure_of(axes[0])
+    figure.draw_without_rendering()
+    for ax in axes:
+        box = ax.get_position(original=True).transformed(figure.transSubfigure)
+        legend = legend_in(ax).get_window_extent()
+        assert box.y0 < legend.y0 and legend.y1 < box.y1 + 1 and legend.x1 < box.x1 + 1
+    boxes = [box.padded(-1) for box in texts_of(figure)]
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
+def test_a_body_in_one_place_fills_its_figure() -> None:
+    for scene in (rl.scenes.rocking, rl.scenes.bounce, rl.Scene(2.0, 1.0)):
+        for draw in (rl.plot_strobe, rl.plot_paths):
+            shown = draw(rl.simulate(scene, 3.0))
+            shown.figure.draw_without_rendering()
+            drawn = shown.ax.transData.transform(shown.ax.dataLim)
+            assert np.ptp(drawn[:, 0]) > 0.8 * shown.ax.get_window_extent().width
+            plt.close(shown.figure)
+
+
+def test_impulses_are_mean_forces_over_the_time_that_their_name_tells() -> None:
+    drop = rl.simulate(rl.scenes.drop, 3.0)
+    shown = rl.plot_forces(drop, ax=new_axes())
+    (hit,) = drop.events
+    after = hit.state_after
+    name, seconds = legend_of(shown.ax)[3].split(" / ")
+    stems = shown.impulses[0]
+    assert name == "impulse" and stems is not None
+    time = float(seconds.removesuffix(" s"))
+    for line, impulse in zip(stems, (after.reaction_z, after.reaction_x), strict=True):
+        t, heights = data(line)
+        assert (t[0], t[1]) == (hit.t, hit.t) and np.isnan(heights[2])
+        assert heights[:2] == pytest.approx([0.0, impulse / time])
+    assert rl.plot_forces(rl.simulate(rl.scenes.slip, 1.0), ax=new_axes()).impulses == (None,)
+
+
+def test_pictures_are_written_in_one_word_and_have_the_size_asked_for(tmp_path: Path) -> None:
+    motion = rl.simulate(rl.scenes.report, 1.0)
+    for draw in (*ALL.values(), lambda _, **how: rl.plot_phase_map(resolution=3, **how)):
+        shown = draw(motion, figsize=(5.0, 4.5))
+        assert tuple(shown.figure.get_size_inches()) == (5.0, 4.5)
+        plt.close(shown.figure)
+    shown.savefig(tmp_path / "map.png", dpi=10)
+    assert plt.imread(tmp_path / "map.png").shape[:2] == (45, 50)
+    motion.plot(tmp_path / "motion.svg", figsize=(5.0, 4.5))  # leaves no figure open
+    assert "</svg>" in (tmp_path / "motion.svg").read_text()
