@@ -1,5 +1,7 @@
 """Scenes to draw, and the geometry of drawn ellipses by matplotlib's transforms."""
 
+import itertools
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.patches import Ellipse
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 from PIL.Image import Image
 
@@ -94,3 +97,21 @@ def shows_something(figure: Figure) -> bool:
         if not ax.get_window_extent().padded(1).count_contains(np.concatenate(points)):
             return False
     return len(figure.axes) > 0
+
+
+def texts_of(figure: Figure) -> Iterator[Bbox]:
+    """Boxes of titles, legends, labels of axes and ticks, and texts in them, less a pixel."""
+    for ax in figure.axes:
+        parts: list[Any] = [ax.title, ax._left_title, *ax.texts]  # type: ignore[attr-defined]
+        for axis in (ax.xaxis, ax.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+            parts += [axis.label, *(tick.label1 for tick in ticks if tick.label1.get_visible())]
+        parts = [part for part in parts if part.get_text()]
+        for part in (*parts, ax.get_legend()):
+            if part is not None:
+                yield part.get_window_extent().padded(-1)  # layouts and fonts round to pixels
+
+
+def overlapping(boxes: Iterable[Bbox]) -> bool:
+    return any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))

@@ -2,20 +2,15 @@
 
 import dataclasses
 import itertools
-import re
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
-from oracles.pictures import figure_of, luminance
+from oracles.pictures import figure_of, luminance, overlapping, texts_of
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
 
@@ -50,14 +45,6 @@ def test_many_motions_are_named_now_and_then(
     assert len(named) == 8 and named[0] == "motion 0" and named[-1] == "motion 19"
 
 
-def test_a_picture_of_its_own(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    shown = picture(report)
-    assert plt.get_fignums() == [shown.figure.number]
-    assert list(shown.axes) == shown.figure.axes and shown.ax is shown.axes[0]
-    assert len(shown.axes) == (2 if picture in TWO_PANELS else 1)
-    plt.close(shown.figure)
-
-
 @pytest.fixture(params=["one", "several", "thin"])
 def crowd(
     request: pytest.FixtureRequest, report: rl.Trajectory, several: list[rl.Trajectory]
@@ -76,27 +63,13 @@ def test_nothing_overlaps_at_320_by_240(
     names = ["rolling, exact", "multipliers, dop853", "multipliers, rk4"][: len(crowd)]
     picture(crowd, ax=axes if panels == 2 else axes[0], labels=names)
     figure_of(axes[0]).draw(FigureCanvasAgg(figure_of(axes[0])).get_renderer())
-    boxes = []
+    frames = [ax.get_window_extent() for ax in axes if not ax.texts]
+    boxes = [*texts_of(figure_of(axes[0])), *frames]
     for ax in axes:
-        window = ax.get_window_extent()
         # versions of matplotlib differ by a pixel in the height of letters and of the free space
-        assert window.width > 160 and window.height > 85 / panels**2
-        parts = [ax.xaxis.label, ax.yaxis.label, ax.get_legend(), *tick_labels(ax)]
-        boxes += [window, *(part.get_window_extent() for part in parts if part is not None)]
-    for box in boxes:  # the layout rounds to half a pixel
-        assert min(box.x0, box.y0) > -0.5 and box.x1 < 320.5 and box.y1 < 240.5
-    full = [box.padded(-0.5) for box in boxes if min(box.width, box.height) > 1]
-    assert not any(one.overlaps(other) for one, other in itertools.combinations(full, 2))
-
-
-def tick_labels(ax: Axes) -> list[Text]:
-    """Labels of the ticks that are drawn: matplotlib keeps some beyond the limits, too."""
-    labels: list[Text] = []
-    for axis in (ax.xaxis, ax.yaxis):
-        low, high = sorted(axis.get_view_interval())
-        ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
-        labels += [tick.label1 for tick in ticks if tick.label1.get_visible()]
-    return labels
+        assert ax.bbox.width > 160 and ax.bbox.height > 85 / panels**2
+    assert all(min(box.x0, box.y0) > 0 and box.x1 < 320 and box.y1 < 240 for box in boxes)
+    assert not overlapping(boxes)
 
 
 def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
@@ -141,33 +114,6 @@ def test_paths_that_are_not_valid_have_grey_ground(
         report, 0.0, 6.0, 6.0 if picture is rl.plot_paths else sampling.half_turns(report)
     )
     assert np.array_equal(np.isfinite(data(ground)[1]), drawn.t >= 2.5)
-
-
-MOTION = rl.simulate(rl.scenes.jump, 1.0)
-DRAWN: dict[str, tuple[Callable[..., Any], str]] = {
-    "Overview": (
-        lambda: rl.plot(MOTION, figure=Figure()), "7 axes, strobe, phase, .*, 18 marks"
-    ),
-    "Strobe": (lambda: rl.plot_strobe(MOTION, ax=axes(), count=7), "ax, 7 bodies, 7 hands, .*"),
-    "Phase": (lambda: rl.plot_phase([MOTION, MOTION], ax=axes()), "ax, 2 motions, .*"),
-    "Energy": (lambda: rl.plot_energy(MOTION, ax=axes()), "ax, 1 total, 1 kinetic, .*"),
-    "Forces": (lambda: rl.plot_forces(MOTION, ax=[axes(), axes()]), "2 axes, 1 normal, .*"),
-    "Constraints": (lambda: rl.plot_constraints(MOTION, ax=axes()), "1 axes, 1 lines, .*"),
-    "Paths": (lambda: rl.plot_paths(MOTION, ax=axes()), "ax, 1 centres, 1 tips, .*"),
-    "PhaseMap": (lambda: rl.plot_phase_map(resolution=3, ax=axes()), "ax, cells, .* marks, .*"),
-}  # fmt: skip
-
-
-def axes() -> Any:
-    return Figure().add_subplot()
-
-
-@pytest.mark.parametrize("name", DRAWN)
-def test_the_repr_names_the_artists(name: str) -> None:
-    draw, said = DRAWN[name]
-    text = repr(draw())
-    assert " at 0x" not in text and "\n" not in text
-    assert re.fullmatch(rf"<{name}: {said}>", text), text
 
 
 ROLLING = rl.simulate(rl.scenes.rolling, 1.0)

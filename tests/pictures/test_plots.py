@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, seen, two_axes
+from oracles.curves import data, legend_of, new_axes, rough, seen, two_axes
 from oracles.pictures import ORDINARY_SCENES, centre_of, figure_of, outline, points_of, support
 from rolling_ellipse._pictures import ground as drawing
 from rolling_ellipse._pictures import sampling
@@ -197,15 +197,6 @@ def test_the_band_of_friction_is_that_of_its_coefficient(report: rl.Trajectory) 
     assert (corners.min(), corners.max()) == (-bound, bound)
     available = shown.available[1]
     assert available is not None and list(np.asarray(available.get_ydata())) == [0.7, 0.7]
-
-
-@pytest.mark.parametrize("picture", TWO_PANELS)
-def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    three = list(Figure().subplots(3))
-    for kind, wrongs in ((ValueError, (three, [])), (TypeError, ("here", [three[0], None]))):
-        for wrong in wrongs:
-            with pytest.raises(kind, match="ax must be one matplotlib Axes or two, got"):
-                picture(report, ax=wrong)
 
 
 # ------------------------------------------------------------------------------------- paths
@@ -415,11 +406,6 @@ def test_strobe_paths_are_the_trajectory(report: rl.Trajectory) -> None:
     assert np.all(np.asarray(shown.contact_path.get_ydata()) == 0)
 
 
-def test_strobe_shows_all_of_a_short_roll_and_says_so(report: rl.Trajectory) -> None:
-    ax = rl.plot_strobe(report, ax=new_axes()).ax
-    assert ax.get_title(loc="left") == "13 positions over 6 s"
-
-
 def test_strobe_stops_a_long_roll_after_three_turns() -> None:
     trajectory = rl.simulate(rl.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
     shown = rl.plot_strobe(trajectory, ax=new_axes())
@@ -494,16 +480,6 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> N
             styles = {(line.get_linestyle(), line.get_marker()) for line in (one, other)}
             values = [rgb_to_hsv(to_rgb(line.get_color()))[2] for line in (one, other)]
             assert len(styles) == 2 or abs(values[0] - values[1]) > 0.3
-
-
-def test_overview_draws_the_limit_of_friction(report: rl.Trajectory) -> None:
-    assert rl.plot(report, figure=Figure()).friction_limit is None
-    rough = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
-    band = rl.plot(rough, figure=Figure()).friction_limit
-    corners = points_of(band)
-    largest = seen(report, rl.plot(rough, figure=Figure()).normal_force).normal_force.max()
-    assert largest == pytest.approx(report.normal_force.max(), rel=1e-3)
-    assert (corners[:, 1].min(), corners[:, 1].max()) == (-0.9 * largest, 0.9 * largest)
 
 
 def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:

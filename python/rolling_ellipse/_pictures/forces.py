@@ -19,7 +19,7 @@ from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
 from .palette import palette_of
-from .panels import DASHES, RANGE, Stems, dot, draw_forces, dress_forces, finish
+from .panels import DASHES, RANGE, Stems, dot, draw_forces, dress_forces, entries_of, finish
 from .sampling import are_ranges, curve
 
 _LIMIT = ":"
@@ -30,16 +30,16 @@ _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite wher
 class Forces(Artists):
     """Artists of `plot_forces`; item i belongs to motion i, but for `axes` and `marks`.
 
-    `limits` are None where friction has no limit, `impulses` where nothing hits the ground, else
-    stems normal to the ground and along it; `needed` and `available` (the coefficients of friction)
-    are empty where only one Axes was given.
+    `limits` are None where friction has no limit; `impulses` are stems normal to the ground and
+    along it; `needed` and `available` (the coefficients of friction) are empty where only one Axes
+    was given.
     """
 
     axes: tuple[Axes, ...]
     normal: tuple[Line2D, ...]
     friction: tuple[Line2D, ...]
     limits: tuple[PolyCollection | None, ...]
-    impulses: tuple[Stems | None, ...]
+    impulses: tuple[Stems, ...]
     needed: tuple[Line2D, ...]
     available: tuple[Line2D | None, ...]
     marks: tuple[Artist, ...]
@@ -93,7 +93,7 @@ def plot_forces(
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
     if not shown.alone:
-        handles += [stems[0] for stems in impulses if stems][:1]
+        handles += entries_of([upright for upright, _ in impulses])
     marks = finish(panels, shown, handles)
     return Forces(
         tuple(panels), normal, friction, limits, impulses, tuple(needed), tuple(available), marks

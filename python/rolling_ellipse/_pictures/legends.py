@@ -34,10 +34,12 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
     """Give the axes a legend above them on the right, where it covers nothing."""
     entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
     if entries:
+        room = ax.get_window_extent().width * 72 / ax.figure.dpi
+        size = "small" if room > _NARROW else "x-small"
         ax.legend(
-            handles=entries, ncols=_columns(ax, entries), loc="lower right", bbox_to_anchor=(1, 1),
-            frameon=False, fontsize=_size(ax), borderaxespad=0.1, handlelength=1.8,
-            columnspacing=1.2, markerscale=1.3,
+            handles=entries, ncols=_columns(entries, size, room), loc="lower right",
+            bbox_to_anchor=(1, 1), frameon=False, fontsize=size, borderaxespad=0.1,
+            handlelength=1.8, columnspacing=1.2, markerscale=1.3,
         )  # fmt: skip
     ax.set_axes_locator(_Within(ax))
 
@@ -78,21 +80,11 @@ def title_beside_legend(ax: Axes, *remarks: str) -> None:
         ax.set_title(text, loc="left", fontsize="medium", pad=above)
 
 
-def _columns(ax: Axes, entries: Sequence[Any]) -> int:
-    """Return the largest number of columns that are together no wider than the axes."""
-    points = FontProperties(size=_size(ax)).get_size_in_points()
-    room = _width(ax)
+def _columns(entries: Sequence[Any], size: str, room: float) -> int:
+    """Return the largest number of columns that are together no wider than the room [points]."""
+    points = FontProperties(size=size).get_size_in_points()
     widths = [points * (3.6 + 0.56 * len(str(entry.get_label()))) for entry in entries]
     columns = len(entries)
     while columns > 1 and sum(map(max, np.array_split(widths, columns))) > room:
         columns -= 1
     return columns
-
-
-def _size(ax: Axes) -> str:
-    return "small" if _width(ax) > _NARROW else "x-small"
-
-
-def _width(ax: Axes) -> float:
-    """Return the width of axes [points]."""
-    return float(ax.get_window_extent().width) * 72 / ax.figure.dpi

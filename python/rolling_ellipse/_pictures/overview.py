@@ -53,7 +53,7 @@ class Overview(Artists):
     normal_force: Line2D
     friction_force: Line2D
     friction_limit: PolyCollection | None
-    impulses: Stems | None
+    impulses: Stems
     energy: Line2D
     kinetic_energy: Line2D
     potential_energy: Line2D

@@ -111,20 +111,19 @@ def draw_forces(
     return normal, friction, limit
 
 
-def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems | None, ...]:
+def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw and return the impulses of impacts for each motion, and scale the force axis.
 
     It is linear, or beyond the weight logarithmic, where spikes tower.
     """
+    impulses = _draw_impulses(ax, shown)
     ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     ax.set_ylabel("force [N]")
     motions = shown.motions
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
-    largest = max(float(np.max(np.abs(m.normal_force))) for m in motions)
-    impulses = _draw_impulses(ax, shown, max(weight, largest))
-    if largest == 0 and not any(impulses):  # flight all the time: the forces give no scale
+    if ax.dataLim.height < 1e-9 * weight:  # flight all the time: the forces give no scale
         ax.set_ylim(-weight, weight)
-    if largest > _SPIKE * weight:
+    if max(float(np.max(np.abs(m.normal_force))) for m in motions) > _SPIKE * weight:
         decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
         ax.set_yscale("symlog", linthresh=decade, linscale=1.5)
         ticks = SymmetricalLogLocator(base=10, linthresh=decade)
@@ -135,40 +134,36 @@ def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems | None, ...]:
     return impulses
 
 
-def _draw_impulses(ax: Axes, shown: Comparison, largest: float) -> tuple[Stems | None, ...]:
+def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw impulses as stems as high as the mean force over a time that their label tells.
 
-    This time is a round number by which no stem is higher than the `largest` force [N].
+    By this time, a power of ten near sqrt(size/gravity), the impulse of a fall from the body's own
+    height becomes a force like the weight.
     """
-    found = []
-    for motion in shown.motions:
+    scene = shown.motions[0].scene
+    time = 10.0 ** round(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
+    drawn: list[Stems] = []
+    for motion, style in shown:
         hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
-        states = [(hit.state_after.reaction_z, hit.state_after.reaction_x) for hit in hits]
-        found.append((np.array([hit.t for hit in hits]), np.array(states).reshape(-1, 2).T))
-    hardest = max(float(np.max(np.abs(parts), initial=0.0)) for _, parts in found)
-    if hardest == 0:
-        return (None,) * len(found)
-    decade = 10.0 ** math.floor(math.log10(hardest / largest))
-    time = next((n * decade for n in (1, 2, 5) if n * decade * largest >= hardest), 10 * decade)
-    name = f"impulse / {time:g} s"
-    drawn: list[Stems | None] = []
-    for (t, parts), (_, style) in zip(found, shown, strict=True):
+        given = [(hit.state_after.reaction_z, hit.state_after.reaction_x) for hit in hits]
+        name = f"impulse / {time:g} s" if hits else "_"
+        line: dict[str, Any] = {"lw": 1.2, "marker": "o", "ms": 2.5, "markevery": (1, 3)}
+        t, stem = np.repeat([hit.t for hit in hits], 3), [0, 1 / time, np.nan]
         upright, along = (
             ax.plot(
-                np.repeat(t, 3), np.outer(part, [0, 1 / time, np.nan]).ravel(), lw=1.2, marker="o",
-                color=style.colour or palette_of(ax).curves[rank], ms=2.5,
-                markevery=slice(1, None, 3), label="_" if rank else name,
+                t, np.outer(np.where(part == 0, np.nan, part), stem).ravel(), **line,  # 0: no stem
+                color=style.colour or palette_of(ax).curves[rank], label="_" if rank else name,
             )[0]
-            for rank, part in enumerate(np.where(parts == 0, np.nan, parts))  # frictionless: none
+            for rank, part in enumerate(np.reshape(given, (-1, 2)).T)
         )  # fmt: skip
-        drawn.append((upright, along) if t.size else None)
+        drawn.append((upright, along))
     return tuple(drawn)
 
 
 def _fit_lines(ax: Axes) -> None:
     """Make room for the lines alone, not for a limit of friction far below them."""
-    scale, values = ax.yaxis.get_transform(), [line.get_ydata() for line in ax.lines]
-    low, high = scale.transform([min(map(np.nanmin, values)), max(map(np.nanmax, values))])
+    scale, values = ax.yaxis.get_transform(), [np.ravel(line.get_ydata()) for line in ax.lines]
+    low, high = scale.transform([f(np.concatenate(values)) for f in (np.nanmin, np.nanmax)])
     air = 0.05 * (high - low)
     ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
