@@ -170,7 +170,7 @@ def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
     report = rl.simulate(rl.scenes.report, 3.0)
     shown = rl.plot_forces([jump, report, slip], ax=two_axes(), labels=["one", "two", "three"])
     upper, lower = shown.axes
-    parts = ["normal", "friction", "impulse / 0.02 s"]
+    parts = ["normal", "friction", "impulse / 0.1 s"]
     assert legend_of(upper)[3:] == [*parts, "sliding", "flight"]
     rows = [[box[2:] for box in boxes_of(shade)] for shade in shades_of(shown.marks)]
     first, third = rows[0][0], rows[2][0]

@@ -141,13 +141,14 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
     """Raise ValueError unless a size is two positive numbers, and of a new figure."""
     if figsize is None:
         return
-    wanted = "figsize must be the width and the height [inch] of a new figure"
     try:
-        width, height = (positive("figsize", side) for side in figsize)
+        _width, _height = (positive("figsize", side) for side in figsize)
+        wrong = "" if ax is None and figure is None else "one for a figure that has a size"
     except (TypeError, ValueError):
-        raise ValueError(f"{wanted}, got {shown(figsize)}") from None
-    if ax is not None or figure is not None:
-        raise ValueError(f"{wanted}, got {width:g} x {height:g} for a figure that has a size")
+        wrong = shown(figsize)
+    if wrong:
+        wanted = "figsize must be the width and the height [inch] of a new figure"
+        raise ValueError(f"{wanted}, got {wrong}")
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:

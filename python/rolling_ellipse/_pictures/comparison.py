@@ -6,7 +6,7 @@ the quantities, motions differ in markers instead. So pictures can be read in gr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -19,7 +19,6 @@ from matplotlib.lines import Line2D
 from .._ask.check import shown
 from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._motion.trajectory import Trajectory
-from . import sampling
 from .axes import listed
 from .legends import quantity_handles, some_of
 from .palette import Palette, palette_of
@@ -71,14 +70,9 @@ class Comparison:
     def __iter__(self) -> Iterator[tuple[Trajectory, Style]]:
         return zip(self.motions, [PLAIN] if self._plain else self.styles, strict=True)
 
-    def over_time(self) -> Comparison:
-        """Sample the motions at the times of curves, and return itself."""
-        self.motions = tuple(map(sampling.over_time, self.motions))
-        return self
-
-    def for_dots(self) -> Comparison:
-        """Sample the motions at the times of dots, and return itself."""
-        self.motions = tuple(map(sampling.for_dots, self.motions))
+    def sampled(self, sample: Callable[[Trajectory], Trajectory]) -> Comparison:
+        """Sample all motions by a function, and return itself."""
+        self.motions = tuple(map(sample, self.motions))
         return self
 
     def restyle(self, *artists: Artist | None) -> None:

@@ -18,6 +18,7 @@ from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
 from .panels import draw_error, dress_errors, finish
+from .sampling import for_dots
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +59,7 @@ def plot_constraints(
     {figsize}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).for_dots()
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(for_dots)
     panels = panels_of(ax, figsize)
     lines: list[list[Line2D]] = [[] for _ in panels]
     for motion, style in shown:

@@ -18,6 +18,7 @@ from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
 from .panels import DASHES, draw_energies, draw_error, dress_errors, finish
+from .sampling import for_dots, over_time
 
 KINDS = ("energies", "error")
 
@@ -67,7 +68,7 @@ def plot_energy(
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     default = "energies" if shown.alone else "error"
     wanted = choice("kind", default if kind is None else kind, KINDS)
-    shown = shown.over_time() if wanted == "energies" else shown.for_dots()
+    shown = shown.sampled(over_time if wanted == "energies" else for_dots)
     ax = axes_of(ax, (7, 3.4), figsize)
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []

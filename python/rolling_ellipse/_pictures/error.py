@@ -20,6 +20,7 @@ from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
 from .panels import draw_error, dress_errors, finish
+from .sampling import over_time
 
 QUANTITIES = {  # quantities and their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
@@ -73,7 +74,7 @@ def plot_error(
     quantity = choice("quantity", quantity, tuple(QUANTITIES))
     compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
-    compared.over_time()
+    compared.sampled(over_time)
     ax = axes_of(ax, (7, 3.4), figsize)
     errors = []
     for (motion, style), right in zip(compared, references, strict=True):

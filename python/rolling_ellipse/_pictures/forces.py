@@ -20,7 +20,7 @@ from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
 from .palette import palette_of
 from .panels import DASHES, RANGE, Stems, dot, draw_forces, dress_forces, entries_of, finish
-from .sampling import are_ranges, curve
+from .sampling import are_ranges, curve, over_time
 
 _LIMIT = ":"
 _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
@@ -78,7 +78,7 @@ def plot_forces(
     {figsize}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(over_time)
     panels = panels_of(ax, figsize)
     drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
     impulses = dress_forces(panels[0], shown)

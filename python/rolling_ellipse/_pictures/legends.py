@@ -7,7 +7,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox
 
@@ -15,7 +14,7 @@ from .palette import Palette
 
 _Entry = TypeVar("_Entry")
 
-_NARROW = 180.0  # width of axes with small letters [points]
+_NARROW = 2.5  # width of axes with small letters [inch]
 _NAMED = 8  # most names of motions: more would fill the picture
 
 
@@ -33,14 +32,15 @@ def quantity_handles(quantities: Sequence[tuple[str, str]], palette: Palette) ->
 def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
     """Give the axes a legend above them on the right, where it covers nothing."""
     entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
-    if entries:
-        room = ax.get_window_extent().width * 72 / ax.figure.dpi
-        size = "small" if room > _NARROW else "x-small"
-        ax.legend(
-            handles=entries, ncols=_columns(entries, size, room), loc="lower right",
-            bbox_to_anchor=(1, 1), frameon=False, fontsize=size, borderaxespad=0.1,
-            handlelength=1.8, columnspacing=1.2, markerscale=1.3,
+    room = ax.get_window_extent().width
+    for columns in range(len(entries), 0, -1):  # the most that have room
+        legend = ax.legend(
+            handles=entries, ncols=columns, loc="lower right", bbox_to_anchor=(1, 1),
+            frameon=False, fontsize="small" if room > _NARROW * ax.figure.dpi else "x-small",
+            borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=1.3,
         )  # fmt: skip
+        if legend.get_window_extent().width <= room:
+            break
     ax.set_axes_locator(_Within(ax))
 
 
@@ -78,13 +78,3 @@ def title_beside_legend(ax: Axes, *remarks: str) -> None:
     if title.get_window_extent().width + taken.width > ax.get_window_extent().width:
         above = taken.height * 72 / ax.figure.dpi + 4  # [points]; 4 for the descent of letters
         ax.set_title(text, loc="left", fontsize="medium", pad=above)
-
-
-def _columns(entries: Sequence[Any], size: str, room: float) -> int:
-    """Return the largest number of columns that are together no wider than the room [points]."""
-    points = FontProperties(size=size).get_size_in_points()
-    widths = [points * (3.6 + 0.56 * len(str(entry.get_label()))) for entry in entries]
-    columns = len(entries)
-    while columns > 1 and sum(map(max, np.array_split(widths, columns))) > room:
-        columns -= 1
-    return columns

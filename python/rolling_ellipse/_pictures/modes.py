@@ -19,7 +19,7 @@ from .._motion.events import Event
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .labels import label_times
-from .palette import Palette, palette_of
+from .palette import palette_of
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
@@ -72,19 +72,15 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
     top, edged in its colour.
     """
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
-    edge = {"edgecolor": colour, "lw": 0.8} if colour else {"lw": 0}
+    edge: dict[str, Any] = {"ec": colour, "lw": 0.8} if colour else {"lw": 0}
     upright = {"transform": ax.get_xaxis_transform(), "zorder": 0}
-    shades: list[Artist] = []
+    shade, shades = palette_of(ax).shade, list[Artist]()
     for mode, spans in mode_spans(motion).items():
         if spans:
-            style = _shading(mode, palette_of(ax)) | edge | upright
+            face, hatched, hatch = _SHADES[mode]
+            style = {"fc": shade(face), "ec": shade(hatched), "hatch": hatch} | edge | upright
             shades.append(ax.broken_barh(spans, (bottom, height), label=mode.name.lower(), **style))
     return shades
-
-
-def _shading(mode: Mode, palette: Palette) -> dict[str, Any]:
-    face, edge, hatch = _SHADES[mode]
-    return {"facecolor": palette.shade(face), "edgecolor": palette.shade(edge), "hatch": hatch}
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:

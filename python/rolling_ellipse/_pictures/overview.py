@@ -31,7 +31,7 @@ from .panels import (
     note_of,
 )
 from .phase import Phase, knows_turns, plot_phase
-from .sampling import for_dots
+from .sampling import for_dots, over_time
 from .strobe import Strobe, check_strobe, plot_strobe
 
 _SHARE = 0.16  # height of the bodies' axes over the width of the figure
@@ -92,7 +92,7 @@ def plot(
         For the positions, as in `plot_strobe`; the curves show the whole motion.
     """
     check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
-    shown = Comparison(trajectory).over_time()
+    shown = Comparison(trajectory).sampled(over_time)
     (motion,) = shown.motions
     name = None if path is None else file_name("path", path)
     whole = figure_of(figure, (8.6, 8.0), figsize)

@@ -137,11 +137,11 @@ def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw impulses as stems as high as the mean force over a time that their label tells.
 
-    By this time, a power of ten near sqrt(size/gravity), the impulse of a fall from the body's own
-    height becomes a force like the weight.
+    By this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's own
+    height becomes a force of some weights.
     """
     scene = shown.motions[0].scene
-    time = 10.0 ** round(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
+    time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
     drawn: list[Stems] = []
     for motion, style in shown:
         hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
