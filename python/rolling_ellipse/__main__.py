@@ -16,7 +16,7 @@ from matplotlib import rcParams
 
 from . import Status, Trajectory, simulate
 from ._motion.export.atomic import replacing
-from ._pictures.animation.movies import movie_writer
+from ._pictures.animation.movies import film_suffix
 from ._player import animate
 from ._show.command.explore import explore
 from ._show.command.options import (
@@ -86,7 +86,7 @@ def _check_options(options: argparse.Namespace) -> None:
         if (path := getattr(options, name)) is not None:
             require_file(f"--{name}", path)
     if options.save is not None:
-        movie_writer(options.save, _FPS, "--save")  # refuses a wrong name before any work
+        film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
 
 
 def _write_figure(trajectory: Trajectory, path: str) -> str:

@@ -34,8 +34,8 @@ def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
 
 
 def compared(motions: list[rl.Trajectory], width: int = 640) -> RollingAnimation:
-    """An animation of all motions with four frames a second."""
-    return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=4, width=width)
+    """An animation of all motions with ten frames a second."""
+    return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=10, width=width)
 
 
 def frames(animation: RollingAnimation) -> range:
@@ -49,9 +49,9 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
     assert len(animation.strips) == len(motions)
     for i in frames(animation)[::7]:
         animation.draw(i)
-        assert animation.clock.get_text() == f"t = {i / 4:.2f} s"
+        assert animation.clock.get_text() == f"t = {i / 10:.1f} s"
         for strip, motion in zip(animation.strips, motions, strict=True):
-            at = motion.sol(i / 4)  # a single time is rounded differently than many times
+            at = motion.sol(i / 10)  # a single time is rounded differently than many times
             assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
             assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
@@ -87,7 +87,7 @@ def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[rl.Traject
 
 @pytest.mark.parametrize(
     ("motions", "same_ground", "views"),
-    [(STILL, True, 1), (FOLLOWED, True, 57), (PARTED, False, 81)],
+    [(STILL, True, 1), (FOLLOWED, True, 141), (PARTED, False, 201)],
     ids=["still", "followed", "parted"],
 )
 def test_the_strips_show_the_same_ground_unless_the_motions_part(

@@ -26,7 +26,6 @@ SCENES = {
     "flat limit": rl.Scene(1.0, 1e-3, theta=0.3, omega=2.0),
     "kilometres": rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
 }
-NOWHERE = np.array([0.0])  # frames without a use here
 
 
 def unpacked(column: dict[str, Any]) -> np.ndarray:
@@ -55,8 +54,7 @@ def test_between_the_samples_the_motion_is_as_near_as_promised(name: str) -> Non
     motion = rl.simulate(scene, 4.0 if name != "kilometres" else 200.0)
     size, end = max(scene.a, scene.b), motion.t_end
     tolerance = 2e-3 * size
-    found = track(motion, end, tolerance, NOWHERE)
-    assert not found["stepped"]
+    found = track(motion, [(0.0, end)], tolerance)
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
     # an impact keeps its time up to the rounding of t: within it no error is bounded
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
@@ -86,19 +84,23 @@ def test_a_motion_whose_period_divides_the_samples_is_still_seen() -> None:
     """The motion stands at the same angle, modulo half turns, at 17 or 34 evenly spaced times."""
     turn = rl.period(rl.scenes.rolling)
     motion = rl.simulate(rl.scenes.rolling, 34 * turn)
-    found = track(motion, motion.t_end, 1e-3, NOWHERE)
+    found = track(motion, [(0.0, motion.t_end)], 1e-3)
     times = np.linspace(0.0, motion.t_end, 5001)[1:-1]
     assert np.max(np.abs(read_back(found, times)["z"] - motion.sol(times).z)) < 4e-3
 
 
-def test_too_fast_a_motion_is_shown_frame_by_frame() -> None:
-    motion = rl.simulate(rl.Scene(2.0, 1.0, omega=3.2), 1e5)
-    frames = np.linspace(0.0, 1e5, 301)
-    found = track(motion, 1e5, 1e-3, frames)
-    assert found["stepped"]
-    times = unpacked(found["columns"]["t"])
-    assert times == pytest.approx(frames, abs=1e-3)
-    assert unpacked(found["columns"]["x"]) == pytest.approx(motion.sol(frames).x, abs=1e-3)
+def test_parts_of_a_long_motion_are_as_near_as_the_whole_of_a_short_one() -> None:
+    motion, parts = (
+        rl.simulate(rl.scenes.rolling, 1e5),
+        [(0.0, 9.0), (5e4, 50_009.0), (99_990.0, 1e5)],
+    )
+    found = track(motion, parts, 1e-3)
+    known = unpacked(found["columns"]["t"])
+    assert known[found["starts"]] == pytest.approx([begin for begin, _ in parts], abs=1e-3)
+    times = np.concatenate([np.linspace(*part, 501) for part in parts])
+    assert np.max(np.abs(read_back(found, times)["x"] - motion.sol(times).x)) < 4e-3
+    with pytest.raises(ValueError, match="in at most 20000 samples"):
+        track(motion, [(0.0, 1e5)], 1e-3)
 
 
 @pytest.mark.parametrize("error", [0.0, 1e-12, 1e-6, 1e-3])

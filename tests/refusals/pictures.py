@@ -64,10 +64,10 @@ def film_that_is_stopped(folder: Path) -> None:
     program.write_text("#!/bin/sh\ncat > /dev/null\nexit 1\n")
     program.chmod(0o755)
     film = rl.animate(MOTION, **FILM)
-    draw = mock.Mock(side_effect=[ArithmeticError("stopped")] * 9)
+    draw = mock.Mock(side_effect=[film.draw(0)] * 6 + [ArithmeticError("stopped")])
     with (
         mock.patch.object(movies, "ffmpeg", lambda: str(program)),
-        mock.patch.object(film, "_func", draw),
+        mock.patch.object(film, "draw", draw),
     ):
         film.save(folder / "roll.mp4")
 
@@ -78,6 +78,11 @@ def film_without_ffmpeg(folder: Path) -> None:
         mock.patch.object(FFMpegWriter, "isAvailable", return_value=False),
     ):
         rl.animate(MOTION, folder / "roll.mp4", **FILM)
+
+
+def webm_without_encoder(folder: Path) -> None:
+    with mock.patch.object(movies, "ffmpeg", lambda: "true"):
+        rl.animate(MOTION, folder / "roll.webm", **FILM)
 
 
 def folder_called_gif(folder: Path) -> None:
@@ -140,13 +145,20 @@ REFUSALS: list[Row] = [
     # films
     *wrong(rl.animate, {}, trajectories=[None, *ANYTHING]),
     *wrong(rl.animate, {"trajectories": MOTION},
-           figure=ANYTHING, progress=ANYTHING, t_end=[*ANYTHING, 9.0], max_frames=[*but(42), 2],
+           figure=ANYTHING, progress=ANYTHING, layout=ANYTHING, panel=ANYTHING,
+           forces=[*ANYTHING, None], blow=[*ANYTHING, 1],
+           t_end=[*ANYTHING, 9.0], max_frames=[*but(42), 2],
            fps=[*but(42, 1.5), 1e-320, 1e-4, 1e4, 1e308], speed=[*but(42, 1.5), 1e-320, 1e300],
            width=[*but(42, 1.5), 1, 1e-9, 10**9], dpi=[*but(42, 1.5), 1e-300, 1, 1e5],
            path=[42, 1.5, b"a.gif", object(), ["a.gif"], np.array("x.gif"), "", "roll\0.gif"]),
     ("ax", lambda _: rl.animate(MOTION, ax=axes(1), figure=Figure())),
     ("ax", lambda _: rl.animate([MOTION, LATER], ax=axes(1))),
-    *(("t_end", lambda _, how=how: rl.animate(LATER, **how))
+    ("ax", lambda _: rl.animate(MOTION, ax=axes(1), panel="phase")),
+    ("panel", lambda folder: rl.animate(MOTION, folder / "roll.html", panel="phase")),
+    ("speed", lambda _: rl.animate(LATER, speed=100.0)),  # 2 rad a frame
+    *wrong(rl.animate(MOTION, **FILM).frame, {"path": "a.png"}, t=[*but(), 0.51]),
+    ("path", webm_without_encoder),
+    *(("max_frames", lambda _, how=how: rl.animate(LATER, **how))
       for how in ({"speed": 1e-6, "fps": 1e3}, {"speed": 1e-12})),
     (IsADirectoryError, folder_called_gif),
     (FileNotFoundError, lambda folder: rl.animate(MOTION, folder / "no" / "roll.gif")),

@@ -139,7 +139,8 @@ def _path(
     """
     if not fold:
         return theta, omega
-    cell = np.ceil((theta - flat) / math.pi - 0.5)
+    inside = folded(theta, flat)
+    cell = np.round((theta - inside) / math.pi)
     before = np.flatnonzero(np.diff(cell))
     after = before + 1
     up = np.sign(cell[after] - cell[before])
@@ -149,7 +150,12 @@ def _path(
     gap, places = np.full(before.size, np.nan), np.repeat(after, 3)
     folds = np.column_stack([leaving, gap, returning]).ravel()
     speeds = np.column_stack([speed, gap, speed]).ravel()
-    return np.insert(theta - math.pi * cell, places, folds), np.insert(omega, places, speeds)
+    return np.insert(inside, places, folds), np.insert(omega, places, speeds)
+
+
+def folded(theta: Any, flat: float) -> Any:
+    """Return angles within (-pi/2, pi/2] of the flat position, up to half turns [rad]."""
+    return theta - math.pi * np.ceil((theta - flat) / math.pi - 0.5)
 
 
 def knows_turns(motion: Trajectory) -> bool:

@@ -115,7 +115,7 @@ export class Explorer extends Player {
     Object.assign(this, { i, j, n });
     const columns = Object.fromEntries(Object.entries(table.numbers).map(([name, values]) =>
       [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
-    this.take(this.strip, columns, false);
+    this.take(this.strip, columns);
     this.strip.events = table.events[n];
   }
 

@@ -29,32 +29,39 @@ def film_page(animation: RollingAnimation) -> str:
 def film_html(animation: RollingAnimation) -> str:
     """Return the player of an animation as a fragment of HTML."""
     motions = list(animation.motions)
+    pace, beside = animation.pace, animation.cameras.columns > 1
     last = float(animation.t[-1])
-    ends = [min(last, float(motion.t[-1])) for motion in motions]
-    seen = cameras(motions, None, _HEAD, _FOOT)
-    if seen.shape > (most := max(_TALLEST, _TALLEST * len(motions) / 2)):
-        seen = cameras(motions, most, _HEAD, _FOOT)  # a cell of a notebook is wide
-    wide = seen.windows[0][1] - seen.windows[0][0]
+    parts = [(begin, min(end, last)) for begin, end in pace.parts]
+    seen = cameras(motions, None, _HEAD, _FOOT, beside)
+    if seen.shape > (most := max(_TALLEST, _TALLEST * (not beside) * len(motions) / 2)):
+        seen = cameras(motions, most, _HEAD, _FOOT, beside)  # a cell of a notebook is wide
+    wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {
             **body(motion.scene),
             "label": label,
             "share": share,
             "window": window,
-            "track": track(motion, end, _PIXEL * wide, animation.t),
-            "events": events(motion, end),
+            "track": track(motion, parts, _PIXEL * wide),
+            "theta": source.scene.theta,
+            "turns": float(source.sol([min(last, source.t[-1])]).turns[0]),
+            "events": events(motion, last),
             "valid": None if np.isinf(motion.valid_until) else motion.valid_until,
         }
-        for motion, label, share, window, end in zip(
-            motions, animation.labels, seen.heights, seen.windows, ends, strict=True
+        for motion, source, label, share, window in zip(
+            motions, animation.sources, animation.labels, seen.heights, seen.windows, strict=True
         )
     ]
     data = {
         "end": last,
-        "fps": animation.fps,
-        "speed": animation.speed,
-        "decimals": animation.decimals,
+        "parts": parts,
+        "fps": pace.fps,
+        "speed": pace.speed,
+        "fastest": pace.fastest * 60 / pace.fps,  # a screen has 60 frames a second
+        "decimals": pace.decimals,
         "shape": seen.shape,
+        "columns": seen.columns,
+        "forces": animation.forces,
         "follows": seen.follows,
         "strips": strips,
     }

@@ -49,11 +49,14 @@ export function sized(canvas, height) {
 
 export class Player {
   constructor(host, film) {
-    Object.assign(this, { host, film, t: 0, rate: 1, playing: false, forces: false, paused: 0 });
+    const { parts = [[0, film.end]], forces = false } = film; // an explorer has no parts
+    Object.assign(this, { host, film, parts, forces, t: 0, rate: 1, playing: false });
+    this.long = parts.reduce((sum, [begin, end]) => sum + end - begin, 0);
     host.dataset.ready = "";
+    host.dataset.lmSuppressShortcuts = ""; // JupyterLab looks for it outside of the shadow
     host.player = this;
     for (const strip of film.strips)
-      if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.stepped);
+      if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.starts);
     this.begin?.();
     this.build(host.attachShadow({ mode: "open" }));
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -70,28 +73,45 @@ export class Player {
   }
 
   /** Let a strip show another motion. */
-  take(strip, columns, stepped) {
-    strip.motion = new Track(columns, stepped, strip.a);
-    strip.points = strip.motion.trace();
+  take(strip, columns, starts = [0]) {
+    strip.motion = new Track(columns, strip.a);
+    strip.traces = starts.map((start, k) => strip.motion.trace(start, starts[k + 1]));
+    [strip.points] = strip.traces;
+  }
+
+  /** Seconds of motion that the film shows before a time, and the time after so many. */
+  shown(t) {
+    return this.parts.reduce((sum, [begin, end]) =>
+      sum + Math.max(0, Math.min(t, end) - begin), 0);
+  }
+
+  timeAt(seconds) {
+    for (const [begin, end] of this.parts) {
+      if (seconds <= end - begin) return begin + Math.max(0, seconds);
+      seconds -= end - begin;
+    }
+    return this.parts.at(-1)[1];
   }
 
   build(shadow) {
     shadow.innerHTML = `<style>${STYLE}</style><div class="player" tabindex="0" role="group"
-      aria-label="Film of a rolling ellipse: space plays, arrows step" data-lm-suppress-shortcuts>
+      aria-label="Film of a rolling ellipse: space plays, arrows step">
       <canvas role="img"></canvas><div class="bar">${this.button("play", "Play")}
       ${this.button("back", "Step back")}${this.button("forth", "Step forward")}<div class="seek">
       <input type="range" min="0" max="1" step="any" value="0" aria-label="Time"></div>
       <span class="time"></span><select aria-label="Speed"></select><button class="forces"
-      aria-pressed="false" title="Force of the ground">N, F</button></div></div>`;
+      aria-pressed="${this.forces}" title="Force of the ground">N, F</button></div></div>`;
     const find = (words) => shadow.querySelector(words);
     this.box = find(".player");
     this.canvas = find("canvas");
     this.slider = find("input");
     this.clock = find(".time");
     this.select = find("select");
-    for (const rate of RATES)
-      this.select.add(new Option(`× ${+(rate * this.film.speed).toPrecision(3)}`, rate, rate === 1,
-        rate === 1));
+    const { speed, fastest = Infinity } = this.film; // faster, bodies would seem to roll backwards
+    for (const rate of new Set([...RATES, 1 / speed].sort((one, other) => one - other)))
+      if (rate === 1 || rate * speed <= fastest)
+        this.select.add(new Option(`× ${+(rate * speed).toPrecision(3)}`, rate, rate === 1,
+          rate === 1));
     this.toggle = find(".play");
     this.toggle.onclick = () => (this.playing ? this.pause() : this.play());
     find(".back").onclick = () => this.step(-1);
@@ -101,7 +121,7 @@ export class Player {
       currentTarget.setAttribute("aria-pressed", this.forces);
       this.draw();
     };
-    this.slider.oninput = () => { this.pause(); this.seek(this.slider.value * this.film.end); };
+    this.slider.oninput = () => { this.pause(); this.seek(this.timeAt(this.slider.value * this.long)); };
     this.select.onchange = () => { this.rate = Number(this.select.value); };
     this.box.onkeydown = (event) => this.key(event);
     this.marks();
@@ -118,8 +138,8 @@ export class Player {
     seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
     const seen = new Set();
     for (const [t, kind] of this.film.strips.flatMap((strip) => strip.events)) {
-      const part = t / this.film.end, place = Math.round(500 * part);
-      if (!(part <= 1) || seen.has(place)) continue;
+      const part = this.shown(t) / this.long, place = Math.round(500 * part);
+      if (this.parts.every(([begin, end]) => t < begin || t > end) || seen.has(place)) continue;
       seen.add(place);
       const mark = document.createElement("span");
       mark.className = "mark";
@@ -131,8 +151,10 @@ export class Player {
 
   key(event) {
     const { key, target } = event;
-    if (event.ctrlKey || event.altKey || event.metaKey || target === this.select) return;
-    if (key === " " && target.tagName === "BUTTON") return event.stopPropagation();
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    event.stopPropagation(); // a notebook would take them as its own
+    if (target !== this.slider && target.matches("select, input")) return;
+    if (key === " " && target.tagName === "BUTTON") return;
     if (key === " ") this.toggle.click();
     else if (key in NUDGES) this.step(NUDGES[key]);
     else if (key === "Home") this.stepTo(0);
@@ -141,7 +163,6 @@ export class Player {
     else if (key === "-") this.faster(-1);
     else return;
     event.preventDefault();
-    event.stopPropagation();
   }
 
   faster(by) {
@@ -152,7 +173,7 @@ export class Player {
 
   step(frames) {
     const frame = this.film.speed / this.film.fps;
-    this.stepTo((Math.round(this.t / frame) + frames) * frame);
+    this.stepTo(this.timeAt((Math.round(this.shown(this.t) / frame) + frames) * frame));
   }
 
   stepTo(t) {
@@ -161,7 +182,7 @@ export class Player {
   }
 
   seek(t) {
-    this.t = Math.min(this.film.end, Math.max(0, t));
+    this.t = this.timeAt(this.shown(t));
     this.draw();
   }
 
@@ -195,7 +216,7 @@ export class Player {
       before = now;
       rested = this.t >= this.film.end ? rested + passed : 0;
       if (rested > 1) this.t = 0;
-      this.seek(this.t + passed * this.rate * this.film.speed);
+      this.seek(this.timeAt(this.shown(this.t) + passed * this.rate * this.film.speed));
       requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
@@ -204,17 +225,19 @@ export class Player {
   /** The states now, with the centres in pixels: for scripts of the page. */
   state() {
     const bodies = this.film.strips.map((strip, i) => {
-      const at = strip.motion.at(this.t);
+      const at = strip.motion.at(this.now), { columns = 1 } = this.film;
       const [px, py] = this.views[i].at(at.x, at.z);
-      return { ...at, px, py };
+      return { ...at, px: px + (columns > 1 ? (i / columns) * this.box.clientWidth : 0), py };
     });
-    return { t: this.t, playing: this.playing, bodies };
+    return { t: this.now, playing: this.playing, bodies };
   }
 
   /** Ask for a picture; there is at most one in a frame of the screen. */
   draw() {
-    this.slider.value = this.film.end > 0 ? this.t / this.film.end : 0;
-    this.clock.textContent = `${this.t.toFixed(this.film.decimals)} s`;
+    this.slider.value = this.long > 0 ? this.shown(this.t) / this.long : 0;
+    const text = this.t.toFixed(Math.max(3, this.film.decimals));
+    this.now = Number(text); // the bodies are drawn for the time on the clock
+    this.clock.textContent = `${text} s`;
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.waiting ||= requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
   }
@@ -229,26 +252,31 @@ export class Player {
     for (const name in this.colours) box.style.setProperty(`--${name}`, this.colours[name]);
     ink.fillStyle = this.colours.paper;
     ink.fillRect(0, 0, width, height);
-    const states = film.strips.map((strip) => strip.motion.at(this.t));
+    const t = this.now, part = this.parts.findLastIndex(([begin]) => begin <= t);
+    const states = film.strips.map((strip) => strip.motion.at(t)), { columns = 1 } = film;
+    const across = width / columns; // of a strip: they stand over one another, or side by side
     this.views = this.viewsOf(states, width);
     let floor = 0;
     film.strips.forEach((strip, i) => {
       const tall = strip.share * height;
+      strip.points = strip.traces[part];
       ink.save();
+      ink.translate(columns > 1 ? i * across : 0, 0);
       ink.beginPath();
-      ink.rect(0, floor, width, tall);
+      ink.rect(0, floor, across, tall);
       ink.clip();
       paintStrip(ink, this.colours, strip, states[i], this.views[i], {
-        floor, width, tall, forces: this.forces, lasting: this.t / film.speed,
-        caption: this.caption(strip, states[i]), clock: i ? "" : this.clockText(),
+        floor, width: across, tall, forces: this.forces, lasting: t / film.speed,
+        caption: this.caption(strip, states[i]), clock: i === columns - 1 ? this.clockText() : "",
       });
       this.over?.(ink, i);
       ink.restore();
-      floor += tall;
+      if (columns === 1) floor += tall;
     });
     this.host.dataset.time = this.t;
-    canvas.setAttribute("aria-label", film.strips.map((strip, i) => this.caption(strip, states[i]))
-      .join("; ") || "An ellipse on the ground");
+    canvas.setAttribute("aria-label", film.strips.map((strip, i) => [
+      this.caption(strip, states[i]), `x = ${round(states[i].x, 5)} m, θ = ${round(states[i].theta, 5)} rad`,
+    ].filter(Boolean).join(", ")).join("; "));
   }
 
   /** The views of all strips; their cameras follow nothing, the middle, or each its own body. */
@@ -260,15 +288,15 @@ export class Player {
     const middle = (Math.min(...places) + Math.max(...places)) / 2;
     let floor = 0;
     return strips.map((strip, i) => {
-      const [x, y] = feet[i];
+      const [x, y] = feet[i], across = width / (this.film.columns ?? 1);
       let place = follows === "own" ? [x, -y] : follows === "middle" ? [middle, -y] : [0, 0];
       if (follows === "edge") { // the body stays within so much of where it began
         const { start, edge, slope } = strip, way = states[i].x - start;
         const along = start + way - Math.min(edge, Math.max(-edge, way));
         place = [along * Math.cos(slope), -along * Math.sin(slope)];
       }
-      const view = new View(strip, strip.window, place, floor, width);
-      floor += strip.share * shape * width;
+      const view = new View(strip, strip.window, place, floor, across);
+      if (across === width) floor += strip.share * shape * width;
       return view;
     });
   }
@@ -279,6 +307,11 @@ export class Player {
     if (this.film.follows === "own") {
       const digits = Math.max(0, 1 - Math.floor(Math.log10(Math.max(strip.a, strip.b))));
       parts.push(`x = ${at.x.toFixed(digits).replace("-", "−")} m`);
+    }
+    if (this.parts.length > 1) {
+      const [turn, turns] = [at.theta - strip.theta, strip.turns].map((angle, i) =>
+        Math.max(1, Math.ceil(Math.abs(angle) / (i ? 1 : 2 * Math.PI) - 1e-6)));
+      parts.push(`turn ${turn} of ${turns}`);
     }
     if (at.mode === SLIDING) parts.push("slides");
     if (at.mode === FLIGHT) parts.push("flies");
@@ -291,7 +324,7 @@ export class Player {
 
   clockText() {
     const speed = this.film.speed * this.rate;
-    const text = `t = ${this.t.toFixed(this.film.decimals)} s`;
+    const text = `t = ${this.clock.textContent}`;
     return speed === 1 ? text : `${text}   speed × ${+speed.toPrecision(3)}`;
   }
 }

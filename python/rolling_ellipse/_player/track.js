@@ -19,8 +19,8 @@ export function unpacked(columns) {
 
 /** One motion: its state at any time, by cubics between samples of position and rate. */
 export class Track {
-  constructor(columns, stepped, a) {
-    Object.assign(this, columns, { a, stepped });
+  constructor(columns, a) {
+    Object.assign(this, columns, { a });
     this.end = this.t.at(-1);
   }
 
@@ -31,7 +31,7 @@ export class Track {
       if (this.t[middle] <= t) i = middle;
       else j = middle;
     }
-    const held = this.stepped || j === this.t.length;
+    const held = j === this.t.length;
     const span = held ? 1 : this.t[j] - this.t[i], u = held ? 0 : Math.max(0, t - this.t[i]) / span;
     if (held) j = i;
     const v = 1 - u;
@@ -47,13 +47,12 @@ export class Track {
     };
   }
 
-  /** Points of the path: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
-  trace() {
+  /** Points of the path [t, x, z, tip x, tip z, mode, theta] through some samples. */
+  trace(first = 0, end = this.t.length) {
     const points = [];
-    if (this.stepped) return points;
-    for (let i = 0; i < this.t.length; i++) {
+    for (let i = first; i < end; i++) {
+      const next = i + 1 < end ? this.t[i + 1] : this.t[i];
       for (let part = 0; part < 6; part++) {
-        const next = this.t[i + 1] ?? this.t[i];
         const at = this.at(this.t[i] + (part / 6) * (next - this.t[i]));
         points.push([at.t, at.x, at.z, ...at.tip, at.mode, at.theta]);
         if (next === this.t[i]) break;

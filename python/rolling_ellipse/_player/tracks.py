@@ -22,23 +22,23 @@ _FORCE = 0.04  # error of lines, over force + weight, that is a line's width in 
 _FIRST = 17  # intervals to begin with
 
 
-def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) -> dict[str, Any]:
-    """Return the motion up to its time `end` [s], in types of JSON.
+def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float) -> dict[str, Any]:
+    """Return the parts (begin and end [s]) of a motion in types of JSON: columns, and their starts.
 
-    Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m].
-    A motion that needs more than `MOST_SAMPLES` has samples at the times of the `frames` alone and
-    is `stepped`: it stands still between them. More frames are refused.
+    Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
+    motion that needs more than `MOST_SAMPLES` is refused. Parts after its end have one sample.
     """
-    times = sample_times(motion, end, tolerance)
-    stepped = times is None
-    if times is None:
-        times = np.unique(np.minimum(frames, end))
-        if times.size > MOST_SAMPLES:
+    last, found, starts = float(motion.t[-1]), np.empty(0), []
+    for begin, end in parts:
+        times = sample_times(motion, min(end, last), tolerance, begin=min(begin, last))
+        if times is None or found.size + times.size > MOST_SAMPLES:
             raise ValueError(
-                f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got a motion "
-                f"that needs more and {times.size} frames: show less by t_end, or faster by speed"
+                f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got {last:g} s"
+                " of a motion that needs more: show less by t_end, or parts of it without speed"
             )
-    return {"columns": columns([motion.sol(times)], tolerance), "stepped": stepped}
+        starts.append(found.size)
+        found = np.append(found, times)
+    return {"columns": columns([motion.sol(found)], tolerance), "starts": starts}
 
 
 def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
@@ -65,24 +65,27 @@ def sample_times(
     end: float,
     tolerance: float,
     *,
+    begin: float = 0.0,
     most: int = MOST_SAMPLES,
     for_forces: int = MOST_SAMPLES,
 ) -> FloatArray | None:
-    """Return times between which cubics miss by at most `tolerance` [m]; None if over `most`.
+    """Return times, from `begin` on, between which cubics miss by at most `tolerance` [m].
+
+    If there are more than `most`, it is None.
 
     Lines between the forces are near them, too, as long as there are at most `for_forces` times.
     Events are among the times, and the doubles just before them.
     """
-    jumps = [event.t for event in motion.events if 0 < event.t <= end]
+    jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
-    times = np.unique(np.concatenate([even_times(0.0, end, _FIRST + 1), jumps, just_before]))
+    times = np.unique(np.concatenate([even_times(begin, end, _FIRST + 1), jumps, just_before]))
     # Intervals in which the cubic may miss the motion
-    places = np.flatnonzero(np.diff(times) > 1e-12 * end)
+    places = np.flatnonzero(np.diff(times) > 1e-12 * (end - begin))
     while places.size and times.size <= most:
         left, right = times[places], times[places + 1]
         force = _FORCE if times.size <= for_forces else np.inf
         bad = _misses(motion, left, right, tolerance, force) > 1
-        bad &= right - left > 1e-9 * end
+        bad &= right - left > 1e-9 * (end - begin)
         times, places = halve(times, places[bad])
     return times if times.size <= most else None
 

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, Literal
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
-from ..._ask.check import flag, number, shown
+from ..._ask.check import choice, file_name, flag, number, shown
 from ..._motion.trajectory import Trajectory
 from ..axes import picture, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
-from .movies import movie_writer
 from .pace import pace, within
 
 __all__ = ["RollingAnimation", "animate"]
 
 WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures do not fit into memory
+LAYOUTS, PANELS = ("over", "side by side"), ("phase", "forces", "energy")
 WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks with windows
 
 
@@ -39,17 +39,25 @@ def animate(
     dpi: float = 100.0,
     figure: Figure | SubFigure | None = None,
     ax: Axes | None = None,
-    progress: bool = False,
+    forces: bool = False,
+    blow: bool = False,
+    layout: Literal["over", "side by side"] = "over",
+    panel: Literal["phase", "forces", "energy"] | None = None,
+    progress: bool | None = None,
 ) -> RollingAnimation:
     """Make a moving picture in true time: frame i shows t = i · speed / fps and lasts 1 / fps.
 
-    The whole motion is shown. Where that would be a film of more than a minute (30 s for a GIF,
-    whose frames are all held in memory), it is shown faster than life, by the least of 2, 5, 10,
-    20, … that makes it short enough, and the clock says by how much.
+    The body of each frame is that of the motion at the time on the clock. Where the film would last
+    more than a minute (30 s for a GIF, whose frames are all held in memory), it is shown faster
+    than life, by the least of 2, 5, 10, 20, … that makes it short enough, and the clock says by how
+    much. Where one could not follow that, the film shows up to five parts of the motion in life's
+    time instead: beginning, end and middle, the first and the last event between them. The clock
+    then counts parts, the captions turns. A body that would turn by more than a quarter turn in a
+    frame, and seem to roll backwards, is shown in slow motion.
 
-    Several motions are shown in strips over one another: one clock, one scale, and the same
-    stretch of ground, so that one sees which is ahead. The camera stands still where all fit
-    into about three turns; else it goes along with their middle. Motions that part by more than
+    Several motions are shown in strips over one another or side by side: one clock, one scale, and
+    the same stretch of ground, so that one sees which is ahead. The camera stands still where all
+    fit into about three turns; else it goes along with their middle. Motions that part by more than
     fits are followed each in its own strip, and the captions say where they are. A motion that
     ends before the others stays where it ended, and its caption says so.
 
@@ -58,8 +66,8 @@ def animate(
     trajectories : Trajectory or sequence of Trajectory
         One motion, or several to compare.
     path : path, optional
-        File to write: .gif, .mp4 (needs ffmpeg: the extra rolling_ellipse[video]) or .html, a
-        page with a player that needs no network. Without it nothing is written: a notebook shows
+        File to write: .gif, .mp4 or .webm (need ffmpeg: the extra rolling_ellipse[video]) or .html,
+        a page with a player that needs no network. Without it nothing is written: a notebook shows
         that player by itself, and where matplotlib has windows, `plt.show()` shows the film.
     labels : sequence of str, optional
         Names of the motions; without them, several are told apart by what differs among them:
@@ -67,13 +75,13 @@ def animate(
     t_end : float, optional
         Last time shown [s]; without it, the latest end.
     fps : float, optional
-        Frames per second, 0.001 to 1000. Without it 60 for .mp4 and .html, and 50 for .gif and
+        Frames per second, 0.001 to 1000. Without it 60 for videos and .html, and 50 for .gif and
         without a path: a GIF counts in 1/100 s, there 100 / fps must be whole and at least 2.
         The player shows every time that the screen asks for; there a frame is what its keys step
         by.
     speed : float, optional
-        Seconds of motion in a second of film; 0.1 is slow motion. Without it 1, or what makes the
-        film short enough.
+        Seconds of motion in a second of film, of which all is then shown; 0.1 is slow motion.
+        Without it 1, or as above.
     max_frames : int, optional
         Most frames that may be made, at most a million; a film of more is refused.
     width : int
@@ -85,57 +93,72 @@ def animate(
         Where to draw; `width` and `dpi` are then the figure's own.
     ax : matplotlib Axes, optional
         Where to draw one motion, instead of `figure`.
-    progress : bool
-        Show how far the writing has come (with tqdm where it is installed).
+    forces : bool
+        Draw normal force and friction as arrows; the weight is as long as the longer semi-axis. The
+        player has a button for it.
+    blow : bool
+        Draw the impulse of the scene for the first 1.2 s of the film. The player always does.
+    layout : {"over", "side by side"}
+        How the strips of several motions stand.
+    panel : {"phase", "forces", "energy"}, optional
+        Draw these curves below, with a mark that runs along. Such a film has no player: a notebook
+        shows it as matplotlib does.
+    progress : bool, optional
+        Show how far the writing has come (with tqdm where it is installed); without it, on a
+        terminal from the third second on.
 
     Returns
     -------
     RollingAnimation
-        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`. Its figure keeps
-        it alive.
+        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`; `frame(t, path)` is
+        a picture of it. Its figure keeps it alive.
 
     Raises
     ------
     ValueError
         If an argument is out of range, there is nothing to show or not a label for each, the
-        film has more frames than `max_frames` or a million, `path` has another suffix or a GIF
-        cannot keep the time.
+        film has more frames than `max_frames` or a million, `path` has another suffix, a GIF cannot
+        keep the time, or at this `speed` frames would show rolling backwards.
     TypeError
         If something to show is no Trajectory, or an argument of another wrong kind.
     FileNotFoundError
-        If there is no such folder, or an .mp4 is asked for and there is no ffmpeg.
+        If there is no such folder, or a video is asked for and there is no ffmpeg.
     OSError
         If the file cannot be written; what was there then stays.
     """
     width, dpi = round(within("width", width, *WIDTHS)), within("dpi", dpi, *DPI)
     if figure is not None and not isinstance(figure, (Figure, SubFigure)):
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
-    progress = flag("progress", progress)
+    drawn: dict[str, Any] = {
+        "forces": flag("forces", forces),
+        "blow": flag("blow", blow),
+        "beside": choice("layout", layout, LAYOUTS) == LAYOUTS[1],
+        "panel": None if panel is None else choice("panel", panel, PANELS),
+    }
+    if progress is not None:
+        progress = flag("progress", progress)
     compared = Comparison(trajectories, labels)
     motions, names = compared.motions, [style.label for style in compared.styles]
-    _check_ax(ax, figure, len(motions))
+    _check_ax(ax, figure, len(motions), panel)
     latest = max(float(motion.t[-1]) for motion in motions)
     last = latest if t_end is None else number("t_end", t_end)
     if not 0 <= last <= latest:
         raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
-    shown_at = pace(path, last, fps=fps, speed=speed, max_frames=max_frames)
-    page = path is not None and movie_writer(path, shown_at.fps) is None  # refuses a bad path
+    shown_at = pace(path, motions, last, fps=fps, speed=speed, max_frames=max_frames)
+    page = path is not None and file_name("path", path).lower().endswith(".html")
+    if page and panel is not None:
+        raise ValueError(f"panel must be None for an .html, whose player has none, got {panel!r}")
+    new_figure = pyplot_figure if path is None and _has_windows() else Figure
+    place: Any = next((each for each in (ax, figure) if each is not None), new_figure)
     animation = RollingAnimation(
-        motions,
-        shown_at,
-        names,
-        width=width,
-        dpi=dpi,
-        place=figure if ax is None else ax,
-        new_figure=pyplot_figure if path is None and _has_windows() else Figure,
-        drawn=not page,
+        motions, shown_at, names, width=width, dpi=dpi, place=place, drawn=not page, **drawn
     )
     if path is not None:
         animation.save(path, progress=progress)
     return animation
 
 
-def _check_ax(ax: Any, figure: Figure | SubFigure | None, motions: int) -> None:
+def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
     if ax is None:
         return
     require_axes(ax)
@@ -143,6 +166,8 @@ def _check_ax(ax: Any, figure: Figure | SubFigure | None, motions: int) -> None:
         raise ValueError(f"ax must be None where a figure is given, got {shown(ax)}")
     if motions > 1:
         raise ValueError(f"ax must be None for {motions} motions, which need a figure, got one")
+    if panel is not None:
+        raise ValueError(f"ax must be None for a film with a panel, which needs a figure, got {ax}")
 
 
 def _has_windows() -> bool:

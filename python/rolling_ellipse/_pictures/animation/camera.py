@@ -16,8 +16,12 @@ BEHIND, AHEAD = 5.0, 4.0  # ground shown on either side of a followed motion [bo
 
 @dataclass(frozen=True)
 class Cameras:
-    """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down."""
+    """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down.
 
+    The strips are `columns` side by side, or (1) over one another.
+    """
+
+    columns: int
     views: tuple[FloatArray, ...]  # of each strip: one view a frame, (n, 4)
     heights: tuple[float, ...]  # of each strip: its share of the picture's height
     shape: float  # height of the picture over its width
@@ -26,19 +30,25 @@ class Cameras:
 
 
 def cameras(
-    motions: Sequence[Trajectory], shape: float | None, head: float, foot: float
+    motions: Sequence[Trajectory],
+    shape: float | None,
+    head: float,
+    foot: float,
+    beside: bool = False,
 ) -> Cameras:
     """Return the views of motions sampled at the same frames.
 
     `shape` is the height of the picture over its width, None to choose it. `head` and `foot` are
-    the free heights at the top and bottom of each strip, over the picture's width.
+    the free heights at the top and bottom of each strip, over the picture's width. If `beside`,
+    the strips stand side by side.
 
-    The camera stands still if all motions fit into about three turns. Else it follows the middle
-    between the first and the last body. If these part by more than fits, every strip follows its
-    own body.
+    The camera stands still if all motions fit into about three turns (side by side, fewer). Else it
+    follows the middle between the first and the last body. If these part by more than fits, every
+    strip follows its own body.
     """
     size = max(_size(motion) for motion in motions)
-    widest = 2 * np.pi * size * SHOWN_TURNS + 4 * size
+    columns = len(motions) if beside else 1
+    widest = 2 * np.pi * size * SHOWN_TURNS / columns + 4 * size
     seen = [view_of(motion.scene, motion.x, motion.z) for motion in motions]
     left, right = min(each[0] for each in seen), max(each[1] for each in seen)
     depths = [(bottom, top) for _, _, bottom, top in seen]
@@ -56,19 +66,32 @@ def cameras(
         room = parted / 2 if together else 0.0
         left, right = -BEHIND * size - room, AHEAD * size + room
         depths = [_depth(motion) for motion in motions]
-    return _framed((left, right), depths, targets, shape, head, foot, follows)
+    if beside:  # one row as wide as a strip
+        depths = [(min(bottom for bottom, _ in depths), max(top for _, top in depths))]
+    windows, heights, shape = _framed(
+        (left, right), depths, shape and shape * columns, head * columns, foot * columns
+    )
+    return Cameras(
+        columns,
+        tuple(
+            np.array(window) + target[:, [0, 0, 1, 1]]
+            for window, target in zip(windows * columns, targets, strict=True)
+        ),
+        heights * columns,
+        shape / columns,
+        windows * columns,
+        follows,
+    )
 
 
 def _framed(
     ends: tuple[float, float],
     depths: list[tuple[float, float]],
-    targets: list[FloatArray],
     shape: float | None,
     head: float,
     foot: float,
-    follows: str,
-) -> Cameras:
-    """Return views of one scale that fill the picture, around the targets of the motions."""
+) -> tuple[tuple[tuple[float, float, float, float], ...], tuple[float, ...], float]:
+    """Return windows of one scale that fill a column of strips, their heights and its shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
@@ -79,16 +102,7 @@ def _framed(
     depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
     left, right = ends[0] - air, ends[1] + air
     windows = tuple((left, right, bottom, top) for bottom, top in depths)
-    return Cameras(
-        tuple(
-            np.array(window) + target[:, [0, 0, 1, 1]]
-            for window, target in zip(windows, targets, strict=True)
-        ),
-        tuple((top - bottom) / (wide * shape) for bottom, top in depths),
-        shape,
-        windows,
-        follows,
-    )
+    return windows, tuple((top - bottom) / (wide * shape) for bottom, top in depths), shape
 
 
 def _size(motion: Trajectory) -> float:

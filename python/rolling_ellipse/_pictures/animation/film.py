@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from html import escape
+from io import BytesIO
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -14,21 +15,29 @@ from matplotlib import rc_context, rcParams
 from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 
-from ..._ask.check import choice, file_name, flag, shown, whole
+from ..._ask.check import choice, file_name, flag, number, shown, whole
 from ..._ask.progress import reporting
 from ..._motion.export.atomic import replacing
+from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
 from ..alone import Alone
+from ..energy import plot_energy
+from ..forces import plot_forces
 from ..palette import palette_of
+from ..phase import folded, plot_phase
+from ..separatrix import flat_angle
 from .camera import cameras
-from .movies import explained, ffmpeg, movie_writer
+from .movies import Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .pace import Pace
 from .strip import Strip
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
+PANEL = 0.36  # height of a panel below the strips, over the width
 _drawing_late = Alone()
 _with_settings = Alone()  # rcParams, which matplotlib's own writers change
 
@@ -65,27 +74,28 @@ class RollingAnimation(FuncAnimation):
         pace: Pace,
         labels: Sequence[str],
         *,
-        width: int,
-        dpi: float,
-        place: Figure | SubFigure | Axes | None = None,
-        new_figure: Callable[..., Figure] = Figure,
+        width: int = 640,
+        dpi: float = 100.0,
+        place: Figure | SubFigure | Axes | Callable[..., Figure] = Figure,
+        forces: bool = False,
+        blow: bool = False,
+        beside: bool = False,
+        panel: str | None = None,
         drawn: bool = True,
     ) -> None:
-        self.t, self.fps, self.speed, self.labels = pace.t, pace.fps, pace.speed, tuple(labels)
+        self.pace, self.sources, self.labels = pace, tuple(motions), tuple(labels)
+        self.t, self.fps, self.speed, self.last = pace.t, pace.fps, pace.speed, pace.parts[-1][1]
+        self.forces, self.blow, self.panel = forces, blow, panel
         self.motions = tuple(motion.sol(np.minimum(self.t, motion.t[-1])) for motion in motions)
-        self.decimals = _decimals(self.speed / self.fps)
         shape, inches = None, width / dpi
-        if place is not None:
-            shape, inches = (
-                place.bbox.height / place.bbox.width,
-                place.bbox.width / _root(place).dpi,
-            )
-        head = CAPTION / inches if any(labels) else 0.0
-        self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches)
-        if drawn or place is not None:
-            self._make_picture(place, new_figure, width, dpi)
-        else:
-            self._undrawn = (place, new_figure, width, dpi)
+        if not callable(place):
+            shape = place.bbox.height / place.bbox.width * (0.55 if panel else 1)
+            inches = place.bbox.width / _root(place).dpi
+        head = CAPTION / inches if any(labels) or len(pace.parts) > 1 else 0.0
+        self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches, beside)
+        self._undrawn: Any = place, width, dpi
+        if drawn:
+            self.draw(0)
 
     if not TYPE_CHECKING:  # a __getattr__ would let type checkers accept every name
 
@@ -104,26 +114,28 @@ class RollingAnimation(FuncAnimation):
                         raise
             return object.__getattribute__(self, name)
 
-    def _make_picture(
-        self,
-        place: Figure | SubFigure | Axes | None,
-        new_figure: Callable[..., Figure],
-        width: int,
-        dpi: float,
-    ) -> None:
+    def _make_picture(self, place: Any, width: int, dpi: float) -> None:
         """Draw the first frame, and become matplotlib's animation of its figure."""
-        if place is None:
-            height = 2 * math.ceil(width * self.cameras.shape / 2)  # video wants even numbers
-            place = new_figure(figsize=(width / dpi, height / dpi), dpi=dpi)
+        shape, columns = self.cameras.shape, self.cameras.columns
+        if callable(place):
+            height = 2 * math.ceil(width * (shape + PANEL * bool(self.panel)) / 2)  # even for video
+            place = place(figsize=(width / dpi, height / dpi), dpi=dpi)
             place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
-        self.strips = tuple(
-            Strip(ax, motion, self.t, views, label, self.cameras.follows == "own")
-            for ax, motion, views, label in zip(
-                self._axes(place), self.motions, self.cameras.views, self.labels, strict=True
-            )
-        )
-        top = self.strips[0].ax
+        share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of all strips
+        if isinstance(place, Axes):
+            place.set_aspect("equal", adjustable="datalim")
+            axes = [place]
+        else:
+            heights = np.multiply(self.cameras.heights, share)
+            floors = 1 - (np.cumsum(heights) if columns == 1 else heights)
+            axes = [
+                place.add_axes((k % columns / columns, floors[k], 1 / columns, height))
+                for k, height in enumerate(heights)
+            ]
+        self.strips = tuple(Strip(ax, self, k) for k, ax in enumerate(axes))
+        self._cursors = self._add_panel(place, 1 - share) if self.panel else []
+        top = self.strips[columns - 1].ax
         self.clock = top.text(
             0.985, 0.95, "", transform=top.transAxes, ha="right", va="top",
             color=palette_of(top).ink,
@@ -142,21 +154,30 @@ class RollingAnimation(FuncAnimation):
     def __del__(self) -> None:
         """Do not warn, as matplotlib does, that the animation was never shown."""
 
-    def _axes(self, place: Figure | SubFigure | Axes) -> list[Axes]:
-        """Return the Axes of the strips: the given one, or new Axes stacked in a column."""
-        if isinstance(place, Axes):
-            place.set_aspect("equal", adjustable="datalim")
-            return [place]
-        floors = 1 - np.cumsum(self.cameras.heights)
-        return [
-            place.add_axes((0, floor, 1, share))
-            for floor, share in zip(floors, self.cameras.heights, strict=True)
+    def _add_panel(self, place: Any, height: float) -> list[Line2D]:
+        """Draw curves of the motions below the strips; return what marks the time on them."""
+        inches = np.array([place.bbox.width, place.bbox.height]) / _root(place).dpi
+        left, bottom = (0.7, 0.5) / inches
+        ax = place.add_axes((left, bottom, 0.97 - left, height - bottom - 0.3 / inches[1]))
+        ends = [min(self.last, float(motion.t[-1])) for motion in self.sources]
+        shown = [
+            motion.sol(even_times(0.0, end, 101))
+            for motion, end in zip(self.sources, ends, strict=True)
         ]
+        several: dict[str, Any] = {"ax": ax, "labels": self.labels if len(shown) > 1 else None}
+        if self.panel == "phase":
+            lines = plot_phase(shown, fold=True, **several).motions
+            return [ax.plot([], [], "o", ms=8, c=line.get_color(), mec="w")[0] for line in lines]
+        if self.panel == "forces":
+            plot_forces(shown, **several)
+        else:
+            plot_energy(shown, kind="energies", **several)
+        return [ax.axvline(0.0, color=palette_of(ax).ink, lw=1.5)]
 
     def _fit_captions(self) -> None:
         """Make captions small enough to leave room for the clock, but no smaller than a third."""
         self.clock.set_text(self._clock(float(self.t[-1])))
-        room = 0.92 * self.figure.bbox.width - self.clock.get_window_extent().width
+        room = 0.92 * self.strips[0].ax.bbox.width - self.clock.get_window_extent().width
         widest = max(strip.widest_caption() for strip in self.strips)
         size = float(self.clock.get_fontsize()) * min(1.0, max(1 / 3, room / max(widest, 1.0)))
         for strip in self.strips:
@@ -167,54 +188,87 @@ class RollingAnimation(FuncAnimation):
         if not 0 <= whole("i", i) < self.t.size:
             raise ValueError(f"i must be a frame, from 0 to {self.t.size - 1}, got {shown(i)}")
         self.clock.set_text(self._clock(float(self.t[i])))
-        return [self.clock, *(artist for strip in self.strips for artist in strip.draw(i))]
+        for cursor, motion in zip(self._cursors, self.motions, strict=False):
+            place = [self.t[i]] * 2, [0, 1]
+            if self.panel == "phase":
+                flat = flat_angle(self.motions[0].scene)
+                place = [folded(motion.theta[i], flat)], [motion.omega[i]]
+            cursor.set_data(*place)
+        strips = (artist for strip in self.strips for artist in strip.draw(i))
+        return [self.clock, *self._cursors, *strips]
 
     def _clock(self, t: float) -> str:
-        text = f"t = {t:.{self.decimals}f} s"
+        text = f"t = {t:.{self.pace.decimals}f} s"
         return text if self.speed == 1 else f"{text}   speed × {self.speed:g}"
+
+    def frame(self, t: float, path: str | PathLike[str]) -> None:
+        """Write the frame nearest to a time t [s] as a picture: .png, .pdf, .svg."""
+        if not 0 <= (t := number("t", t)) <= self.last:
+            raise ValueError(f"t must be within [0, {self.last:g}] s, got {t!r}")
+        self.draw(int(np.argmin(np.abs(self.t - t))))
+        with replacing(file_name("path", path)) as new:
+            _root(self.figure).savefig(new, dpi=_root(self.figure).dpi)
 
     def save(  # type: ignore[override]
         self,
         filename: str | PathLike[str],
         writer: AbstractMovieWriter | str | None = None,
         *,
-        progress: bool = False,
+        progress: bool | None = None,
         **options: Any,
     ) -> None:
-        """Write the file that the suffix names: .gif, .mp4 (needs ffmpeg) or .html (a player).
+        """Write the file of the suffix: .gif, .mp4 or .webm (need ffmpeg), .html (a player).
 
-        A file that is there is replaced only by a whole film. `writer` and `options` are
-        matplotlib's, for those who want another writer; a player has none.
+        A file that is there is replaced only by a whole film. `progress` is as in `animate`.
+        `writer` and `options` are matplotlib's, for those who want another writer.
         """
-        path = file_name("filename", filename)
-        progress = flag("progress", progress)
-        if writer is None and Path(path).suffix.lower() == ".html":
-            self._save_page(path, options)
+        path, count = file_name("filename", filename), self.t.size
+        if progress is None:  # 400 frames take two seconds
+            progress = count > 400 and sys.stderr is not None and sys.stderr.isatty()
+        if writer is None and options:
+            raise TypeError(f"options must be none without a writer, got {', '.join(options)}")
+        suffix = "" if writer is not None else film_suffix(path, self.fps, "filename")
+        if suffix == ".html":
+            page = self._page()
+            with replacing(path) as new:
+                new.write_text(page, encoding="utf-8")
             return
-        options = {"dpi": self.figure.dpi, **options}
-        with reporting(progress, "frames", path) as advance:
-            if progress:
-                options["progress_callback"] = lambda i, n: advance(i + 1, n)
+        with reporting(flag("progress", progress), "frames", path) as advance:
             if writer is not None:
+                options = {"dpi": self.figure.dpi, **options}
+                options["progress_callback"] = lambda i, n: advance(i + 1, n)
                 with _with_settings():
                     super().save(path, writer=_known(writer), **options)
                 return
-            chosen = movie_writer(path, self.fps, "filename")
-            self.draw(self.t.size - 1)  # the palette of a GIF is that of the last frame
-            with replacing(path) as film, explained(path):
-                super().save(str(film), writer=chosen, **options)
+            samples = np.array([each.copy() for each in self._pixels((0, count // 2, count - 1))])
+            frames = self._pixels(range(count), advance)
+            with replacing(path) as new:
+                if suffix == ".gif":
+                    write_gif(new, frames, self.fps, np.concatenate(samples))
+                else:
+                    write_video(new, frames, self.fps, samples.shape[2:0:-1], path)
 
-    def _save_page(self, path: str, options: dict[str, Any]) -> None:
-        """Write the page with the player."""
-        movie_writer(path, self.fps, "filename")
-        if options:
-            raise TypeError(
-                "options must be none for an .html without a writer of matplotlib's, got "
-                + ", ".join(options)
-            )
-        page = self._page()
-        with replacing(path) as new:
-            new.write_text(page, encoding="utf-8")
+    def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
+        """Yield the pixels of frames, in one buffer: what stands still is drawn once."""
+        root, still = _root(self.figure), BytesIO()
+        seen = [artist for artist in self.draw(frames[0]) if artist.get_visible()]
+        for artist in seen:
+            artist.set_visible(False)
+        root.savefig(still, format="rgba", dpi=root.dpi, bbox_inches=False)
+        for artist in seen:
+            artist.set_visible(True)
+        renderer: Any = RendererAgg(  # type: ignore[no-untyped-call]
+            int(root.bbox.width), int(root.bbox.height), root.dpi
+        )
+        pixels = np.asarray(renderer.buffer_rgba())
+        background = np.frombuffer(still.getvalue(), np.uint8).reshape(pixels.shape)
+        for i in frames:
+            pixels[:] = background
+            for artist in sorted(self.draw(i), key=Artist.get_zorder):
+                artist.draw(renderer)
+            yield pixels
+            if advance is not None:
+                advance(i + 1, len(frames))
 
     def __repr__(self) -> str:
         return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
@@ -247,12 +301,3 @@ def _known(writer: Any) -> AbstractMovieWriter | str:
     if not isinstance(writer, AbstractMovieWriter):
         raise TypeError(f"writer must be a matplotlib movie writer, got {shown(writer)}")
     return writer
-
-
-def _decimals(step: float) -> int:
-    """Return the decimals that show every multiple of a step [s] exactly, or its two digits."""
-    own = max(0, 1 - math.floor(math.log10(step)))
-    for digits in range(own + 3):
-        if math.isclose(step * 10**digits, max(1, round(step * 10**digits)), rel_tol=1e-9):
-            return digits
-    return own

@@ -1,4 +1,4 @@
-"""Writers of the files of animations."""
+"""The files of animations: which there are, and how pixels are written to them."""
 
 from __future__ import annotations
 
@@ -7,82 +7,68 @@ import importlib
 import importlib.util
 import math
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from io import BytesIO
+from collections.abc import Iterable
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
-from subprocess import CalledProcessError
-from typing import Any
+from subprocess import DEVNULL, PIPE, Popen, run
+from tempfile import TemporaryFile
 
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
-from matplotlib.figure import Figure
+import numpy as np
+from matplotlib.animation import FFMpegWriter
+from numpy.typing import NDArray
 from PIL import Image
 
 from ..._ask.check import file_name
 
-SUFFIXES = (".gif", ".mp4", ".html")
+Pixels = NDArray[np.uint8]  # a picture, (height, width, 4)
+ENCODERS = {  # of ffmpeg, with the options that make small files of good quality
+    ".mp4": ("h264",),
+    ".webm": ("libvpx-vp9", "-crf", "34", "-b:v", "0", "-deadline", "realtime", "-cpu-used", "6"),
+}
+SUFFIXES = (".gif", *ENCODERS, ".html")
 
 
-class _FilmWriter(AbstractMovieWriter):
-    """A writer that leaves matplotlib's settings alone, because all threads share them."""
+def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels) -> None:
+    """Write a GIF with exact delays and one palette for all `colours`: small files."""
+    delay = gif_delay(fps)
+    assert delay is not None
+    # maximum coverage keeps the colours of thin lines, and a mean of what is near those of areas
+    palette = Image.fromarray(colours).convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE, 1)
+    first, *rest = (  # all are kept with a palette: RGB takes three times the memory
+        Image.fromarray(pixels).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE)
+        for pixels in frames
+    )
+    first.save(path, save_all=True, append_images=rest, duration=10 * delay, loop=0)
 
-    @contextmanager
-    def saving(self, fig: Figure, outfile: Any, dpi: float | None, *args: Any) -> Iterator[Any]:
-        """Set the writer up, and finish also after an exception."""
-        self.setup(fig, outfile, dpi)
+
+def write_video(
+    path: Path, frames: Iterable[Pixels], fps: float, size: tuple[int, int], name: str
+) -> None:
+    """Write a video of pictures of a size (width, height) by ffmpeg; errors have its `name`."""
+    command = [
+        ffmpeg(), "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba",
+        "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.17g}", "-i", "-",
+        "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p",  # all players know it
+        "-c:v", *ENCODERS[path.suffix.lower()], str(path),
+    ]  # fmt: skip
+    with TemporaryFile() as said, Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said) as writer:
+        assert writer.stdin is not None
         try:
-            yield self
+            with suppress(BrokenPipeError):  # ffmpeg has ended, and said why
+                for pixels in frames:
+                    writer.stdin.write(pixels.data)
+        except BaseException:
+            writer.kill()
+            raise
         finally:
-            self.finish()
-
-    def _write_frame(self, to: Any, options: dict[str, Any]) -> None:
-        """Write the pixels of the whole figure, whatever "savefig.bbox" says."""
-        self.fig.savefig(to, format="rgba", dpi=self.dpi, bbox_inches=False, **options)
-
-
-class GifWriter(_FilmWriter, PillowWriter):
-    """A writer of GIFs with exact delays and one palette, much smaller than matplotlib's.
-
-    The palette is that of the figure before the first frame is drawn. It should then show the last
-    frame, which has every colour.
-    """
-
-    _frames: list[Image.Image]
-
-    def setup(self, fig: Figure, outfile: Any, dpi: float | None = None) -> None:
-        super().setup(fig, outfile, dpi)
-        # maximum coverage keeps the colours of thin lines
-        self._palette = self._picture({}).quantize(64, Image.Quantize.MAXCOVERAGE)
-
-    def grab_frame(self, **options: Any) -> None:
-        frame = self._picture(options)  # kept with a palette: RGB takes three times the memory
-        self._frames.append(frame.quantize(palette=self._palette, dither=Image.Dither.NONE))
-
-    def _picture(self, options: dict[str, Any]) -> Image.Image:
-        pixels = BytesIO()
-        self._write_frame(pixels, options)
-        return Image.frombytes("RGBA", self.frame_size, pixels.getvalue()).convert("RGB")
-
-    def finish(self) -> None:
-        if not self._frames:  # matplotlib finishes also after an interrupt before the first frame
-            return
-        first, *rest = self._frames
-        delay = gif_delay(self.fps)
-        assert delay is not None
-        first.save(self.outfile, save_all=True, append_images=rest, duration=10 * delay, loop=0)
-
-
-class Mp4Writer(_FilmWriter, FFMpegWriter):
-    """Matplotlib's writer, with the program of `ffmpeg`."""
-
-    @classmethod
-    def bin_path(cls) -> str:
-        return ffmpeg()
-
-    def grab_frame(self, **options: Any) -> None:
-        self.fig.set_size_inches(self._w, self._h)  # type: ignore[attr-defined]
-        self._write_frame(self._proc.stdin, options)  # type: ignore[attr-defined]
+            with suppress(BrokenPipeError):
+                writer.stdin.close()
+        if writer.wait() != 0:
+            said.seek(0)
+            why = said.read().decode(errors="replace").strip().splitlines()
+            code = f"exit code {writer.returncode}"
+            raise OSError(f"ffmpeg could not write {name!r}: {why[-1] if why else code}")
 
 
 def gif_delay(fps: float) -> int | None:
@@ -94,10 +80,8 @@ def gif_delay(fps: float) -> int | None:
     return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
 
 
-def movie_writer(
-    path: str | PathLike[str], fps: float, argument: str = "path"
-) -> AbstractMovieWriter | None:
-    """Return the writer of a file by its suffix; None for an .html, whose player needs none.
+def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -> str:
+    """Return the suffix of a file, which names its format.
 
     It raises the errors of `animate` about the file before anything is written.
     """
@@ -105,35 +89,29 @@ def movie_writer(
     suffix = target.suffix.lower()
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
-    if suffix in SUFFIXES and not target.parent.is_dir():
+    if suffix not in SUFFIXES:
+        raise ValueError(
+            f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}"
+        )
+    if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder to write to", str(target))
-    if suffix == ".gif":
-        if gif_delay(fps) is None:
-            delay = min(max(2, round(100 / fps)), 2**16 - 1)
-            raise ValueError(
-                "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
-                f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
-            )
-        return GifWriter(fps=fps)  # type: ignore[arg-type]
-    if suffix == ".mp4":
-        ffmpeg()  # raises if there is none
-        return Mp4Writer(fps=fps)  # type: ignore[arg-type]
-    if suffix == ".html":
-        return None
-    raise ValueError(f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}")
-
-
-@contextmanager
-def explained(path: str) -> Iterator[None]:
-    """Turn a failure of ffmpeg into an OSError with the name of the file."""
-    try:
-        yield
-    except CalledProcessError as error:
-        stopped = error.__context__  # an exception, such as Ctrl-C, that stopped matplotlib
-        if stopped is not None and not isinstance(stopped, OSError):
-            raise stopped from None
-        why = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
-        raise OSError(f"ffmpeg could not write {path!r}: {why[-1]}") from error
+    if suffix == ".gif" and gif_delay(fps) is None:
+        delay = min(max(2, round(100 / fps)), 2**16 - 1)
+        raise ValueError(
+            "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
+            f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
+        )
+    program = ffmpeg() if suffix in ENCODERS else ""
+    if (
+        suffix == ".webm"
+        and (encoder := ENCODERS[suffix][0])
+        not in run([program, "-encoders"], capture_output=True, text=True).stdout
+    ):
+        raise ValueError(
+            f"{argument} must end in one of .gif, .mp4, .html, as ffmpeg has no encoder {encoder}, "
+            f"got {str(target)!r}"
+        )
+    return suffix
 
 
 def ffmpeg() -> str:
@@ -144,5 +122,5 @@ def ffmpeg() -> str:
     if FFMpegWriter.isAvailable():
         return FFMpegWriter.bin_path()
     raise FileNotFoundError(
-        "an .mp4 needs ffmpeg: pip install 'rolling_ellipse[video]', or write a .gif"
+        "a video needs ffmpeg: pip install 'rolling_ellipse[video]', or write a .gif"
     )

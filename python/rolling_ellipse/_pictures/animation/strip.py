@@ -12,52 +12,35 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 
-from ..._ask.check import FloatArray
 from ..._core import Mode
-from ..._motion.trajectory import Trajectory
 from ...geometry import support
 from .. import ground as drawing
 from ..ground import SKID
-from ..palette import Palette, palette_of
+from ..palette import palette_of
+
+FADES = 1.2  # a blow is seen for so long [s of film]
 
 
 class Strip:
     """The body of one motion on its ground, frame by frame.
 
-    Frame i shows sample i of the motion, with the clock at `times[i]` [s] (a motion that ends
-    earlier stays at its last sample) and left, right, bottom and top of `views[i]` [m]. If
-    `show_place`, the caption has the place of the body.
+    It is strip k of a `film`, a RollingAnimation. Frame i shows sample i of the motion (one that
+    ends earlier than the film stays at its last sample); traces begin with its part of the film.
 
     The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
     theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
     ground axes: x along the ground, z normal to it [m]. `contact` marks the place where the body
     touches. While the body slides, `slip` is there too and points to the direction of sliding. In
     flight neither is seen, but the `shadow` below the body. `ruler` has the ticks of the ground and
-    their figures, `caption` the name of the motion and remarks on this frame.
+    their figures, `caption` the name of the motion and remarks on this frame. `arrows` are N, F
+    (the weight is as long as the longer semi-axis) and the blow, as far as the film has them.
     """
 
-    shadow: Line2D
-    skid_trace: Line2D
-    tip_trace: Line2D
-    centre_trace: Line2D
-    axis_a: Line2D
-    axis_b: Line2D
-    tip: Line2D
-    contact: Line2D
-    slip: Line2D
-
-    def __init__(
-        self,
-        ax: Axes,
-        motion: Trajectory,
-        times: FloatArray,
-        views: FloatArray,
-        label: str,
-        show_place: bool,
-    ) -> None:
-        self.ax, self.motion = ax, motion
-        self._times, self._views = times, views
-        self._label, self._show_place = label, show_place
+    def __init__(self, ax: Axes, film: Any, k: int) -> None:
+        self.ax, self.motion, self._source = ax, film.motions[k], film.sources[k]
+        self._film, self._label, self._views = film, film.labels[k], film.cameras.views[k]
+        self._stands, motion = film.cameras.follows == "nothing", self.motion
+        self._turns = self._source.sol([min(film.last, self._source.t[-1])]).turns[0]
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
         self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
         self._build()
@@ -77,9 +60,26 @@ class Strip:
         )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
-        for name, properties in _properties(palette).items():
-            setattr(self, name, ax.plot([], [], transform=on_slope, **properties)[0])
-        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=palette.ink)
+        ink, paper, blue, plum = palette.ink, palette.background, palette.blue, palette.plum
+
+        def line(zorder: int, color: str, lw: float = 1.2, **properties: Any) -> Line2D:
+            properties |= {"zorder": zorder, "color": color, "lw": lw, "transform": on_slope}
+            return ax.plot([], [], **properties)[0]
+
+        self.shadow = line(2, palette.grey, 5, solid_capstyle="round")
+        self.skid_trace = line(2, plum, SKID["lw"], alpha=SKID["alpha"], solid_capstyle="butt")
+        self.tip_trace = line(3, blue, 1, alpha=0.6)
+        self.centre_trace = line(5, palette.orange, 1.8)
+        self.axis_a, self.axis_b = line(5, ink), line(5, ink, ls=(0, (4, 3)))
+        self.tip = line(6, blue, marker="o", ms=6)
+        self.contact = line(7, ink, ls="none", marker="o", ms=6, mfc=paper, mew=1.5)
+        self.slip = line(8, plum, ls="none", ms=11, mec=paper, mew=0.8)
+        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=ink)
+        self.arrows = ax.quiver(
+            *np.zeros((4, 3)), color=plum, zorder=9, angles="xy", scale_units="xy", scale=1,
+            units="dots", width=0.035 * ax.figure.dpi,
+        )  # fmt: skip
+        self.names = [ax.text(0, 0, "", color=plum, zorder=9, clip_on=True) for _ in range(3)]
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
@@ -91,23 +91,56 @@ class Strip:
         along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
         self.axis_a.set_data(x + along * cosine, z - along * sine)
         self.axis_b.set_data(x + across * sine, z + across * cosine)
-        here, past = slice(i, i + 1), slice(None, i + 1)
+        here, past = slice(i, i + 1), slice(int(self._film.pace.first[i]), i + 1)
         self.tip.set_data(self._tip[0][here], self._tip[1][here])
         self.contact.set_data(self._contact[0][here], self._contact[1][here])
         self.slip.set_data(self._skids[0][here], self._skids[1][here])
-        self.slip.set_marker(self._arrow(float(self._slip[i])))
+        if motion.mode[i] == Mode.SLIDING:
+            self.slip.set_marker(self._arrow(float(self._slip[i])))
         self.shadow.set_data(*self._shadow(i))
+        self._point(i)
         self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
         self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
         self.centre_trace.set_data(motion.x[past], motion.z[past])
         self.caption.set_text(self._caption(i))
         left, right, bottom, top = self._views[i]
         middle = np.array([(left + right) / 2, (bottom + top) / 2])
-        self.ruler.move(float(drawing.tilted(scene).inverted().transform(middle)[0]))
-        self.ax.set(xlim=(left, right), ylim=(bottom, top))
-        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
-                self.shadow, self.tip_trace, self.centre_trace, self.skid_trace,
-                self.caption]  # fmt: skip
+        if not self._stands or not self.ruler.labels[0].get_text():
+            self.ruler.move(float(drawing.tilted(scene).inverted().transform(middle)[0]))
+            self.ax.set(xlim=(left, right), ylim=(bottom, top))
+            self.ax.apply_aspect()
+        ground = [] if self._stands else [self.ruler.ticks, *self.ruler.labels]
+        return [*ground, self.shadow, self.skid_trace, self.tip_trace, self.body, self.centre_trace,
+                self.axis_a, self.axis_b, self.tip, self.contact, self.slip, self.caption,
+                self.arrows, *self.names]  # fmt: skip
+
+    def _point(self, i: int) -> None:
+        """Let the arrows show the forces of the ground, and the blow while it fades."""
+        motion, scene, blow = self.motion, self.motion.scene, self.motion.scene.impulse
+        size, texts = max(scene.a, scene.b), ["", "", ""]
+        begins, arrows = np.zeros((3, 2)), np.zeros((3, 2))
+        if self._film.forces and motion.mode[i] != Mode.FLIGHT:
+            forces = np.array([motion.normal_force[i], motion.friction_force[i]])
+            N, F = np.clip(forces / (scene.mass * scene.gravity), -3, 3) * size
+            begins[:2, 0], arrows[0, 1], arrows[1, 0] = motion.contact_x[i], N, F
+            texts[:2] = "N", "F" if F else ""
+        fresh = max(0.0, 1 - self._film.t[i] / self._film.speed / FADES)
+        if (
+            self._film.blow
+            and blow is not None
+            and fresh
+            and (strength := np.hypot(blow.jx, blow.jz))
+        ):
+            start, texts[2] = self._source.sol([0.0]), f"  {strength:.3g} N s"
+            arrows[2] = np.array([blow.jx, blow.jz]) * 0.9 * size / strength
+            begins[2] = np.array([start.x[0] + blow.dx, start.z[0] + blow.dz]) - arrows[2]
+        seen = drawing.tilted(scene).transform
+        self.arrows.set_offsets(seen(begins))
+        self.arrows.set_UVC(*seen(arrows).T)
+        self.arrows.set_alpha([1, 1, fresh])
+        places = seen(begins + [[1], [1], [0]] * arrows)  # ends of forces, beginning of the blow
+        for name, text, place, alpha in zip(self.names, texts, places, (1, 1, fresh), strict=True):
+            name.set(text=text, position=place, alpha=alpha)
 
     def _arrow(self, slip: float) -> MarkerStyle:
         """Return a triangle that points along the ground in the direction of the slip."""
@@ -124,40 +157,23 @@ class Strip:
 
     def widest_caption(self) -> float:
         """Return the width of the longest caption of all frames [pixels]."""
-        captions = (self._caption(i) for i in range(self._times.size))
+        captions = (self._caption(i) for i in range(self._film.t.size))
         self.caption.set_text(max(captions, key=len))
         return float(self.caption.get_window_extent().width)
 
     def _caption(self, i: int) -> str:
         motion, parts = self.motion, [self._label] if self._label else []
-        if self._show_place:
+        if self._film.cameras.follows == "own":
             size = max(motion.scene.a, motion.scene.b)
             digits = max(0, 1 - math.floor(math.log10(size)))
             parts.append(f"x = {motion.x[i]:.{digits}f} m".replace("-", "−"))
+        if len(self._film.pace.parts) > 1:
+            turn, turns = (max(1, math.ceil(abs(n) - 1e-6)) for n in (motion.turns[i], self._turns))
+            parts.append(f"turn {turn} of {turns}")
         if motion.mode[i] in (Mode.SLIDING, Mode.FLIGHT):
             parts.append("slides" if motion.mode[i] == Mode.SLIDING else "flies")
         if motion.t[i] >= motion.valid_until:
             parts.append("rolling is no longer valid")
-        if motion.t[i] < self._times[i]:
+        if motion.t[i] < self._film.t[i]:
             parts.append(f"ended at {motion.t[i]:g} s")
         return "   ".join(parts)
-
-
-def _properties(palette: Palette) -> dict[str, dict[str, Any]]:
-    """Return the properties of the moving artists by name."""
-    ink, paper = palette.ink, palette.background
-    return {
-        "shadow": {"zorder": 2, "color": palette.grey, "lw": 5, "solid_capstyle": "round"},
-        "skid_trace": {"zorder": 2, **SKID, "color": palette.plum},
-        "tip_trace": {"zorder": 3, "color": palette.blue, "lw": 1, "alpha": 0.6},
-        "centre_trace": {"zorder": 5, "color": palette.orange, "lw": 1.8},
-        "axis_a": {"zorder": 5, "color": ink, "lw": 1.2},
-        "axis_b": {"zorder": 5, "color": ink, "lw": 1.2, "ls": (0, (4, 3))},
-        "tip": {"zorder": 6, "color": palette.blue, "marker": "o", "ms": 6},
-        "contact": {
-            "zorder": 7, "ls": "none", "marker": "o", "ms": 6, "mfc": paper, "mec": ink, "mew": 1.5,
-        },
-        "slip": {
-            "zorder": 8, "ls": "none", "ms": 11, "mfc": palette.plum, "mec": paper, "mew": 0.8,
-        },
-    }  # fmt: skip
