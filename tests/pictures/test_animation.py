@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from matplotlib.animation import HTMLWriter
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracles.pages import carried
@@ -171,61 +170,49 @@ def test_the_ground_is_ruled_where_the_body_is() -> None:
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.report, rl.scenes.slope, rl.scenes.drop])
-def test_arrows_are_the_forces_of_the_ground(scene: rl.Scene) -> None:
+def test_arrows_are_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> None:
     film = rl.animate(rl.simulate(scene, 1.5), forces=True, blow=True, fps=25)
-    strip, weight = only(film), scene.mass * scene.gravity
-    cosine, sine = math.cos(scene.slope), math.sin(scene.slope)
-    tilt = np.array([[cosine, sine], [-sine, cosine]])
+    strip, weight, turn = only(film), scene.mass * scene.gravity, np.exp(-1j * scene.slope)
     for i in frames(film):
         film.draw(i)
-        at, (normal, friction, blow) = (
-            strip.motion,
-            np.array([strip.arrows.U, strip.arrows.V]).T @ tilt,
-        )
+        at, arrows, feet = strip.motion, strip.arrows, np.array(strip.arrows.get_offsets())
         N, F = (2 * np.clip(f[i] / weight, -3, 3) for f in (at.normal_force, at.friction_force))
-        assert normal == pytest.approx([0, N], abs=1e-9) and friction == pytest.approx(
-            [F, 0], abs=1e-9
-        )
         fresh = scene.impulse is not None and film.t[i] < 1.2
-        assert blow == pytest.approx([0, -1.8 if fresh else 0], abs=1e-12)
+        vectors = np.array([1j * N, F, -1.8j if fresh else 0])  # x + iz, turned down the slope
+        seen = arrows.U + 1j * arrows.V
+        assert seen == pytest.approx(turn * vectors, abs=1e-9)
         assert strip.names[2].get_text() == ("  48 N s" if fresh else "")
         if N:
-            foot = np.array(strip.arrows.get_offsets())[0] @ tilt
-            assert foot == pytest.approx([at.contact_x[i], 0], abs=1e-9)
+            assert feet[0] @ [1, 1j] == pytest.approx(turn * at.contact_x[i], abs=1e-9)
 
 
 @pytest.mark.parametrize("panel", ["phase", "forces", "energy"])
 def test_a_panel_runs_along_below_strips_side_by_side(report: rl.Trajectory, panel: Any) -> None:
-    other = rl.simulate(rl.scenes.rocking, 6.0)
-    film = rl.animate([report, other], layout="side by side", panel=panel, width=320)
+    motions = [report, rl.simulate(rl.scenes.rocking, 6.0)]
+    film = rl.animate(motions, layout="side by side", panel=panel, width=320)
     boxes = [strip.ax.get_position().bounds for strip in film.strips]
     assert [box[0] for box in boxes] == [0, 0.5] and boxes[0][1:] == boxes[1][1:]
-    assert film.clock.axes is film.strips[1].ax and boxes[0][1] > 0.4
     below: Any = film.figure.axes[-1]
     drawn = film.draw(200)
-    marks = [line for line in below.lines if line in drawn]
+    marks = [np.asarray(line.get_xydata()) for line in below.lines if line in drawn]
     if panel != "phase":
-        assert [np.asarray(mark.get_xdata()).tolist() for mark in marks] == [[4.0, 4.0]]
+        assert [mark[:, 0].tolist() for mark in marks] == [[4.0, 4.0]]
         return
-    curves = [line for line in below.lines if len(line.get_xdata()) > 50]
-    for mark, motion, curve in zip(marks, (report, other), curves, strict=False):
-        at, (theta, omega) = motion.at(4.0), mark.get_data()
-        assert omega[0] == pytest.approx(at.omega) and abs(theta[0]) <= math.pi / 2
-        assert math.sin(2 * theta[0]) == pytest.approx(math.sin(2 * at.theta), abs=1e-12)
-        gaps = np.hypot(curve.get_xdata() - theta[0], curve.get_ydata() - omega[0])
-        assert np.nanmin(gaps) < 0.1  # it lies on the curve, whose points are so near
+    curves = [line.get_xydata() for line in below.lines if len(line.get_xdata()) > 50]
+    for ((theta, omega),), motion, curve in zip(marks, motions, curves, strict=False):
+        at = motion.at(4.0)
+        assert omega == pytest.approx(at.omega) and abs(theta) <= math.pi / 2
+        assert math.sin(2 * theta) == pytest.approx(math.sin(2 * at.theta), abs=1e-12)
+        assert np.nanmin(np.hypot(*(curve - [theta, omega]).T)) < 0.1  # on points of its curve
 
 
-@pytest.mark.parametrize(
-    "motion", [rl.simulate(rl.scenes.slope, 20.0), rl.simulate(rl.scenes.drop, 1.0)]
-)
-def test_written_frames_are_those_of_matplotlib(motion: rl.Trajectory, tmp_path: Path) -> None:
+@pytest.mark.parametrize("scene", [rl.scenes.slope, rl.scenes.drop])
+def test_written_frames_are_those_of_matplotlib(scene: rl.Scene, tmp_path: Path) -> None:
     """What stands still is drawn once, and what moves over it, with the same pixels."""
-    film = rl.animate(motion, forces=True, width=320, fps=10)
+    film = rl.animate(rl.simulate(scene, 20.0), forces=True, width=320, fps=10)
     for i, pixels in zip((3, 9), film._pixels((3, 9)), strict=True):
         film.frame(float(film.t[i]) + 1e-3, tmp_path / "frame.png")
-        whole = np.asarray(Image.open(tmp_path / "frame.png"))
-        assert np.array_equal(whole, pixels)
+        assert np.array_equal(np.asarray(Image.open(tmp_path / "frame.png")), pixels)
         assert film.clock.get_text() == f"t = {i / 10:.1f} s"
 
 
@@ -261,28 +248,14 @@ def gif_frames(data: bytes) -> tuple[list[np.ndarray], list[int]]:
 def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) -> None:
     short.save(tmp_path / "roll.gif")
     pictures, _ = gif_frames((tmp_path / "roll.gif").read_bytes())
-    drawn = []
-    for i in frames(short):
-        short.draw(i)
-        buffer = io.BytesIO()
-        short.figure.savefig(buffer, format="png", dpi=short.figure.dpi)
-        drawn.append(np.asarray(Image.open(buffer).convert("RGB"), float))
+    drawn = np.array([pixels[..., :3].astype(float) for pixels in short._pixels(frames(short))])
     for i, picture in enumerate(pictures):
-        difference = [np.abs(picture - other).mean() for other in drawn]
+        difference = np.abs(drawn - picture).mean(axis=(1, 2, 3))
         assert np.argmin(difference) == i
         assert difference[i] < 2  # rounding of the palette, of 255
     # the thin line itself, not its average
     orange = 255 * np.array(to_rgb(only(short).centre_trace.get_color()))
     assert np.abs(pictures[-1] - orange).max(axis=2).min() < 20
-
-
-def test_gif_of_ten_seconds_is_small(tmp_path: Path) -> None:
-    path = tmp_path / "roll.gif"
-    rl.animate(rl.simulate(rl.scenes.report, 60.0), path, t_end=9.96, fps=25)
-    with Image.open(path) as gif:
-        assert frames_of(gif) == 250
-        assert gif.size[0] == 640
-    assert path.stat().st_size < 1.5e6
 
 
 def test_html_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -> None:
@@ -419,27 +392,23 @@ LONG = {
 
 
 @pytest.mark.parametrize("name", LONG)
-def test_a_long_film_shows_parts_of_the_motion_as_they_are(name: str, tmp_path: Path) -> None:
+def test_a_long_film_shows_parts_of_the_motion_as_they_are(name: str) -> None:
     """Beginning, middle, end, and events, at the time on the clock; never rolling backwards."""
     motion, places = LONG[name]
     film = rl.animate(motion, width=64)
-    strip, last = only(film), motion.t_end
-    span = 12 * film.speed  # of the five parts of a minute
+    strip, last, span = only(film), motion.t_end, 12 * film.speed  # of five parts of a minute
     begins = np.flatnonzero(np.diff(film.pace.first, prepend=-1))
     assert film.t[begins] / (last - span) == pytest.approx(places, abs=0.01)
     assert film.speed <= 1 and film.t[-1] == pytest.approx(last, abs=film.speed / film.fps)
-    inside = np.setdiff1d(np.arange(1, film.t.size), begins)
-    assert np.abs(np.diff(strip.motion.theta))[inside - 1].max() <= math.pi / 2
-    for i in np.random.default_rng(1).integers(0, film.t.size, 40):
-        film.draw(int(i))
-        printed = re.match(r"t = ([0-9.]+) s", film.clock.get_text())
-        assert printed
-        at = motion.sol(min(float(printed[1]), last))
+    assert np.abs(np.delete(np.diff(strip.motion.theta), begins[1:] - 1)).max() <= math.pi / 2
+    for i in np.random.default_rng(1).integers(0, film.t.size, 40).tolist():
+        film.draw(i)
+        at = motion.sol(min(float(film.clock.get_text().split()[2]), last))
         assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-12, abs=1e-9)
-        turns = re.match(r"turn (\d+) of", strip.caption.get_text())
-        assert turns and abs(int(turns[1]) - abs(at.turns[0]) - 0.5) <= 0.5 + 1e-5 + (i == 0)
+        turn = int(strip.caption.get_text().split()[1])
+        assert turn - 1 - 1e-5 <= abs(at.turns[0]) <= turn + 1e-5
         trace = np.asarray(strip.centre_trace.get_xdata())
-        assert trace[0] == strip.motion.x[film.pace.first[i]] and trace[-1] == strip.motion.x[i]
+        assert trace[[0, -1]].tolist() == strip.motion.x[[film.pace.first[i], i]].tolist()
     (data,) = carried(film._repr_html_())["strips"]
     assert len(data["track"]["starts"]) == len(places)
 
@@ -535,12 +504,6 @@ def test_a_page_leaves_nothing_to_collect(report: rl.Trajectory, tmp_path: Path)
         gc.enable()
 
 
-def pixels(film: RollingAnimation) -> Any:
-    canvas = FigureCanvasAgg(only(film).ax.get_figure(root=True))
-    canvas.draw()
-    return np.array(canvas.buffer_rgba())
-
-
 def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
     report: rl.Trajectory, tmp_path: Path
 ) -> None:
@@ -549,10 +512,10 @@ def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
     drawn = rl.animate(report, width=200, fps=60)
     assert not hasattr(page, "no_such_name")
     for film in (page, drawn):
-        film.draw(7)
         assert only(film).ax.figure is film.figure
         assert vars(film.figure)["_rolling_animation"] is film
-    assert np.array_equal(pixels(page), pixels(drawn))
+    (one,), (other,) = page._pixels((7,)), drawn._pixels((7,))
+    assert np.array_equal(one, other)
 
 
 def test_a_page_whose_picture_fails_tries_again(

@@ -12,12 +12,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.animation import FFMpegWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from oracles.pictures import frames_of
-from PIL import Image
-from rolling_ellipse._pictures.animation import movies as movies
 
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
 CURVES = [
@@ -74,18 +71,6 @@ def test_a_motion_of_next_to_no_time(units: int) -> None:
     assert rl.animate(motion)._repr_html_() and motion._repr_html_()
 
 
-def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
-    (tmp_path / "folder.gif").mkdir()
-    monkeypatch.setattr(rl.Trajectory, "sol", None)  # the path is checked before any work
-    for name in ("", "roll\0.gif"):
-        with pytest.raises(ValueError, match=r"^path must name a file, got"):
-            rl.animate(MOTION, name)
-    with pytest.raises(IsADirectoryError, match=r"folder\.gif"):
-        rl.animate(MOTION, tmp_path / "folder.gif")
-    with pytest.raises(FileNotFoundError, match=r"no such folder.*no/roll\.gif"):
-        rl.animate(MOTION, tmp_path / "no" / "roll.gif")
-
-
 @pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "ä.html"])
 def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
@@ -118,20 +103,6 @@ def test_an_old_film_stays_until_the_new_one_is_whole(
     assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
 
 
-def test_an_ffmpeg_that_fails(tmp_path: Path, monkeypatch: Any) -> None:
-    path = tmp_path / "roll.mp4"
-    path.write_bytes(b"old")
-    program = tmp_path / "ffmpeg"
-    program.write_text(
-        "#!/bin/sh\ncat > /dev/null\necho first >&2\necho disk is full >&2\nexit 1\n"
-    )
-    program.chmod(0o755)
-    monkeypatch.setattr(movies, "ffmpeg", lambda: str(program))
-    with pytest.raises(OSError, match=r"^ffmpeg could not write '.*roll\.mp4': disk is full$"):
-        rl.animate(MOTION, path, **SMALL)
-    assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 2
-
-
 def test_an_extra_without_a_program(monkeypatch: Any) -> None:
     """imageio_ffmpeg raises a RuntimeError if it has no program for this machine."""
     imageio = pytest.importorskip("imageio_ffmpeg")
@@ -143,13 +114,6 @@ def test_an_extra_without_a_program(monkeypatch: Any) -> None:
     monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
     with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
         rl.animate(MOTION, "roll.mp4")
-
-
-def test_writers_of_ones_own(tmp_path: Path) -> None:
-    film = rl.animate(MOTION, **SMALL)
-    film.save(tmp_path / "roll.gif", PillowWriter(fps=5))
-    with Image.open(tmp_path / "roll.gif") as picture:
-        assert frames_of(picture) == film.t.size
 
 
 @pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])

@@ -14,7 +14,7 @@ import rolling_ellipse as rl
 from oracles.pages import carried
 from oracles.pictures import ORDINARY_SCENES
 from rolling_ellipse._player.page import fragment
-from rolling_ellipse._player.tracks import columns, packed, sample_times, track
+from rolling_ellipse._player.tracks import packed, sample_times, track
 
 SCENES = {
     **ORDINARY_SCENES,
@@ -119,12 +119,6 @@ def test_packing_takes_few_bytes_where_that_is_enough() -> None:
     values = np.linspace(-3.0, 5.0, 100)
     sizes = [len(packed(values, error)["data"]) for error in (1e-3, 1e-6, 0.0)]
     assert sizes == [268, 536, 1068]  # two, four and eight bytes a value, times 4/3 for base64
-
-
-def test_columns_of_several_motions_follow_each_other() -> None:
-    one, other = (rl.simulate(scene, 1.0) for scene in (rl.scenes.report, rl.scenes.report))
-    parts = [one.sol([0.0, 0.5]), other.sol([0.0, 0.2, 1.0])]
-    assert unpacked(columns(parts, 1e-3)["t"]) == pytest.approx([0, 0.5, 0, 0.2, 1.0], abs=1e-3)
 
 
 def test_forces_that_are_not_finite_are_refused() -> None:
