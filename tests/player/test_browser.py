@@ -153,8 +153,9 @@ def test_the_check_of_pixels_sees_two_pixels(opened: Opened) -> None:
     assert seen[0] - (x + 2) == pytest.approx(-2, abs=1)
 
 
-def test_several_motions_run_on_one_clock(opened: Opened) -> None:
-    page = opened(film(rl.scenes.report, rl.scenes.rocking, rl.scenes.drop))
+@pytest.mark.parametrize(("layout", "along"), [("over", "py"), ("side by side", "px")])
+def test_several_motions_run_on_one_clock(opened: Opened, layout: str, along: str) -> None:
+    page = opened(film(rl.scenes.report, rl.scenes.rocking, rl.scenes.drop, layout=layout))
     page.wait_for_function(f"{HOST}.player.t > 0.1")
     told(page, "player => player.stepTo(2.5)")
     bodies = told(page, "player => player.state().bodies")
@@ -162,8 +163,8 @@ def test_several_motions_run_on_one_clock(opened: Opened) -> None:
                            strict=True):  # fmt: skip
         at = rl.simulate(scene, 4.0).sol(2.5)
         assert (body["t"], body["x"]) == pytest.approx((2.5, float(at.x[0])), abs=3e-3)
-    heights = [body["py"] for body in bodies]
-    assert heights == sorted(heights)
+    places = [body[along] for body in bodies]
+    assert places == sorted(places)
 
 
 def test_players_on_one_page_do_not_meddle(opened: Opened) -> None:
@@ -184,6 +185,7 @@ def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> Non
     page.keyboard.press("End")
     assert told(page, "player => player.t") == 0
     page.locator(".player").focus()
+    page.evaluate("void (document.onkeydown = ({ key }) => document.title += key)")
     frame = 1 / 50
     for key, t in (("End", 4.0), ("ArrowLeft", 4 - frame), ("Home", 0.0), ("ArrowRight", frame),
                    ("ArrowUp", 11 * frame), ("ArrowDown", frame)):  # fmt: skip
@@ -197,6 +199,11 @@ def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> Non
     page.wait_for_function(f"{HOST}.player.t > 0.1")
     page.keyboard.press("Space")
     assert not told(page, "player => player.playing")
+    page.keyboard.press("d")
+    assert page.title() == "An ellipse in motion"  # a notebook around it would obey, too
+    assert page.locator("[data-lm-suppress-shortcuts]").count() == 1
+    page.keyboard.press("Home")
+    assert told(page, "p => p.canvas.getAttribute('aria-label')") == "x = 0 m, θ = 0 rad"
 
 
 def test_the_slider_seeks_and_events_are_marked_on_it(opened: Opened) -> None:

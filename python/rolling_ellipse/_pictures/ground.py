@@ -110,6 +110,7 @@ class Ruler:
         steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._fifths = math.ceil(span / (5 * self.step))
+        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
         grey = palette_of(ax).grey
         self.ticks = LineCollection([], colors=grey, lw=1, transform=on_slope, zorder=2)
         ax.add_artist(self.ticks)
@@ -132,4 +133,5 @@ class Ruler:
         self.ticks.set_segments(list(np.stack([top, bottom], axis=1)))
         for label, place in zip(self.labels, places[::5], strict=True):
             label.set_position((place, -2.2 * self._depth))
+            label.set_visible(abs(place - x) < self._seen)
             label.set_text(f"{place:.10g} m".replace("-", "−"))

@@ -47,13 +47,11 @@ def animate(
 ) -> RollingAnimation:
     """Make a moving picture in true time: frame i shows t = i · speed / fps and lasts 1 / fps.
 
-    The body of each frame is that of the motion at the time on the clock. Where the film would last
-    more than a minute (30 s for a GIF, whose frames are all held in memory), it is shown faster
-    than life, by the least of 2, 5, 10, 20, … that makes it short enough, and the clock says by how
-    much. Where one could not follow that, the film shows up to five parts of the motion in life's
-    time instead: beginning, end and middle, the first and the last event between them. The clock
-    then counts parts, the captions turns. A body that would turn by more than a quarter turn in a
-    frame, and seem to roll backwards, is shown in slow motion.
+    The body is always where the motion has it at the time on the clock. A film that would last more
+    than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts of
+    the motion in life's time: beginning, end and middle, the first and the last event between them;
+    captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
+    turn in a frame, and seem to roll backwards, is shown in slow motion, and the clock says so.
 
     Several motions are shown in strips over one another or side by side: one clock, one scale, and
     the same stretch of ground, so that one sees which is ahead. The camera stands still where all
@@ -80,8 +78,7 @@ def animate(
         The player shows every time that the screen asks for; there a frame is what its keys step
         by.
     speed : float, optional
-        Seconds of motion in a second of film, of which all is then shown; 0.1 is slow motion.
-        Without it 1, or as above.
+        Seconds of motion in a second of film, which then shows all of it; 0.1 is slow motion.
     max_frames : int, optional
         Most frames that may be made, at most a million; a film of more is refused.
     width : int
@@ -94,18 +91,16 @@ def animate(
     ax : matplotlib Axes, optional
         Where to draw one motion, instead of `figure`.
     forces : bool
-        Draw normal force and friction as arrows; the weight is as long as the longer semi-axis. The
-        player has a button for it.
+        Draw normal force and friction; the weight is as long as the longer semi-axis.
     blow : bool
-        Draw the impulse of the scene for the first 1.2 s of the film. The player always does.
+        Draw the impulse of the scene for the first 1.2 s. The player always does.
     layout : {"over", "side by side"}
         How the strips of several motions stand.
     panel : {"phase", "forces", "energy"}, optional
-        Draw these curves below, with a mark that runs along. Such a film has no player: a notebook
-        shows it as matplotlib does.
+        Draw these curves below, with a mark that runs along. A player has no panel.
     progress : bool, optional
         Show how far the writing has come (with tqdm where it is installed); without it, on a
-        terminal from the third second on.
+        terminal, of films of more than 400 frames, which take seconds.
 
     Returns
     -------
@@ -135,8 +130,7 @@ def animate(
         "beside": choice("layout", layout, LAYOUTS) == LAYOUTS[1],
         "panel": None if panel is None else choice("panel", panel, PANELS),
     }
-    if progress is not None:
-        progress = flag("progress", progress)
+    progress = progress if progress is None else flag("progress", progress)
     compared = Comparison(trajectories, labels)
     motions, names = compared.motions, [style.label for style in compared.styles]
     _check_ax(ax, figure, len(motions), panel)
@@ -167,7 +161,7 @@ def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
     if motions > 1:
         raise ValueError(f"ax must be None for {motions} motions, which need a figure, got one")
     if panel is not None:
-        raise ValueError(f"ax must be None for a film with a panel, which needs a figure, got {ax}")
+        raise ValueError(f"ax must be None where there is a panel, got {shown(ax)}")
 
 
 def _has_windows() -> bool:

@@ -48,13 +48,13 @@ class RollingAnimation(FuncAnimation):
     Attributes
     ----------
     t : ndarray, shape (n,)
-        Time that each frame shows [s].
+        Time that each frame shows [s], as its clock has it.
     fps, speed : float
         Frames a second, and seconds of motion in a second of film.
     strips : tuple of Strip
         One for each motion, from top to bottom: its `ax`, `motion` (whose sample i is what frame
         i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
-        `centre_trace`, `tip_trace`, `skid_trace`, `ruler` and `caption`.
+        `centre_trace`, `tip_trace`, `skid_trace`, `arrows`, `names`, `ruler` and `caption`.
     labels : tuple of str
         Names of the motions.
     clock : Text
@@ -276,17 +276,18 @@ class RollingAnimation(FuncAnimation):
     def _repr_html_(self) -> str:
         """Return the player, or the form that matplotlib's `rcParams["animation.html"]` names.
 
-        A film that is too long for a player becomes a sentence with the reason.
+        A film that is too long for a player becomes a sentence with the reason, one with a panel
+        matplotlib's player of pictures.
         """
         wanted = rcParams["animation.html"]
-        if wanted == "none":
+        if wanted == "none" and not self.panel:
             try:
                 return self._html()
             except ValueError as error:
                 return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
         with _with_settings(), rc_context(settings):  # type: ignore[arg-type]
-            return str(super()._repr_html_())
+            return str(self.to_jshtml() if wanted == "none" else super()._repr_html_())
 
 
 def _root(place: Figure | SubFigure | Axes) -> Figure:

@@ -63,7 +63,7 @@ def pace(
     power = 10.0 ** math.floor(math.log10(fastest))
     slow = min(1.0, max(n * power for n in (1, 2, 5) if n * power <= fastest * (1 + 1e-9)))
     chosen = slow if speed is None else within("speed", speed, *SPEEDS)
-    if chosen > fastest:
+    if speed is not None and chosen > fastest:
         raise ValueError(
             f"speed must be at most {fastest:.4g} at fps = {fps:g}, got {chosen:g}: the body would "
             "turn by more than a quarter turn in a frame, and seem to roll backwards"
