@@ -12,7 +12,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.animation import FFMpegWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -101,19 +100,6 @@ def test_an_old_film_stays_until_the_new_one_is_whole(
     with pytest.raises(error):
         film.save(path)
     assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
-
-
-def test_an_extra_without_a_program(monkeypatch: Any) -> None:
-    """imageio_ffmpeg raises a RuntimeError if it has no program for this machine."""
-    imageio = pytest.importorskip("imageio_ffmpeg")
-
-    def missing() -> str:
-        raise RuntimeError("No ffmpeg exe could be found")
-
-    monkeypatch.setattr(imageio, "get_ffmpeg_exe", missing)
-    monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
-    with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
-        rl.animate(MOTION, "roll.mp4")
 
 
 @pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])

@@ -73,8 +73,9 @@ def film_that_is_stopped(folder: Path) -> None:
 
 
 def film_without_ffmpeg(folder: Path) -> None:
+    """imageio_ffmpeg raises a RuntimeError if it has no program for this machine."""
     with (
-        mock.patch("importlib.util.find_spec", return_value=None),
+        mock.patch("imageio_ffmpeg.get_ffmpeg_exe", side_effect=RuntimeError),
         mock.patch.object(FFMpegWriter, "isAvailable", return_value=False),
     ):
         rl.animate(MOTION, folder / "roll.mp4", **FILM)

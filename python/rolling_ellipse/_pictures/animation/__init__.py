@@ -124,12 +124,9 @@ def animate(
     width, dpi = round(within("width", width, *WIDTHS)), within("dpi", dpi, *DPI)
     if figure is not None and not isinstance(figure, (Figure, SubFigure)):
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
-    drawn: dict[str, Any] = {
-        "forces": flag("forces", forces),
-        "blow": flag("blow", blow),
-        "beside": choice("layout", layout, LAYOUTS) == LAYOUTS[1],
-        "panel": None if panel is None else choice("panel", panel, PANELS),
-    }
+    beside = choice("layout", layout, LAYOUTS) == LAYOUTS[1]
+    panel = panel if panel is None else choice("panel", panel, PANELS)  # type: ignore[assignment]
+    forces, blow = flag("forces", forces), flag("blow", blow)
     progress = progress if progress is None else flag("progress", progress)
     compared = Comparison(trajectories, labels)
     motions, names = compared.motions, [style.label for style in compared.styles]
@@ -145,8 +142,9 @@ def animate(
     new_figure = pyplot_figure if path is None and _has_windows() else Figure
     place: Any = next((each for each in (ax, figure) if each is not None), new_figure)
     animation = RollingAnimation(
-        motions, shown_at, names, width=width, dpi=dpi, place=place, drawn=not page, **drawn
-    )
+        motions, shown_at, names, width=width, dpi=dpi, place=place,
+        forces=forces, blow=blow, beside=beside, panel=panel, drawn=not page,
+    )  # fmt: skip
     if path is not None:
         animation.save(path, progress=progress)
     return animation

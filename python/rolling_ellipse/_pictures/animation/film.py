@@ -159,10 +159,9 @@ class RollingAnimation(FuncAnimation):
         inches = np.array([place.bbox.width, place.bbox.height]) / _root(place).dpi
         left, bottom = (0.7, 0.5) / inches
         ax = place.add_axes((left, bottom, 0.97 - left, height - bottom - 0.3 / inches[1]))
-        ends = [min(self.last, float(motion.t[-1])) for motion in self.sources]
         shown = [
-            motion.sol(even_times(0.0, end, 101))
-            for motion, end in zip(self.sources, ends, strict=True)
+            motion.sol(even_times(0.0, min(self.last, float(motion.t[-1])), 101))
+            for motion in self.sources
         ]
         several: dict[str, Any] = {"ax": ax, "labels": self.labels if len(shown) > 1 else None}
         if self.panel == "phase":

@@ -43,6 +43,7 @@ class Strip:
         self._turns = self._source.sol([min(film.last, self._source.t[-1])]).turns[0]
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
         self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
+        self._captions = [self._caption(i) for i in range(film.t.size)]
         self._build()
 
     def _build(self) -> None:
@@ -102,16 +103,18 @@ class Strip:
         self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
         self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
         self.centre_trace.set_data(motion.x[past], motion.z[past])
-        self.caption.set_text(self._caption(i))
+        self.caption.set_text(self._captions[i])
         left, right, bottom, top = self._views[i]
         middle = np.array([(left + right) / 2, (bottom + top) / 2])
         if not self._stands or not self.ruler.labels[0].get_text():
             self.ruler.move(float(drawing.tilted(scene).inverted().transform(middle)[0]))
             self.ax.set(xlim=(left, right), ylim=(bottom, top))
             self.ax.apply_aspect()
-        ground = [] if self._stands else [self.ruler.ticks, *self.ruler.labels]
-        return [*ground, self.shadow, self.skid_trace, self.tip_trace, self.body, self.centre_trace,
-                self.axis_a, self.axis_b, self.tip, self.contact, self.slip, self.caption,
+        changing = [] if self._stands else [self.ruler.ticks, *self.ruler.labels]
+        if len(set(self._captions)) > 1:
+            changing.append(self.caption)
+        return [*changing, self.shadow, self.skid_trace, self.tip_trace, self.body,
+                self.centre_trace, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
                 self.arrows, *self.names]  # fmt: skip
 
     def _point(self, i: int) -> None:
@@ -157,8 +160,7 @@ class Strip:
 
     def widest_caption(self) -> float:
         """Return the width of the longest caption of all frames [pixels]."""
-        captions = (self._caption(i) for i in range(self._film.t.size))
-        self.caption.set_text(max(captions, key=len))
+        self.caption.set_text(max(self._captions, key=len))
         return float(self.caption.get_window_extent().width)
 
     def _caption(self, i: int) -> str:
