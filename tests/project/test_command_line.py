@@ -226,12 +226,11 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """List that receives the scenes of written pages and the addresses opened."""
     found: list[Any] = []
 
-    def write_explorer(scene: rl.Scene, path: str) -> None:
+    def save(explorer: rl.Explorer, path: str) -> None:
         Path(path).write_text("<html>")
-        found.append(scene)
+        found.append((explorer.scene, explorer.t_end, explorer.words["lang"]))
 
-    command = "rolling_ellipse._show.command.explore"
-    monkeypatch.setattr(f"{command}.write_explorer", write_explorer)
+    monkeypatch.setattr(rl.Explorer, "save", save)
 
     def opened(address: str) -> bool:
         found.append(address)
@@ -247,12 +246,13 @@ def test_explore_writes_a_page_and_opens_it(
     code, out, err = command("explore", "--b", "1.5", "--save", "a page.html")
     assert (code, out, err) == (0, f"{'written':<17} a page.html\n", "")
     address = (tmp_path / "a page.html").as_uri()
-    assert pages == [rl.scenes.report.replace(b=1.5), address] and "%20" in address
+    assert pages == [(rl.scenes.report.replace(b=1.5), 5.4, "en"), address] and "%20" in address
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "new"))
     (tmp_path / "new").mkdir()
-    code, out, err = command("explore", "--omega", "3", "--no-open")
+    line = "explore --omega 3 --no-open --time 2 --language de"
+    code, out, err = command(*line.split())
     assert (code, err) == (0, "") and len(pages) == 3
-    assert pages[2] == rl.scenes.report.replace(omega=3.0, impulse=None)
+    assert pages[2] == (rl.scenes.report.replace(omega=3.0, impulse=None), 2.0, "de")
     (page,) = (tmp_path / "new").iterdir()
     assert out == f"{'written':<17} {page}\n" and page.suffix == ".html"
     monkeypatch.setattr(webbrowser, "open", lambda address: False)
@@ -329,7 +329,7 @@ def test_save_writes_an_animation(tmp_path: Path) -> None:
         ("--save no/such/folder/a.gif", "no/such/folder/a.gif"),
         ("--time --json", "--time"), ("--omega -x", "--omega"), ("-1e-3", "-1e-3"),
         ("--json -1", "-1"), ("explore --a -1", "a must"), ("explore --bogus", "--bogus"),
-        ("explore --time 3", "--time"), ("explore --press 20", "--press"),
+        ("explore --time 300", "--time must be at most"), ("explore --press 20", "--press"),
         ("explore --save no/such/page.html", "page.html"), ("explore --save .", "'.'"),
     ],
 )  # fmt: skip
@@ -357,7 +357,7 @@ def test_the_command_of_the_package(tmp_path: Path) -> None:
     ("command", "options"),
     [
         ("", [*SCENE_OPTIONS, "time", "model", "method", "step", "save", "plot", "json"]),
-        (" explore", [*SCENE_OPTIONS, "press", "save", "no-open"]),
+        (" explore", [*SCENE_OPTIONS, "press", "time", "language", "save", "no-open"]),
     ],
 )
 def test_help(tmp_path: Path, command: str, options: list[str]) -> None:

@@ -1,7 +1,7 @@
 """The player of films in a browser, and the blows that a reader tries there."""
 
 from .._pictures.animation import animate
-from .explorer import Explorer, explore, write_explorer
+from .explorer import Explorer, explore
 from .film import film_html, film_page
 
-__all__ = ["Explorer", "animate", "explore", "film_html", "film_page", "write_explorer"]
+__all__ = ["Explorer", "animate", "explore", "film_html", "film_page"]

@@ -7,36 +7,37 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from .. import _core
 from .._ask.check import FloatArray
 from .._ask.scene import Impulse, Scene
 from .._ask.settings import DEFAULTS
 from .._core import Outcome
 from .._motion.samples import even_times
-from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .._pictures.phase_map import COLOURS
+from .._pictures.sampling import halve
 from .._verbs.classify import thresholds
 from .._verbs.outcome import outcome
 from ..geometry import support
 from .film import body, events
-from .tracks import columns, sample_times
+from .sentences import told
+from .tracks import FORCES, columns, packed, sample_times
+from .words import filled, written
 
-NAMES = {
-    Outcome.RESTS: "rests",
-    Outcome.ROCKS: "rocks",
-    Outcome.ROLLS_OVER: "rolls over",
-    Outcome.SLIPS: "slips",
-    Outcome.LOSES_CONTACT: "leaves the ground",
-    Outcome.JAMS: "jams",
-    Outcome.EDGE: "is too near a threshold to tell",
-}
+NAMES = [*(outcome.name for outcome in Outcome), "IN_THE_AIR"]
 PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # width of the view [longer semi-axes]
 _PIXEL = 2.5e-4  # tolerance over the width of the view
-_SAMPLES = 100  # of a motion; up to ten times as many if its places need them
+_SAMPLES = 100  # of a motion; up to ten times as many if places or forces need them
+ROWS, COLUMNS = 168.0, 540.0  # pixels of the plot of forces
+CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # its largest and its least range [weights]
+_WITHIN = 0.5 + np.array([-1, 0, 1]) / math.sqrt(12)  # parabolas miss most at first and last
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
+_SELDOM = {
+    "theta": ("θ", "rad"), "omega": ("ω", "rad/s"), "z": ("z", "m"), "x_dot": ("ẋ", "m/s"),
+    "z_dot": ("ż", "m/s"), "gravity": ("g", "m/s²"), "inertia": ("I", "kg m²"),
+}  # fmt: skip
 
 
 def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
@@ -54,7 +55,8 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
     digits = 2 - math.floor(math.log10(strongest / STRENGTHS))
     step = round(strongest / STRENGTHS, digits)
     strengths = [round(step * i, digits) for i in range(1, STRENGTHS + 1)]
-    places, strong = np.linspace(-reach, reach, PLACES), np.array(strengths)
+    half = PLACES // 2
+    places, strong = reach * np.arange(-half, half + 1) / half, np.array(strengths)
     own = scene.impulse
     if own is not None and own.jx == 0 and strong[0] / 2 < -own.jz < strong[-1] + strong[0] / 2:
         places[np.argmin(np.abs(places - own.dx))] = own.dx
@@ -64,24 +66,30 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
 
 def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
     """Return all blows in types of JSON, place by place."""
-    wide = WIDE * max(scene.a, scene.b)
-    touching = _core.initial_state(scene.core)["touching"]
-    names = NAMES if touching else NAMES | {Outcome.LOSES_CONTACT: "is in the air"}
+    tolerance = _PIXEL * WIDE * max(scene.a, scene.b)
     blows = [Impulse.press(force, place) for place in d for force in F]
     motions = [struck(scene, blow, t_end) for blow in blows]
-    sampled = [_sampled(motion, _PIXEL * wide) for motion in motions]
+    first = np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist()
+    codes, headlines, reasons = zip(*map(told, motions, first), strict=True)
+    sampled = [_sampled(motion, tolerance) for motion in motions]
+    middles = [motion.sol(_middles(motion.t)) for motion in sampled]
+    weight = 1e-3 * scene.mass * scene.gravity
     return {
-        "columns": columns(sampled, _PIXEL * wide),
+        "columns": columns(sampled, tolerance) | {
+            f"{name}_middle": packed(np.concatenate([getattr(m, name) for m in middles]), weight)
+            for name in FORCES
+        },
         "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
         "d": d.tolist(),
         "F": F.tolist(),
-        "outcomes": np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist(),
-        "reasons": [_reason(motion) for motion in motions],
+        "outcomes": list(codes),
+        "headlines": headlines,
+        "reasons": reasons,
         "events": [events(motion, motion.t_end) for motion in motions],
-        "names": [names[outcome] for outcome in Outcome],
-        "colours": [COLOURS[outcome] for outcome in Outcome],
+        "names": NAMES,
+        "colours": [*(COLOURS[outcome] for outcome in Outcome), COLOURS[Outcome.LOSES_CONTACT]],
         "code": code(scene, t_end),
-    }
+    }  # fmt: skip
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
@@ -91,29 +99,67 @@ def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
 
 
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
-    """Return the motion at the times for the player; at even times if these are too many."""
-    end = motion.t_end
-    times = sample_times(motion, end, tolerance, most=10 * _SAMPLES, for_forces=_SAMPLES)
-    return motion.sol(even_times(0.0, end, _SAMPLES) if times is None else times)
+    """Return the motion at the times for the player; at even times if these are too many.
+
+    Between them, parabolas through the forces and their values at the middles miss by at most half
+    a pixel in a plot of the forces; a peak that it cuts off has an error of up to a tenth.
+    """
+    end, most = motion.t_end, 10 * _SAMPLES
+    times = sample_times(motion, end, tolerance, most=most, for_forces=0)
+    if times is None:
+        return motion.sol(even_times(0.0, end, _SAMPLES))
+    places = np.flatnonzero(np.diff(times) > 1e-9 * end)
+    weight, first = motion.scene.mass * motion.scene.gravity, motion.sol(times)
+    forces = [*LEAST, *(getattr(first, name) / weight for name in FORCES)]
+    rows = ROWS / np.ptp(np.clip(np.hstack(forces), *CUT))
+    while places.size and times.size <= most:
+        bad = _misses(motion, times[places], times[places + 1], rows)
+        times, places = halve(times, places[bad])
+    return motion.sol(times)
 
 
-def _reason(motion: Trajectory) -> str:
-    said = f"{motion.scene.initial_state.reason}\n{motion.reason}"
-    return said if motion.status is Status.COMPLETED else f"{said}\n{motion.message}"
+def _misses(
+    motion: Trajectory, left: FloatArray, right: FloatArray, rows: float
+) -> npt.NDArray[np.bool_]:
+    """Return whether parabolas between the times miss the forces, of which one weight is `rows`."""
+    span, bad = right - left, np.zeros(left.size, bool)
+    inner = motion.sol(np.ravel(left[:, np.newaxis] + span[:, np.newaxis] * _WITHIN))
+    first, last = motion.sol(left), motion.sol(right)
+    for name in FORCES:
+        weight = motion.scene.mass * motion.scene.gravity
+        p, q = getattr(first, name) / weight, getattr(last, name) / weight
+        within = getattr(inner, name).reshape(left.size, 3).T / weight
+        steep = rows * np.abs(q - p) / (COLUMNS * span / motion.t_end)  # pixels in a pixel
+        for u, true in zip(_WITHIN[::2], within[::2], strict=True):
+            drawn = (1 - u) * (1 - 2 * u) * p + 4 * u * (1 - u) * within[1] + u * (2 * u - 1) * q
+            seen = np.abs(np.clip(drawn, *CUT) - np.clip(true, *CUT)) * rows
+            bad |= seen > 0.5 * np.hypot(1, steep)
+            bad |= np.abs(drawn - true) > 0.1 * (1 + np.abs(true))
+    return bad
+
+
+def _middles(t: FloatArray) -> FloatArray:
+    """Return the middles of intervals, and the last time."""
+    return np.append((t[:-1] + t[1:]) / 2, t[-1])
+
+
+def card(scene: Scene, words: dict[str, str]) -> str:
+    """Return the numbers of the scene in words; those that it seldom has follow by their symbols."""
+    seldom = [
+        f", {symbol} = {written(getattr(scene, name), words)} {unit}"
+        for name, (symbol, unit) in _SELDOM.items()
+        if name in scene._changed()
+    ]
+    return filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
+                  e=scene.restitution, slope=scene.slope) + "".join(seldom)  # fmt: skip
 
 
 def code(scene: Scene, t_end: float) -> str:
     """Return the lines of Python of the simulation, with {F} and {d} for the blow."""
-    given = [repr(scene.a), repr(scene.b)]
-    given += [
-        f"{name}={value!r}"
-        for name, value in scene._changed().items()
-        if name not in ("a", "b", "impulse")
-    ]
     return (
         "import rolling_ellipse\n\n"
         "blow = rolling_ellipse.Impulse.press({F}, {d})\n"
-        f"scene = rolling_ellipse.Scene({', '.join(given)}, impulse=blow)\n"
+        f"scene = rolling_ellipse.{scene.replace(impulse=None)!r}.replace(impulse=blow)\n"
         f"trajectory = rolling_ellipse.simulate(scene, {t_end!r})\n"
     )
 

@@ -2,28 +2,23 @@
 // strength. It needs track.js, strip.js and player.js.
 
 const STROBES = 8;
-const BESIDE = `
-  canvas { touch-action: none }
-  .hands, .beside { display: flex; flex-wrap: wrap; gap: 6px 16px; padding: 6px 12px }
-  .hands label { display: flex; flex: 1 1 220px; align-items: center; gap: 8px }
-  .hands input { flex: 1; accent-color: var(--plum) }
-  .hands output { min-width: 5.5em; font-variant-numeric: tabular-nums; text-align: right }
-  figure { flex: 1 1 300px; min-width: 0; margin: 0 }
-  figure canvas { height: 210px; border-radius: 6px; background: var(--paper) }
-  figure.map canvas { cursor: crosshair }
-  figcaption { padding: 4px 2px }
-  .chip { display: inline-block; width: 11px; height: 11px; margin: 0 5px 0 0; border-radius: 3px;
-    border: 1px solid var(--grey) }
-  .said { padding: 2px 14px 12px }
-  .said p { margin: 4px 0; white-space: pre-line }
-  .said b { font-size: 15px }
-  .said button { border-color: var(--faint) }
-  .note { color: var(--grey) }`;
+const LABELS = { // of the player's parts, by their keys in the table of words
+  ".player": "film", ".back": "back", ".forth": "forth", ".seek input": "time", select: "speed",
+  ".forces": "force",
+};
+const STEPS = { // of place and strength, by a key on the map
+  ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
+  Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
+};
+const [LOWEST, HIGHEST] = [-3, 5]; // range of the plot of forces [weights]
+const PARTS = 8; // lines between two samples of the forces
 
 export class Explorer extends Player {
   begin() {
-    const { table, strips: [strip], first } = this.film;
+    const { table, strips: [strip], first, words, shape } = this.film;
     this.strip = strip;
+    this.lowest = shape;
+    point.sign = words.decimal;
     table.numbers = unpacked(table.columns);
     const most = table.F.at(-1), long = Math.max(strip.a, strip.b);
     this.length = (F) => (0.5 + (1.7 * F) / most) * long;
@@ -31,33 +26,52 @@ export class Explorer extends Player {
     this.choose(...first);
   }
 
+  /** The text of a key; numbers replace the names in braces. */
+  say(key, values = {}) {
+    return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) =>
+      (typeof values[name] === "number" ? round(values[name]) : values[name]));
+  }
+
   build(shadow) {
     super.build(shadow);
-    const { table } = this.film;
-    shadow.querySelector("style").append(BESIDE);
-    const slider = (name, values) => `<input type="range" class="${name}" min="0" step="1"
-      max="${values.length - 1}">`;
-    this.box.insertAdjacentHTML("beforeend", `<div class="hands"><label>where${
-      slider("where", table.d)}<output></output></label><label>how hard${slider("hard", table.F)}
-      <output></output></label></div><div class="beside"><figure class="map"><canvas role="img">
-      </canvas><figcaption></figcaption></figure><figure class="plot"><canvas role="img"
-      aria-label="Forces of the ground over time"></canvas><figcaption>normal force N and friction F
-      of the ground, in weights</figcaption></figure></div><div class="said" aria-live="polite">
-      </div>`);
     const find = (words) => this.box.querySelector(words);
+    for (const [words, key] of Object.entries(LABELS)) {
+      const element = shadow.querySelector(words);
+      element.title = this.say(key);
+      element.setAttribute("aria-label", element.title);
+    }
+    this.box.insertAdjacentHTML("beforeend", this.film.markup);
+    this.box.prepend(find(".card"));
     [this.where, this.hard] = [find(".where"), find(".hard")];
-    [this.map, this.plot, this.said] = [find(".map canvas"), find(".plot canvas"), find(".said")];
+    [this.map, this.plot] = [find(".map canvas"), find(".plot canvas")];
     this.where.oninput = () => this.strike(Number(this.where.value), this.j);
     this.hard.oninput = () => this.strike(this.i, Number(this.hard.value));
-    find(".map figcaption").innerHTML = [...new Set(table.outcomes)].sort().map((code) =>
-      `<span style="white-space:nowrap;margin-right:12px"><span class="chip"
-      style="background:${table.colours[code]}"></span>${table.names[code]}</span>`).join("");
+    find(".said button").onclick = ({ currentTarget }) => this.copy(currentTarget);
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
-    this.grab(this.map, () => true, (event) => this.pointed(event));
+    const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
+    this.grab(this.map, mouse, (event) => this.pointed(event));
     this.describe();
   }
 
-  /** Call `moved` for a pointer on a canvas from a press that `holds` accepts to its release. */
+  show(playing) {
+    super.show(playing);
+    this.toggle.title = this.say(playing ? "pause" : "play");
+    this.toggle.setAttribute("aria-label", this.toggle.title);
+  }
+
+  /** Leave their own keys to the sliders, and move the blow on the map. */
+  key(event) {
+    const { key, target } = event, step = STEPS[key];
+    if (!step || event.ctrlKey || event.altKey || event.metaKey) return super.key(event);
+    if (target === this.where || target === this.hard) return;
+    if (target !== this.map) return super.key(event);
+    event.preventDefault();
+    const { d, F } = this.film.table, within = (i, { length }) =>
+      Math.min(length - 1, Math.max(0, i));
+    this.strike(within(this.i + step[0], d), within(this.j + step[1], F));
+  }
+
+  /** Call `moved` for a pointer from a press that `holds` accepts to its release, and for a tap. */
   grab(canvas, holds, moved) {
     let held = false;
     canvas.addEventListener("pointerdown", (event) => {
@@ -66,12 +80,17 @@ export class Explorer extends Player {
       canvas.setPointerCapture(event.pointerId);
       moved(event);
     });
+    canvas.addEventListener("touchstart", (event) => { // a held finger does not scroll the page
+      if (held) event.preventDefault();
+    }, { passive: false });
     canvas.addEventListener("pointermove", (event) => {
       if (held) moved(event);
       else if (canvas === this.canvas) canvas.style.cursor = holds(event) ? "grab" : "";
     });
-    const let_go = () => {
-      if (held && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
+    const let_go = (event) => {
+      const tapped = !held && canvas === this.map && event.type === "pointerup";
+      if (tapped) moved(event);
+      if ((held || tapped) && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
       held = false;
     };
     canvas.addEventListener("pointerup", let_go);
@@ -81,7 +100,7 @@ export class Explorer extends Player {
   /** Hand and point of the blow, in pixels. */
   hand(view) {
     const { x, z } = this.strip.motion.at(0), { d, F } = this.blow();
-    return { x, z, F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
+    return { F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
   }
 
   holds({ offsetX, offsetY }) {
@@ -116,7 +135,9 @@ export class Explorer extends Player {
     const columns = Object.fromEntries(Object.entries(table.numbers).map(([name, values]) =>
       [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
     this.take(this.strip, columns);
-    this.strip.events = table.events[n];
+    this.strip.events = table.events[n].map(([t, kind, x]) => [t, this.say(kind), x]);
+    this.impacts = table.events[n].filter(([, kind]) => kind === "impact").map(([t]) => t);
+    this.curves = forces(columns, this.strip.weight);
   }
 
   /** Show the motion after a blow, from its beginning. */
@@ -131,24 +152,36 @@ export class Explorer extends Player {
     this.draw();
   }
 
+  /** Write what the blow does, and speak where it is; the reason only when another one holds. */
   describe() {
     const { table } = this.film, { n } = this, { d, F } = this.blow();
+    const told = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
+    const events = table.events[n].map(([t, kind]) =>
+      this.say("event", { event: this.say(kind), t }));
+    if (events.length > 8) events.splice(8, events.length, this.say("more", {
+      count: events.length - 8 }));
+    const lines = [told(table.headlines[n]), told(table.reasons[n]), events.join(", ")];
+    const said = this.box.querySelector(".said").children;
+    lines.forEach((text, k) => { said[k].textContent = text; });
+    const spoken = this.box.querySelector(".spoken");
+    const kind = [...table.headlines[n], ...table.reasons[n]].map(([key]) => key).join();
+    if (spoken.dataset.kind !== kind) spoken.textContent = `${lines[0]} ${lines[1]}`;
+    spoken.dataset.kind = kind;
     [this.where.value, this.hard.value] = [this.i, this.j];
-    this.where.nextElementSibling.value = `d = ${round(d)} m`;
-    this.hard.nextElementSibling.value = `F = ${round(F)} N s`;
-    const name = table.names[table.outcomes[n]];
-    const events = table.events[n].map(([t, kind]) => `${kind} at ${t.toPrecision(4)} s`);
-    const more = events.length > 8 ? `, … ${events.length - 8} more` : "";
-    const lines = [["b", `First it ${name}.`],
-      ["p", table.reasons[n]], ["p", events.slice(0, 8).join(", ") + more],
-      ["span", `Nearest of ${table.d.length} × ${table.F.length} blows that were computed. `],
-      ["button", "copy as code"]];
-    this.said.replaceChildren(...lines.map(([kind, words]) =>
-      Object.assign(document.createElement(kind), { textContent: words })));
-    this.said.querySelector("span").className = "note";
-    this.said.querySelector("button").onclick = ({ currentTarget }) => this.copy(currentTarget);
-    this.map.setAttribute("aria-label", `Map of outcomes; at ${round(d)} m and ${round(F)} N s the
-      body ${name}`);
+    this.where.nextElementSibling.value = this.say("place", { d });
+    this.hard.nextElementSibling.value = this.say("strength", { F });
+    const [place, strength] = [this.say("place_spoken", { d }), this.say("strength_spoken", { F })];
+    this.where.setAttribute("aria-valuetext", place);
+    this.hard.setAttribute("aria-valuetext", strength);
+    this.map.setAttribute("aria-valuenow", n + 1);
+    this.map.setAttribute("aria-valuetext",
+      `${place}, ${strength}: ${this.say(table.names[table.outcomes[n]])}`);
+    const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
+    this.plot.setAttribute("aria-label", this.say("forces_spoken", { t: this.strip.motion.end,
+      N_least: N.least, N_most: N.most, F_least: shear.least, F_most: shear.most }));
+    const cut = Math.max(N.most, shear.most) > HIGHEST || shear.least < LOWEST;
+    this.plot.nextElementSibling.textContent = this.say("forces")
+      + (cut ? this.say("forces_cut", { peak }) : "");
     this.host.dataset.blow = `${d} ${F}`;
   }
 
@@ -158,7 +191,7 @@ export class Explorer extends Player {
     this.host.dataset.code = lines;
     try {
       await navigator.clipboard.writeText(lines);
-      button.textContent = "copied";
+      button.textContent = this.say("copied");
     } catch { // a page that may not write there shows them instead
       const shown = Object.assign(document.createElement("pre"), { textContent: lines });
       button.replaceWith(shown);
@@ -176,17 +209,42 @@ export class Explorer extends Player {
       ink.globalAlpha = 0.2 + (0.3 * k) / STROBES;
       stroke(ink, colours.blue, 1);
     }
-    ink.globalAlpha = this.t > 0 ? 0.45 : 1;
-    const { top, point, F } = this.hand(view);
-    arrow(ink, colours.plum, top, point, 4);
-    disc(ink, colours.plum, colours.paper, top, 9);
-    text(ink, colours.plum, `${round(F)} N s`, top[0] + 15, top[1] + 4, "left");
     ink.globalAlpha = 1;
+    const { top, point: foot, F } = this.hand(view), words = `${round(F)} N s`;
+    arrow(ink, colours.plum, top, foot, 4);
+    disc(ink, colours.plum, colours.paper, top, 11);
+    Object.assign(ink, { strokeStyle: colours.paper, lineWidth: 4, lineJoin: "round",
+      font: "13px system-ui, sans-serif", textAlign: "left" });
+    ink.strokeText(words, top[0] + 17, top[1] + 4);
+    text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
+  }
+
+  draw() {
+    super.draw();
+    this.clock.textContent = this.clock.textContent.replace(".", point.sign);
+    this.slider.setAttribute("aria-valuetext", this.clock.textContent);
+  }
+
+  clockText() {
+    return super.clockText().replaceAll(".", point.sign).replace("speed", this.say("speed"));
+  }
+
+  caption(strip, { mode }) {
+    if (this.t >= strip.motion.end && strip.motion.end < this.film.end)
+      return this.say("ended", { t: strip.motion.end });
+    return mode === SLIDING ? this.say("slides") : mode === FLIGHT ? this.say("flies") : "";
+  }
+
+  label([{ theta, x }]) {
+    return this.say("stage", { t: this.t, theta, x });
   }
 
   paint() {
+    const { clientWidth: width } = this.box, [left, right, , top] = this.strip.window;
+    // The numbers of the ruler are 34 pixels high.
+    this.film.shape = Math.max(this.lowest, top / (right - left) + 34 / width);
     super.paint();
-    if (!this.box.clientWidth || !this.map) return;
+    if (!width || !this.map) return;
     this.paintMap(sized(this.map, this.map.clientHeight));
     this.paintPlot(sized(this.plot, this.plot.clientHeight));
   }
@@ -214,38 +272,58 @@ export class Explorer extends Player {
       text(ink, grey, round(d[i]), left + (i + 0.5) * wide, top + up + 14, "center", 11));
     [0, F.length - 1].forEach((j) =>
       text(ink, grey, round(F[j]), left - 5, top + up - (j + 0.5) * tall + 4, "right", 11));
-    text(ink, grey, "where the hand presses, d [m]", left + across / 2, top + up + 30, "center", 11);
+    text(ink, grey, this.say("map_places"), left + across / 2, top + up + 30, "center", 11);
     ink.save();
     ink.translate(14, top + up / 2);
     ink.rotate(-Math.PI / 2);
-    text(ink, grey, "how hard, F [N s]", 0, 0, "center", 11);
+    text(ink, grey, this.say("map_strengths"), 0, 0, "center", 11);
     ink.restore();
   }
 
   paintPlot(ink) {
-    const { strip, colours } = this, { t, normal_force: N, friction_force: F } = strip.motion;
-    const [left, top] = [34, 12], across = this.plot.clientWidth - left - 14;
-    const up = this.plot.clientHeight - top - 30, { weight } = strip, { end } = this.film;
-    const all = [...N, ...F].map((force) => force / weight);
-    const high = Math.min(5, Math.max(1.5, ...all)), low = Math.max(-3, Math.min(-0.5, ...all));
+    const { colours, curves } = this, { end } = this.film;
+    const [left, top] = [34, 18], across = this.plot.clientWidth - left - 14;
+    const up = this.plot.clientHeight - top - 24;
+    const high = Math.min(HIGHEST, Math.max(1.5, ...curves.map(({ most }) => most)));
+    const low = Math.max(LOWEST, Math.min(-0.5, ...curves.map(({ least }) => least)));
     const x = (time) => left + (time / end) * across;
     const y = (part) => top + up * ((high - Math.min(high, Math.max(low, part))) / (high - low));
     for (let part = Math.ceil(low); part <= high; part++) {
       line(ink, colours.faint, 1, [[left, y(part)], [left + across, y(part)]]);
       text(ink, colours.grey, round(part), left - 6, y(part) + 4, "right", 11);
     }
-    text(ink, colours.grey, "0", left, top + up + 14, "center", 11);
-    text(ink, colours.grey, `${round(end)} s`, left + across, top + up + 14, "right", 11);
+    text(ink, colours.grey, "0", left, top + up + 16, "center", 11);
+    text(ink, colours.grey, `${round(end)} s`, left + across, top + up + 16, "right", 11);
     ink.lineJoin = "round";
-    const curves = [[N, colours.blue, "N", 0], [F, colours.orange, "F", 18]];
-    for (const [forces, colour, name, place] of curves) {
-      line(ink, colour, 1.8, Array.from(t, (time, k) => [x(time), y(forces[k] / weight)]));
-      text(ink, colour, name, left + across - 20 + place, top + 8);
-    }
+    [["N", colours.blue, []], ["F", colours.orange, [5, 3]]].forEach(([name, colour, dash], k) => {
+      ink.setLineDash(dash);
+      line(ink, colour, 1.8, curves[k].points.map(([time, force]) => [x(time), y(force)]));
+      const place = left + across - 86 + 46 * k;
+      line(ink, colour, 1.8, [[place, top - 9], [place + 22, top - 9]]);
+      ink.setLineDash([]);
+      text(ink, colours.ink, name, place + 31, top - 5);
+    });
     const upright = (colour, time) => line(ink, colour, 1, [[x(time), top], [x(time), top + up]]);
-    for (const [time, kind] of strip.events) if (kind === "impact") upright(colours.plum, time);
+    for (const time of this.impacts) upright(colours.plum, time);
     upright(colours.ink, this.t);
   }
+}
+
+/** Both forces over time [s, weights]: parabolas through samples and the middles between them. */
+function forces(columns, weight) {
+  const { t } = columns;
+  return ["normal_force", "friction_force"].map((name) => {
+    const ends = columns[name], middles = columns[`${name}_middle`], points = [];
+    for (let i = 0; i + 1 < t.length; i++) {
+      for (let part = 0; part <= PARTS; part++) {
+        const u = part / PARTS, v = 1 - u;
+        const force = v * (v - u) * ends[i] + 4 * u * v * middles[i] + u * (u - v) * ends[i + 1];
+        points.push([v * t[i] + u * t[i + 1], force / weight]);
+      }
+    }
+    const values = points.map(([, force]) => force);
+    return { points, least: Math.min(...values), most: Math.max(...values) };
+  });
 }
 
 function nearest(values, value) {

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import html
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -14,19 +16,22 @@ from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Impulse, Scene, require_scene
 from .._motion.export.atomic import replacing
 from . import blows
-from .page import document, fragment
+from .page import document, fragment, packaged
 from .poster import positions, poster
+from .words import filled, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 
 
-def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
+def explore(
+    scene: Scene, *, t_end: float | None = None, language: str | Mapping[str, str] = "en"
+) -> Explorer:
     """Let the reader strike the body: where and how hard, by dragging a hand over it.
 
     The page shows the motion with its forces, its first outcome with the reason, its events, and a
     map of the outcomes of all blows. It carries a table of them, 25 places by 16 strengths, so that
     it works without a kernel and without a network; the nearest one is shown. A button copies the
-    lines of Python that simulate it.
+    lines of Python that simulate it. All of it can be used with a keyboard alone.
 
     Parameters
     ----------
@@ -36,6 +41,8 @@ def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     t_end : float, optional
         How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); without
         it 12 times that root.
+    language : str or mapping of str to str, optional
+        "en" or "de"; or all texts, as `explore(scene).words` has them, with numbers in braces.
 
     Returns
     -------
@@ -45,10 +52,26 @@ def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     Raises
     ------
     TypeError
-        If `scene` is no Scene, or `t_end` no number.
+        If `scene` is no Scene, `t_end` no number, or `language` no name and no mapping of strings.
     ValueError
-        If `t_end` is out of range, or the body so far away that a double does not know a thousandth
-        of it there.
+        If `t_end` is out of range, the body so far away that a double does not know a thousandth
+        of it there, or `language` unknown, or without one of the keys.
+
+    Notes
+    -----
+    The page follows the light or dark theme of the reader's system, unless it stands in an element
+    (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.
+
+    In a frame it tells the page around it how high it is. This is all that the other page needs::
+
+        <iframe src="strike.html" style="width: 100%; border: 0"></iframe>
+        <script>
+        addEventListener("message", ({ data, source }) => {
+          const frame = [...document.querySelectorAll("iframe")]
+            .find(({ contentWindow }) => contentWindow === source);
+          if (frame && data.rollingEllipse) frame.style.height = `${data.rollingEllipse.height}px`;
+        });
+        </script>
     """
     require_scene(scene)
     require_near("scene", max(scene.a, scene.b), max(abs(scene.x), scene.initial_state.z))
@@ -57,12 +80,7 @@ def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     chosen = float(f"{12 * unit:.2g}") if t_end is None else positive("t_end", t_end)
     if chosen > longest:
         raise ValueError(f"t_end must be at most {longest:.6g} s for this body, got {t_end!r}")
-    return Explorer(scene, chosen)
-
-
-def write_explorer(scene: Scene, path: str | PathLike[str]) -> None:
-    """Write the page of `explore` for a scene; errors are those of `Explorer.to_html`."""
-    explore(scene).to_html(path)
+    return Explorer(scene, chosen, words(language))
 
 
 @dataclass(frozen=True)
@@ -75,10 +93,13 @@ class Explorer(FieldsOnly):
         The body before the blow.
     t_end : float
         How long each motion is followed [s].
+    words : dict of str to str
+        All texts of the page.
     """
 
     scene: Scene
     t_end: float
+    words: dict[str, str] = field(hash=False, repr=False, default_factory=lambda: words("en"))
 
     @cached_property
     def distances(self) -> FloatArray:
@@ -90,8 +111,12 @@ class Explorer(FieldsOnly):
         """Strengths of the blows in the table, downwards, (16,) [N s]."""
         return blows.ranges(self.scene)[1]
 
-    def to_html(self, path: str | PathLike[str]) -> None:
-        """Write a page that needs nothing but itself.
+    @overload
+    def to_html(self) -> str: ...
+    @overload
+    def to_html(self, path: str | PathLike[str]) -> None: ...
+    def to_html(self, path: str | PathLike[str] | None = None) -> str | None:
+        """Return a page that needs nothing but itself, or write it if there is a path.
 
         Raises
         ------
@@ -102,10 +127,16 @@ class Explorer(FieldsOnly):
         OSError
             If it cannot be written; what was there then stays.
         """
+        if path is not None:
+            return self.save(path)
+        return document(self.words["title"], self._repr_html_(), self.words["lang"])
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the page; errors are those of `to_html`."""
         name = file_name("path", path)
         if not name.lower().endswith((".html", ".htm")):
             raise ValueError(f"path must end in .html, got {name!r}")
-        page = document("Strike an ellipse", self._repr_html_())
+        page = self.to_html()
         with replacing(name) as new:
             new.write_text(page, encoding="utf-8")
 
@@ -118,6 +149,7 @@ class Explorer(FieldsOnly):
         left, right, bottom, top = strip["window"]
         shape = (top - bottom) / (right - left)
         at = self._first_blow()
+        table = blows.table(self.scene, self.t_end, self.distances, self.strengths)
         data = {
             "end": self.t_end,
             "fps": 60,
@@ -128,13 +160,33 @@ class Explorer(FieldsOnly):
             "waits": True,
             "strips": [strip],
             "first": at,
-            "table": blows.table(self.scene, self.t_end, self.distances, self.strengths),
+            "words": self.words,
+            "table": table,
+            "markup": self._markup(table),
         }
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
         still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
-        text = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
+        text = filled(self.words, "poster", F=-blow.jz, d=blow.dx)
         return fragment(data, still, text, explorer=True)
+
+    def _markup(self, table: dict[str, Any]) -> str:
+        """Return the parts around the player with their texts."""
+        texts = {name: html.escape(text) for name, text in self.words.items()}
+        count = self.strengths.size
+        texts |= {
+            "card": html.escape(blows.card(self.scene, self.words)),
+            "last_place": str(self.distances.size - 1),
+            "last_strength": str(count - 1),
+            "blows": str(self.distances.size * count),
+            "nearest": filled(texts, "nearest", places=self.distances.size, strengths=count),
+            "legend": "".join(
+                f'<span><i style="background: {table["colours"][code]}"></i>'
+                f"{texts[blows.NAMES[code]]}</span>\n"
+                for code in sorted(set(table["outcomes"]))
+            ),
+        }
+        return packaged("explorer.html").format(**texts)
 
     def _first_blow(self) -> tuple[int, int]:
         """Return place and strength of the first blow: the scene's own, or a strong one."""

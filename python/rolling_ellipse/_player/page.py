@@ -15,7 +15,8 @@ from .colours import DARK, LIGHT
 
 
 @cache
-def _script(name: str) -> str:
+def packaged(name: str) -> str:
+    """Return the text of a file beside this one."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
@@ -25,32 +26,43 @@ def fragment(data: dict[str, Any], poster: str, text: str, *, explorer: bool = F
     If scripts are not run, the poster and its text stay. A page may have the same fragment several
     times.
     """
-    known = json.dumps(data | {"colours": {"light": LIGHT, "dark": DARK}}, separators=(",", ":"))
+    style = packaged("player.css") + (packaged("explorer.css") if explorer else "")
+    data = data | {"colours": {"light": LIGHT, "dark": DARK}, "style": style}
+    known = json.dumps(data, separators=(",", ":"))
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
     name = hashlib.sha256((known + poster).encode()).hexdigest()[:12]
     scripts = ("track.js", "strip.js", "player.js", "explorer.js")[: 3 + explorer]
-    module = "\n".join(_script(each) for each in scripts)
+    module = "\n".join(packaged(each) for each in scripts)
     picture = base64.b64encode(poster.encode()).decode()
     starts = "Explorer" if explorer else "Player"
     return (
-        f'<div class="rolling-ellipse" data-film="{name}">'
+        f'<div class="rolling-ellipse" data-film="{name}" data-lm-suppress-shortcuts="true">'
         f'<img alt="{html.escape(text)}" style="max-width:100%" '
         f'src="data:image/svg+xml;base64,{picture}">\n'
         f'<script type="module">\n{module}\n'
         f'const free = `.rolling-ellipse[data-film="{name}"]:not([data-ready])`;\n'
         f'const film = await unzipped("{packed}");\n'
-        f"new {starts}(document.querySelector(free), film);\n</script></div>"
+        f"const host = document.querySelector(free);\nnew {starts}(host, film);\n"
+        "host.addEventListener('keydown', (event) => event.stopPropagation());\n</script></div>"
     )
 
 
-def document(title: str, content: str) -> str:
-    """Return a page that needs no other file and no network."""
+def document(title: str, content: str, language: str = "en") -> str:
+    """Return a page that needs no other file and no network.
+
+    In a frame it posts its height [CSS px] to the page around it, whenever that changes.
+    """
     return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<!DOCTYPE html>\n<html lang="{html.escape(language)}">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
         f"<title>{html.escape(title)}</title>\n"
-        "<style>:root { color-scheme: light dark }\n"
-        "body { margin: 1.5rem auto; max-width: 1100px; padding: 0 1rem }</style>\n"
-        f"</head>\n<body>\n{content}\n</body>\n</html>\n"
+        "<style>:root { color-scheme: light dark } [data-theme=light] { color-scheme: light }\n"
+        "[data-theme=dark] { color-scheme: dark }\n"
+        "body { margin: 0 auto; max-width: 1100px; padding: 1rem }\n"
+        "h1 { margin: 0 0 .6rem; font: 600 1.3rem system-ui, sans-serif }</style>\n"
+        f"</head>\n<body>\n<main>\n<h1>{html.escape(title)}</h1>\n{content}\n</main>\n<script>\n"
+        "if (parent !== window) new ResizeObserver(() => parent.postMessage(\n"
+        "  { rollingEllipse: { height: document.body.offsetHeight } }, '*')).observe(document.body);"
+        "\n</script>\n</body>\n</html>\n"
     )

@@ -7,25 +7,6 @@ const ICONS = {
   play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z",
   back: "M5 3h2v12H5zM15 3v12l-7-6z", forth: "M13 3h-2v12h2zM3 3v12l7-6z",
 };
-const STYLE = `
-  :host { display: block; max-width: 1100px; margin: .3em 0 }
-  .player { position: relative; border-radius: 8px; overflow: hidden; background: var(--panel);
-    color: var(--ink); font: 13px/1.4 system-ui, sans-serif; outline-offset: 2px }
-  .player:focus-visible, :focus-visible { outline: 2px solid var(--blue) }
-  canvas { display: block; width: 100% }
-  .bar { display: flex; flex-wrap: wrap; align-items: center; gap: 4px 8px; padding: 6px 10px }
-  button, select { font: inherit; color: inherit; background: none; border: 1px solid transparent;
-    border-radius: 6px; padding: 3px 6px; min-height: 28px; cursor: pointer }
-  select option { background: var(--panel) }
-  button:hover, select:hover { border-color: var(--faint) }
-  button[aria-pressed=true] { background: var(--sky) }
-  button svg { display: block; fill: currentColor }
-  .seek { position: relative; flex: 1 1 160px; height: 28px }
-  .seek input { width: 100%; height: 28px; margin: 0; accent-color: var(--blue) }
-  .mark { position: absolute; bottom: 0; width: 2px; height: 7px; margin-left: -1px;
-    background: var(--plum) }
-  .time { font-variant-numeric: tabular-nums; min-width: 6.5em; text-align: right }`;
-
 /** True if the page, or else the reader's system, asks for dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
@@ -94,7 +75,7 @@ export class Player {
   }
 
   build(shadow) {
-    shadow.innerHTML = `<style>${STYLE}</style><div class="player" tabindex="0" role="group"
+    shadow.innerHTML = `<style>${this.film.style}</style><div class="player" tabindex="0" role="group"
       aria-label="Film of a rolling ellipse: space plays, arrows step">
       <canvas role="img"></canvas><div class="bar">${this.button("play", "Play")}
       ${this.button("back", "Step back")}${this.button("forth", "Step forward")}<div class="seek">
@@ -274,9 +255,13 @@ export class Player {
       if (columns === 1) floor += tall;
     });
     this.host.dataset.time = this.t;
-    canvas.setAttribute("aria-label", film.strips.map((strip, i) => [
-      this.caption(strip, states[i]), `x = ${round(states[i].x, 5)} m, θ = ${round(states[i].theta, 5)} rad`,
-    ].filter(Boolean).join(", ")).join("; "));
+    canvas.setAttribute("aria-label", this.label(states));
+  }
+
+  /** The states in words, for readers who do not see the picture. */
+  label(states) {
+    return states.map((at, i) => `${this.caption(this.film.strips[i], at) || "An ellipse"}: ${
+      this.clock.textContent}, θ = ${round(at.theta)} rad, x = ${round(at.x)} m`).join("; ");
   }
 
   /** The views of all strips; their cameras follow nothing, the middle, or each its own body. */

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from html import escape
+from string import Template
 
 from .._ask.check import FloatArray
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .colours import DARK, LIGHT
+from .page import packaged
 
 _WIDTH = 640.0
 _BODIES = 9
@@ -76,16 +78,7 @@ def _line(x: FloatArray, z: FloatArray) -> str:
 
 
 def _style(colours: dict[str, str]) -> str:
-    thin = "vector-effect: non-scaling-stroke"
-    return (
-        f".paper {{ fill: {colours['paper']} }} "
-        f".earth {{ fill: {colours['earth']}; stroke: {colours['grey']}; {thin} }} "
-        f".body {{ fill: {colours['body']}; fill-opacity: .5; stroke: {colours['ink']}; "
-        f"stroke-width: 1.5; {thin} }} "
-        f".hand {{ stroke: {colours['blue']}; stroke-width: 1.5; {thin} }} "
-        f".path {{ fill: none; stroke: {colours['orange']}; stroke-width: 2; {thin} }} "
-        f"text {{ font: 13px sans-serif; fill: {colours['ink']} }}"
-    )
+    return Template(packaged("poster.css")).substitute(colours)
 
 
 def _escaped(text: str) -> str:

@@ -64,9 +64,11 @@ export function fill(ink, colour) {
   ink.fill();
 }
 
+export const point = { sign: "." }; // between the digits of a number
+
 /** The text of a number with a few digits. */
 export function round(value, digits = 3) {
-  return `${+value.toPrecision(digits)}`.replace("-", "−");
+  return `${+value.toPrecision(digits)}`.replace("-", "−").replace(".", point.sign);
 }
 
 /** Draw an arrow from one pixel to another; the head of a short one is smaller. */

@@ -14,7 +14,7 @@ from .._pictures.sampling import halve
 
 MOST_SAMPLES = 20_000  # most samples of one motion, 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
-_FORCES = ("normal_force", "friction_force")
+FORCES = ("normal_force", "friction_force")
 # Places in an interval at which a cubic is compared with the motion. They are irregular, so that a
 # motion whose period divides the intervals does not look like a straight line.
 _WITHIN = np.array([0.2113, 0.5, 0.7887])
@@ -47,7 +47,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
     size = max(scene.a, scene.b)
     joined = {
         name: np.concatenate([getattr(motion, name) for motion in motions])
-        for name in ("t", *_RATES, *_RATES.values(), *_FORCES, "mode")
+        for name in ("t", *_RATES, *_RATES.values(), *FORCES, "mode")
     }
     speeds = np.hypot(joined["x_dot"], joined["z_dot"]) + size * np.abs(joined["omega"])
     near = tolerance / max(float(np.max(speeds)), 1e-300)  # [s]
@@ -55,7 +55,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
     allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size, "mode": 0.0}
     for name, rate in _RATES.items():
         allowed[rate] = 4 * allowed[name] / max(longest, near)
-    for name in _FORCES:
+    for name in FORCES:
         allowed[name] = 1e-3 * scene.mass * scene.gravity
     return {name: packed(values.astype(float), allowed[name]) for name, values in joined.items()}
 
@@ -108,7 +108,7 @@ def _misses(
         error -= np.minimum(error, 4 * np.spacing(np.abs(p) + np.abs(q)).max(axis=1))  # rounding
         missed += error * (size if name == "theta" else 1.0) / tolerance
     weight = motion.scene.mass * motion.scene.gravity
-    for name in _FORCES:
+    for name in FORCES:
         p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
         true = getattr(exact, name).reshape(left.size, u.size)
         error = np.abs(v * p + u * q - true) / (force * (weight + np.abs(true)))

@@ -8,7 +8,7 @@ import webbrowser
 from argparse import Namespace
 from pathlib import Path
 
-from ..._player import write_explorer
+from ... import _player
 from .options import chosen_scene, require_file
 
 
@@ -22,17 +22,17 @@ def explore(options: Namespace) -> str:
     OSError
         If the page cannot be written.
     """
-    scene = chosen_scene(options)
-    path = _new_file() if options.save is None else options.save
+    scene, path = chosen_scene(options), options.save
+    try:
+        explorer = _player.explore(scene, t_end=options.time, language=options.language)
+    except ValueError as error:
+        raise ValueError(str(error).replace("t_end", "--time")) from None
+    if path is None:
+        handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
+        os.close(handle)
     require_file("--save", path)
-    write_explorer(scene, path)
+    explorer.save(path)
     message = f"written           {path}"
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
         message += "\nno browser was found: open the file in one"
     return message
-
-
-def _new_file() -> str:
-    handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
-    os.close(handle)
-    return path

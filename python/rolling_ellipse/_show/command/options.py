@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 from ... import scenes
 from ..._ask.scene import Impulse, Scene
 from ..._ask.settings import METHODS, MODELS
+from ..._player.words import LANGUAGES
 
 SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",
@@ -86,6 +87,8 @@ def motion_parser() -> OneLineParser:
 def explore_parser() -> OneLineParser:
     """Return the parser of `explore`."""
     found = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
+    found.add_argument("--time", type=float, metavar="S", help="how long motions are followed")
+    found.add_argument("--language", choices=LANGUAGES, default="en", help="of the page")
     found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
     found.add_argument("--no-open", action="store_true", help="write it and open no browser")
     return found
