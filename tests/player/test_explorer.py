@@ -70,7 +70,7 @@ def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
     found = blows.table(rl.scenes.drop, 5.4, two, np.array([6.17, 11.0]))
     assert found["outcomes"] == [Outcome.ROCKS] * 3 + [Outcome.ROLLS_OVER]
     assert found["headlines"][3] == [["lands"], ["ROLLS_OVER_now"]]
-    assert blows.table(bounce, 5.4, two[:1], two[1:])["headlines"] == [[["bounces"]]]
+    assert blows.table(bounce, 5.4, two[:1], two[1:])["headlines"] == ([["bounces"]],)
 
 
 @pytest.mark.parametrize("name", SCENES)

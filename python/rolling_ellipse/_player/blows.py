@@ -144,14 +144,13 @@ def _middles(t: FloatArray) -> FloatArray:
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the numbers of the scene in words; those that it seldom has follow by their symbols."""
-    seldom = [
-        f", {symbol} = {written(getattr(scene, name), words)} {unit}"
-        for name, (symbol, unit) in _SELDOM.items()
-        if name in scene._changed()
-    ]
-    return filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
-                  e=scene.restitution, slope=scene.slope) + "".join(seldom)  # fmt: skip
+    """Return the numbers of the scene in words, and by symbols those that it seldom has."""
+    said = filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
+                  e=scene.restitution, slope=scene.slope)  # fmt: skip
+    for name, (symbol, unit) in _SELDOM.items():
+        if name in scene._changed():
+            said += f", {symbol} = {written(getattr(scene, name), words)} {unit}"
+    return said
 
 
 def code(scene: Scene, t_end: float) -> str:

@@ -2,10 +2,6 @@
 // strength. It needs track.js, strip.js and player.js.
 
 const STROBES = 8;
-const LABELS = { // of the player's parts, by their keys in the table of words
-  ".player": "film", ".back": "back", ".forth": "forth", ".seek input": "time", select: "speed",
-  ".forces": "force",
-};
 const STEPS = { // of place and strength, by a key on the map
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
@@ -15,10 +11,9 @@ const PARTS = 8; // lines between two samples of the forces
 
 export class Explorer extends Player {
   begin() {
-    const { table, strips: [strip], first, words, shape } = this.film;
+    const { table, strips: [strip], first, shape } = this.film;
     this.strip = strip;
     this.lowest = shape;
-    point.sign = words.decimal;
     table.numbers = unpacked(table.columns);
     const most = table.F.at(-1), long = Math.max(strip.a, strip.b);
     this.length = (F) => (0.5 + (1.7 * F) / most) * long;
@@ -26,22 +21,9 @@ export class Explorer extends Player {
     this.choose(...first);
   }
 
-  /** The text of a key; numbers replace the names in braces. */
-  say(key, values = {}) {
-    return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) =>
-      (typeof values[name] === "number" ? round(values[name]) : values[name]));
-  }
-
   build(shadow) {
     super.build(shadow);
     const find = (words) => this.box.querySelector(words);
-    for (const [words, key] of Object.entries(LABELS)) {
-      const element = shadow.querySelector(words);
-      element.title = this.say(key);
-      element.setAttribute("aria-label", element.title);
-    }
-    this.box.insertAdjacentHTML("beforeend", this.film.markup);
-    this.box.prepend(find(".card"));
     [this.where, this.hard] = [find(".where"), find(".hard")];
     [this.map, this.plot] = [find(".map canvas"), find(".plot canvas")];
     this.where.oninput = () => this.strike(Number(this.where.value), this.j);
@@ -51,12 +33,6 @@ export class Explorer extends Player {
     const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
     this.grab(this.map, mouse, (event) => this.pointed(event));
     this.describe();
-  }
-
-  show(playing) {
-    super.show(playing);
-    this.toggle.title = this.say(playing ? "pause" : "play");
-    this.toggle.setAttribute("aria-label", this.toggle.title);
   }
 
   /** Leave their own keys to the sliders, and move the blow on the map. */
@@ -135,8 +111,7 @@ export class Explorer extends Player {
     const columns = Object.fromEntries(Object.entries(table.numbers).map(([name, values]) =>
       [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
     this.take(this.strip, columns);
-    this.strip.events = table.events[n].map(([t, kind, x]) => [t, this.say(kind), x]);
-    this.impacts = table.events[n].filter(([, kind]) => kind === "impact").map(([t]) => t);
+    this.strip.events = table.events[n];
     this.curves = forces(columns, this.strip.weight);
   }
 
@@ -219,26 +194,6 @@ export class Explorer extends Player {
     text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
   }
 
-  draw() {
-    super.draw();
-    this.clock.textContent = this.clock.textContent.replace(".", point.sign);
-    this.slider.setAttribute("aria-valuetext", this.clock.textContent);
-  }
-
-  clockText() {
-    return super.clockText().replaceAll(".", point.sign).replace("speed", this.say("speed"));
-  }
-
-  caption(strip, { mode }) {
-    if (this.t >= strip.motion.end && strip.motion.end < this.film.end)
-      return this.say("ended", { t: strip.motion.end });
-    return mode === SLIDING ? this.say("slides") : mode === FLIGHT ? this.say("flies") : "";
-  }
-
-  label([{ theta, x }]) {
-    return this.say("stage", { t: this.t, theta, x });
-  }
-
   paint() {
     const { clientWidth: width } = this.box, [left, right, , top] = this.strip.window;
     // The numbers of the ruler are 34 pixels high.
@@ -304,7 +259,8 @@ export class Explorer extends Player {
       text(ink, colours.ink, name, place + 31, top - 5);
     });
     const upright = (colour, time) => line(ink, colour, 1, [[x(time), top], [x(time), top + up]]);
-    for (const time of this.impacts) upright(colours.plum, time);
+    for (const [time, kind] of this.strip.events)
+      if (kind === "impact") upright(colours.plum, time);
     upright(colours.ink, this.t);
   }
 }
@@ -321,7 +277,7 @@ function forces(columns, weight) {
         points.push([v * t[i] + u * t[i + 1], force / weight]);
       }
     }
-    const values = points.map(([, force]) => force);
+    const values = points.map(([, force]) => Number(force.toFixed(3)));
     return { points, least: Math.min(...values), most: Math.max(...values) };
   });
 }

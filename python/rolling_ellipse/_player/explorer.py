@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,9 +15,9 @@ from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Impulse, Scene, require_scene
 from .._motion.export.atomic import replacing
 from . import blows
-from .page import document, fragment, packaged
+from .page import document, fragment
 from .poster import positions, poster
-from .words import filled, words
+from .words import escaped, filled, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 
@@ -162,20 +161,19 @@ class Explorer(FieldsOnly):
             "first": at,
             "words": self.words,
             "table": table,
-            "markup": self._markup(table),
         }
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
         still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
         text = filled(self.words, "poster", F=-blow.jz, d=blow.dx)
-        return fragment(data, still, text, explorer=True)
+        return fragment(data, still, text, starts="Explorer", around=self._markup(table))
 
     def _markup(self, table: dict[str, Any]) -> str:
         """Return the parts around the player with their texts."""
-        texts = {name: html.escape(text) for name, text in self.words.items()}
-        count = self.strengths.size
+        texts, count = escaped(self.words), self.strengths.size
         texts |= {
-            "card": html.escape(blows.card(self.scene, self.words)),
+            "player": "{player}",
+            "card": blows.card(self.scene, texts),
             "last_place": str(self.distances.size - 1),
             "last_strength": str(count - 1),
             "blows": str(self.distances.size * count),

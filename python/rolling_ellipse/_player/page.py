@@ -7,34 +7,39 @@ import gzip
 import hashlib
 import html
 import json
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from .colours import DARK, LIGHT
+from .words import escaped, packaged, words
 
 
-@cache
-def packaged(name: str) -> str:
-    """Return the text of a file beside this one."""
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
-
-
-def fragment(data: dict[str, Any], poster: str, text: str, *, explorer: bool = False) -> str:
+def fragment(
+    data: dict[str, Any],
+    poster: str,
+    text: str,
+    *,
+    starts: str = "Player",
+    around: str = "{player}",
+) -> str:
     """Return a `div` with a poster, an SVG, whose script replaces it by the player.
 
     If scripts are not run, the poster and its text stay. A page may have the same fragment several
-    times.
+    times. Data without words get the English ones. `around` is HTML around the player.
     """
-    style = packaged("player.css") + (packaged("explorer.css") if explorer else "")
-    data = data | {"colours": {"light": LIGHT, "dark": DARK}, "style": style}
+    scripts = ["track", "strip", "player", *["explorer"] * (starts == "Explorer")]
+    texts = data.get("words") or words("en")
+    player = packaged("player.html").format_map(escaped(texts))
+    data = data | {
+        "colours": {"light": LIGHT, "dark": DARK},
+        "style": "".join(packaged(f"{name}.css") for name in scripts[2:]),
+        "markup": around.replace("{player}", player),
+        "words": texts,
+    }
     known = json.dumps(data, separators=(",", ":"))
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
     name = hashlib.sha256((known + poster).encode()).hexdigest()[:12]
-    scripts = ("track.js", "strip.js", "player.js", "explorer.js")[: 3 + explorer]
-    module = "\n".join(packaged(each) for each in scripts)
+    module = "\n".join(packaged(f"{each}.js") for each in scripts)
     picture = base64.b64encode(poster.encode()).decode()
-    starts = "Explorer" if explorer else "Player"
     return (
         f'<div class="rolling-ellipse" data-film="{name}" data-lm-suppress-shortcuts="true">'
         f'<img alt="{html.escape(text)}" style="max-width:100%" '
@@ -63,6 +68,6 @@ def document(title: str, content: str, language: str = "en") -> str:
         "h1 { margin: 0 0 .6rem; font: 600 1.3rem system-ui, sans-serif }</style>\n"
         f"</head>\n<body>\n<main>\n<h1>{html.escape(title)}</h1>\n{content}\n</main>\n<script>\n"
         "if (parent !== window) new ResizeObserver(() => parent.postMessage(\n"
-        "  { rollingEllipse: { height: document.body.offsetHeight } }, '*')).observe(document.body);"
-        "\n</script>\n</body>\n</html>\n"
+        "  { rollingEllipse: { height: document.body.offsetHeight } }, '*'))\n"
+        "  .observe(document.body);\n</script>\n</body>\n</html>\n"
     )

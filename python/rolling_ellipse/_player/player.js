@@ -3,10 +3,7 @@
 
 const NUDGES = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -10, ArrowUp: 10 };
 const RATES = [0.1, 0.25, 0.5, 1, 2, 4];
-const ICONS = {
-  play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z",
-  back: "M5 3h2v12H5zM15 3v12l-7-6z", forth: "M13 3h-2v12h2zM3 3v12l7-6z",
-};
+const ICONS = { play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z" };
 /** True if the page, or else the reader's system, asks for dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
@@ -38,6 +35,7 @@ export class Player {
     host.player = this;
     for (const strip of film.strips)
       if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.starts);
+    point.sign = film.words.decimal;
     this.begin?.();
     this.build(host.attachShadow({ mode: "open" }));
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -75,17 +73,13 @@ export class Player {
   }
 
   build(shadow) {
-    shadow.innerHTML = `<style>${this.film.style}</style><div class="player" tabindex="0" role="group"
-      aria-label="Film of a rolling ellipse: space plays, arrows step">
-      <canvas role="img"></canvas><div class="bar">${this.button("play", "Play")}
-      ${this.button("back", "Step back")}${this.button("forth", "Step forward")}<div class="seek">
-      <input type="range" min="0" max="1" step="any" value="0" aria-label="Time"></div>
-      <span class="time"></span><select aria-label="Speed"></select><button class="forces"
-      aria-pressed="${this.forces}" title="Force of the ground">N, F</button></div></div>`;
+    shadow.innerHTML = `<style>${this.film.style}</style><div class="player" tabindex="0"
+      role="group">${this.film.markup}</div>`;
     const find = (words) => shadow.querySelector(words);
     this.box = find(".player");
+    this.box.setAttribute("aria-label", this.say("film"));
     this.canvas = find("canvas");
-    this.slider = find("input");
+    this.slider = find(".seek input");
     this.clock = find(".time");
     this.select = find("select");
     const { speed, fastest = Infinity } = this.film; // faster, bodies would seem to roll backwards
@@ -97,6 +91,7 @@ export class Player {
     this.toggle.onclick = () => (this.playing ? this.pause() : this.play());
     find(".back").onclick = () => this.step(-1);
     find(".forth").onclick = () => this.step(1);
+    find(".forces").setAttribute("aria-pressed", this.forces);
     find(".forces").onclick = ({ currentTarget }) => {
       this.forces = !this.forces;
       currentTarget.setAttribute("aria-pressed", this.forces);
@@ -106,11 +101,6 @@ export class Player {
     this.select.onchange = () => { this.rate = Number(this.select.value); };
     this.box.onkeydown = (event) => this.key(event);
     this.marks();
-  }
-
-  button(name, label) {
-    return `<button class="${name}" aria-label="${label}" title="${label}"><svg width="18"
-      height="18" aria-hidden="true"><path d="${ICONS[name]}"/></svg></button>`;
   }
 
   /** Put a mark at the slider for every event; only one for events in the same place. */
@@ -124,7 +114,7 @@ export class Player {
       seen.add(place);
       const mark = document.createElement("span");
       mark.className = "mark";
-      mark.title = `${kind} at ${t.toPrecision(4)} s`;
+      mark.title = this.say("event", { event: this.say(kind), t: t.toPrecision(4) });
       mark.style.left = `calc(8px + (100% - 16px) * ${part})`;
       seek.append(mark);
     }
@@ -179,10 +169,10 @@ export class Player {
 
   show(playing) {
     this.playing = playing;
-    const [name, label] = playing ? ["pause", "Pause"] : ["play", "Play"];
+    const name = playing ? "pause" : "play";
     this.toggle.querySelector("path").setAttribute("d", ICONS[name]);
-    this.toggle.setAttribute("aria-label", label);
-    this.toggle.title = label;
+    this.toggle.title = this.say(name);
+    this.toggle.setAttribute("aria-label", this.toggle.title);
   }
 
   /** Run one loop of frames while the film plays in sight; it rests for a second at the end. */
@@ -218,7 +208,7 @@ export class Player {
     this.slider.value = this.long > 0 ? this.shown(this.t) / this.long : 0;
     const text = this.t.toFixed(Math.max(3, this.film.decimals));
     this.now = Number(text); // the bodies are drawn for the time on the clock
-    this.clock.textContent = `${text} s`;
+    this.clock.textContent = this.say("clock", { t: text });
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.waiting ||= requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
   }
@@ -249,6 +239,7 @@ export class Player {
       paintStrip(ink, this.colours, strip, states[i], this.views[i], {
         floor, width: across, tall, forces: this.forces, lasting: t / film.speed,
         caption: this.caption(strip, states[i]), clock: i === columns - 1 ? this.clockText() : "",
+        say: (key) => this.say(key),
       });
       this.over?.(ink, i);
       ink.restore();
@@ -260,8 +251,15 @@ export class Player {
 
   /** The states in words, for readers who do not see the picture. */
   label(states) {
-    return states.map((at, i) => `${this.caption(this.film.strips[i], at) || "An ellipse"}: ${
-      this.clock.textContent}, θ = ${round(at.theta)} rad, x = ${round(at.x)} m`).join("; ");
+    const near = (value, unit) => Math.round((1000 * value) / unit) * (unit / 1000);
+    return states.map(({ theta, x }, i) => this.say("stage", { theta: near(theta, 1),
+      x: near(x, this.film.strips[i].a), t: this.clock.textContent,
+      name: this.film.strips[i].label })).join("; ");
+  }
+
+  /** The text of a key in the reader's language; values replace the names in braces. */
+  say(key, values = {}) {
+    return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) => round(values[name]));
   }
 
   /** The views of all strips; their cameras follow nothing, the middle, or each its own body. */
@@ -296,20 +294,20 @@ export class Player {
     if (this.parts.length > 1) {
       const [turn, turns] = [at.theta - strip.theta, strip.turns].map((angle, i) =>
         Math.max(1, Math.ceil(Math.abs(angle) / (i ? 1 : 2 * Math.PI) - 1e-6)));
-      parts.push(`turn ${turn} of ${turns}`);
+      parts.push(this.say("turn", { turn: `${turn}`, turns: `${turns}` }));
     }
-    if (at.mode === SLIDING) parts.push("slides");
-    if (at.mode === FLIGHT) parts.push("flies");
-    if (strip.valid !== null && this.t >= strip.valid) parts.push("rolling is no longer valid");
+    if (at.mode === SLIDING) parts.push(this.say("slides"));
+    if (at.mode === FLIGHT) parts.push(this.say("flies"));
+    if (strip.valid !== null && this.t >= strip.valid) parts.push(this.say("invalid"));
     const frame = this.film.speed / this.film.fps;
     const ended = strip.motion.end + frame < this.film.end && this.t > strip.motion.end;
-    if (ended) parts.push(`ended at ${+strip.motion.end.toPrecision(6)} s`);
+    if (ended) parts.push(this.say("ended", { t: strip.motion.end }));
     return parts.join("   ");
   }
 
   clockText() {
     const speed = this.film.speed * this.rate;
     const text = `t = ${this.clock.textContent}`;
-    return speed === 1 ? text : `${text}   speed × ${+speed.toPrecision(3)}`;
+    return speed === 1 ? text : this.say("fast", { text, speed: `${+speed.toPrecision(3)}` });
   }
 }

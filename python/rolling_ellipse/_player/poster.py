@@ -11,7 +11,7 @@ from .._ask.check import FloatArray
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .colours import DARK, LIGHT
-from .page import packaged
+from .words import packaged
 
 _WIDTH = 640.0
 _BODIES = 9

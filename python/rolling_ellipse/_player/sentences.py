@@ -11,7 +11,6 @@ from .._ask.scene import Scene
 from .._core import Mode, Outcome, Painleve, Validity
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
-from .._verbs.outcome import outcome
 
 Sentence = list[Any]  # a key, and the numbers for the braces of its text
 IN_THE_AIR = len(Outcome)  # the code of a body that does not come to the ground

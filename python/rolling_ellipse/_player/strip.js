@@ -66,9 +66,10 @@ export function fill(ink, colour) {
 
 export const point = { sign: "." }; // between the digits of a number
 
-/** The text of a number with a few digits. */
+/** The text of a number with a few digits; a text of digits keeps all of them. */
 export function round(value, digits = 3) {
-  return `${+value.toPrecision(digits)}`.replace("-", "−").replace(".", point.sign);
+  const written = typeof value === "number" ? `${+value.toPrecision(digits)}` : `${value}`;
+  return /^[-+\d.e]+$/.test(written) ? written.replace("-", "−").replace(".", point.sign) : written;
 }
 
 /** Draw an arrow from one pixel to another; the head of a short one is smaller. */
@@ -223,7 +224,7 @@ function paintBlow(ink, colours, strip, view, lasting) {
 }
 
 /** Draw a tick on the ground for every past event, and the name of a recent one. */
-function paintEvents(ink, colours, strip, at, view, { width, lasting }) {
+function paintEvents(ink, colours, strip, at, view, { width, lasting, say }) {
   let named = null;
   for (const [t, kind, x] of strip.events) {
     if (t > at.t) break;
@@ -232,7 +233,7 @@ function paintEvents(ink, colours, strip, at, view, { width, lasting }) {
     path(ink, [[u, v], [u - 3.5, v + 8], [u + 3.5, v + 8]]);
     fill(ink, colours.plum);
     const age = lasting * (1 - t / Math.max(at.t, 1e-300));
-    if (age < FADES) named = { kind, place: [u, v + 38], alpha: 1 - age / FADES };
+    if (age < FADES) named = { kind: say(kind), place: [u, v + 38], alpha: 1 - age / FADES };
   }
   if (!named) return;
   ink.globalAlpha = named.alpha;

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 from collections.abc import Mapping
 from functools import cache
+from importlib.resources import files
 
 from .._ask.check import choice, shown
-from .page import packaged
 
 LANGUAGES = ("en", "de")
 _BRACES = re.compile(r"\{(\w+)\}")
+
+
+@cache
+def packaged(name: str) -> str:
+    """Return the text of a file beside this one."""
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 @cache
@@ -61,3 +68,8 @@ def written(value: float, words: dict[str, str]) -> str:
 def filled(words: dict[str, str], key: str, **values: float) -> str:
     """Return a text with numbers in its braces."""
     return _BRACES.sub(lambda found: written(values[found[1]], words), words[key])
+
+
+def escaped(words: dict[str, str]) -> dict[str, str]:
+    """Return the texts for HTML."""
+    return {key: html.escape(text) for key, text in words.items()}
