@@ -1,6 +1,7 @@
 """The player and the explorer in a real browser: their drawings and their reactions."""
 
 import base64
+import html
 import io
 import math
 from collections.abc import Callable
@@ -288,8 +289,9 @@ def drag(page: Page, by: tuple[float, float], steps: int) -> None:
     page.mouse.move(x + by[0], y + by[1], steps=steps)
 
 
-@pytest.mark.parametrize("name", ["report", "slope", "drop"])
+@pytest.mark.parametrize("name", ["report", "slope", "drop", "jump"])
 def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str) -> None:
+    """Places, turns and forces are drawn within a pixel; a plot has 540 by 168 pixels."""
     scene = SCENES[name]
     explorer = rl.explore(scene)
     page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
@@ -307,20 +309,16 @@ def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str)
         scale = told(page, "player => player.views[0].scale")
         at = motion.sol(t)
         missed = math.dist((body["x"], body["z"]), (float(at.x[0]), float(at.z[0])))
-        assert missed * scale < 1  # one pixel
         turned = abs(body["theta"] - float(at.theta[0])) * max(scene.a, scene.b)
-        assert turned * scale < 1
-
-
-def test_the_blow_follows_the_pointer_to_the_nearest_that_was_computed(opened: Opened) -> None:
-    explorer = rl.explore(rl.scenes.report)
-    page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
-    scale = told(page, "player => player.views[0].scale")
-    d = blow(page)[0]
-    drag(page, (-scale, 0.0), steps=4)  # one metre
-    page.mouse.up()
-    nearest = explorer.distances[np.argmin(np.abs(explorer.distances - (d - 1.0)))]
-    assert blow(page)[0] == pytest.approx(nearest, abs=1e-12)
+        assert max(missed, turned) * scale < 1
+    at, weight = motion.sol(np.linspace(0.0, explorer.t_end, 540 * 20)), scene.mass * scene.gravity
+    curves = told(page, "player => player.curves.map(curve => curve.points)")
+    for points, force in zip(curves, (at.normal_force, at.friction_force), strict=True):
+        true, (t, seen) = np.clip(force / weight, -3, 5), np.array(points).T
+        near = [np.roll(true, k)[20:-20] for k in range(-20, 21)]  # within a pixel of time
+        seen = np.interp(at.t, t, np.clip(seen, -3, 5))[20:-20]
+        over = np.maximum(seen - np.max(near, axis=0), np.min(near, axis=0) - seen)
+        assert over.max() * 168 / np.ptp([-0.5, 1.5, *true]) < 1
 
 
 def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
@@ -331,9 +329,7 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
     explorer = rl.explore(rl.scenes.report)
     assert blow(page) == (explorer.distances[0], explorer.strengths[-1])
     assert page.locator(".said").inner_text().startswith("It rolls, then it slips.")
-    assert page.locator(".where").input_value() == "0"
     page.locator(".where").fill("12")
-    assert blow(page)[0] == pytest.approx(0.0, abs=1e-15)
     assert "It rests." in page.locator(".said").inner_text()
     page.get_by_role("button", name="copy as code").click()
     page.wait_for_function(f"{HOST}.dataset.code")
@@ -342,19 +338,70 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
     assert made["blow"] == rl.Impulse.press(explorer.strengths[-1], 0.0)
 
 
+@pytest.mark.parametrize(
+    ("part", "keys", "blow_after"),
+    [
+        (".where", "ArrowRight ArrowUp ArrowLeft", (22, 7)), (".where", "Home", (0, 7)),
+        (".where", "End", (24, 7)), (".where", "PageDown", (19, 7)), (".hard", "ArrowUp", (21, 8)),
+        (".hard", "End ArrowDown", (21, 14)), (".hard", "Home", (21, 0)),
+        (".map canvas", "ArrowLeft ArrowUp", (20, 8)), (".map canvas", "Home PageUp", (0, 11)),
+        (".player", "ArrowRight Space Space d d", (21, 7)),
+    ],
+)  # fmt: skip
+def test_keys_move_the_blow_and_none_reaches_the_page(
+    opened: Opened, part: str, keys: str, blow_after: tuple[int, int]
+) -> None:
+    page = opened(rl.explore(rl.scenes.report, t_end=1.0).to_html(), reduced_motion="reduce")
+    page.evaluate("addEventListener('keydown', () => document.body.remove())")
+    page.locator(part).focus()
+    for key in [*keys.split(), "d", "d", "Control+x"]:
+        page.keyboard.press(key)
+    i, j, t = told(page, "player => [player.i, player.j, player.t]")
+    assert (i, j) == blow_after and (t == 0) == (part != ".player")
+
+
+def test_the_reason_is_spoken_when_another_one_holds(opened: Opened) -> None:
+    page = opened(rl.explore(rl.scenes.report, t_end=1.0, language="de").to_html())
+    page.locator(".hard").press("End")
+    assert page.locator(".hard").get_attribute("aria-valuetext") == "99,7 Newtonsekunden"
+    heard = page.locator(".spoken").inner_text()
+    assert heard.startswith("Sie rollt, dann rutscht sie.") and "Das Rollen endet" in heard
+    page.locator(".hard").press("ArrowDown")
+    assert page.locator(".spoken").inner_text() == heard
+
+
+def test_the_lines_of_the_docstring_fit_a_frame_to_its_page(opened: Opened) -> None:
+    lines = rl.explore.__doc__.split("::\n\n")[1].split("</script>")[0] + "</script>"
+    text = html.escape(rl.explore(rl.scenes.report, t_end=1.0).to_html())
+    frame = opened(lines.replace('src="strike.html"', f'srcdoc="{text}"')).frames[1]
+    frame.wait_for_function("innerHeight > 600 && document.body.offsetHeight === innerHeight")
+
+
+def test_a_swipe_scrolls_the_page_except_on_the_hand(opened: Opened) -> None:
+    page = opened(rl.explore(rl.scenes.report, t_end=1.0).to_html(), has_touch=True,
+                  viewport={"width": 390, "height": 700}, reduced_motion="reduce")  # fmt: skip
+    touch = page.context.new_cdp_session(page)
+    boxes = [page.locator(part).first.bounding_box() for part in ("canvas", ".map canvas")]
+    places = [hand(page), *((box["x"] + 60, box["y"] + 40) for box in boxes)]
+    for (x, y), scrolls in zip(places, (False, True, True), strict=True):
+        before = blow(page)
+        for k in range(12):
+            kind = "touchStart" if k == 0 else "touchMove" if k < 11 else "touchEnd"
+            at = [{"x": x - 3 * k, "y": y - 9 * k}] if k < 11 else []
+            touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
+            page.evaluate("new Promise(requestAnimationFrame)")
+        assert (page.evaluate("scrollY") > 30, blow(page) == before) == (scrolls, scrolls)
+        page.evaluate("scrollTo(0, 0)")
+
+
 def test_an_exported_notebook_without_a_kernel_still_drags(opened: Opened) -> None:
     exporters = pytest.importorskip("nbconvert.exporters", reason="there is no nbconvert")
-    output = nbformat.v4.new_output(
-        "execute_result",
-        {"text/html": rl.explore(rl.scenes.report)._repr_html_()},
-        execution_count=1,
-    )
-    film = rl.animate(rl.simulate(rl.scenes.report, 3.0))._repr_html_()
-    shown = nbformat.v4.new_output("display_data", {"text/html": film})
-    cell = nbformat.v4.new_code_cell("explore(scene)", outputs=[output, shown], execution_count=1)
+    film = rl.animate(rl.simulate(rl.scenes.report, 3.0))
+    shown = [each._repr_html_() for each in (rl.explore(rl.scenes.report), film)]
+    outputs = [nbformat.v4.new_output("display_data", {"text/html": each}) for each in shown]
+    cell = nbformat.v4.new_code_cell("", outputs=outputs)
     html, _ = exporters.HTMLExporter().from_notebook_node(nbformat.v4.new_notebook(cells=[cell]))
     page = opened(html, strict=False, viewport={"width": 1000, "height": 1400})  # MathJax needed
-    page.wait_for_function("document.querySelectorAll('[data-ready]').length === 2")
     before = blow(page)
     drag(page, (-60, 20), steps=4)
     page.mouse.up()

@@ -1,7 +1,7 @@
 """The table of blows agrees with the motions of `simulate`."""
 
-import itertools
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -42,20 +42,6 @@ def test_the_strongest_blow_on_the_report_goes_three_times_beyond() -> None:
     assert speed == pytest.approx(3 * rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-2)
 
 
-def test_the_table_is_in_the_order_of_its_places_and_strengths() -> None:
-    scene, d, F = rl.scenes.report, np.array([-1.5, 0.0, 1.5]), np.array([20.0, 48.0, 90.0])
-    found = blows.table(scene, 2.0, d, F)
-    ends = [0, *found["ends"]]
-    assert len(ends) == 10 and all(b > a for a, b in itertools.pairwise(ends))
-    expected = {
-        (0, 0): Outcome.ROCKS, (1, 1): Outcome.RESTS, (2, 0): Outcome.ROCKS,
-        (2, 1): Outcome.ROLLS_OVER, (2, 2): Outcome.SLIPS,
-    }  # fmt: skip
-    for (i, j), outcome in expected.items():
-        assert found["outcomes"][3 * i + j] == outcome
-    assert [key for key, _ in found["reasons"][7]] == ["sticks", "proved"]
-
-
 @pytest.mark.parametrize("slope", [0.0, 0.05])
 def test_the_table_says_what_comes_first(slope: float) -> None:
     scene, d, F = rl.Scene(2.0, 1.0, slope=slope, friction=0.5), [-1.0, 0.5, 1.9], [2.0, 6.0]
@@ -86,17 +72,19 @@ def test_the_code_that_is_copied_makes_the_same_motion(name: str) -> None:
     assert made["trajectory"].t[-1] == explorer.t_end
 
 
-def test_it_begins_with_the_blow_of_the_scene() -> None:
-    i, j = rl.explore(rl.scenes.report)._first_blow()
-    explorer = rl.explore(rl.scenes.report)
-    assert (explorer.distances[i], explorer.strengths[j]) == (1.5, 48.0)
-    assert np.all(np.diff(explorer.distances) > 0) and np.all(np.diff(explorer.strengths) > 0)
-
-
 def test_pages(tmp_path: Path) -> None:
     explorer = rl.explore(rl.scenes.report, t_end=1.0)
     explorer.to_html(tmp_path / "one.html")
     text = (tmp_path / "one.html").read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and explorer._repr_html_() in text
-    assert len(text) < 400_000
-    assert explorer.to_html() == text
+    assert len(text) < 400_000 and explorer.to_html() == text
+
+
+def test_a_language_is_a_whole_table() -> None:
+    """The names of all outcomes, events and reasons are keys, with the same numbers in braces."""
+    english, german = (rl.explore(rl.scenes.drop, language=name).words for name in ("en", "de"))
+    assert rl.explore(rl.scenes.drop, language=german).words == german
+    assert english.keys() == german.keys() >= {each.name for each in Outcome}
+    braces = [[sorted(re.findall(r"{\w+}", table[key])) for key in english]
+              for table in (english, german)]  # fmt: skip
+    assert braces[0] == braces[1]

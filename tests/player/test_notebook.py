@@ -2,7 +2,6 @@
 
 import nbclient
 import nbformat
-import pytest
 
 CELLS = (
     "%matplotlib inline\nimport rolling_ellipse as rl\nmotion = rl.simulate(rl.scenes.report, 2.0)",
@@ -13,20 +12,12 @@ CELLS = (
 )
 
 
-@pytest.fixture(scope="module")
-def executed() -> nbformat.NotebookNode:
+def test_a_cell_shows_it_once_and_no_figure_is_left() -> None:
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in CELLS])
     nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
-    return notebook
-
-
-@pytest.mark.parametrize("cell", [1, 2, 3])
-def test_a_cell_shows_it_once(executed: nbformat.NotebookNode, cell: int) -> None:
-    (output,) = executed.cells[cell].outputs
-    assert output.output_type == "execute_result"
-    assert set(output.data) == {"text/html", "text/plain"}
-    assert output.data["text/html"].count('class="rolling-ellipse"') == 1
-
-
-def test_no_figure_is_left(executed: nbformat.NotebookNode) -> None:
-    assert executed.cells[4].outputs[0].data["text/plain"] == "[]"
+    for cell in notebook.cells[1:4]:
+        (output,) = cell.outputs
+        assert output.output_type == "execute_result"
+        assert set(output.data) == {"text/html", "text/plain"}
+        assert output.data["text/html"].count('class="rolling-ellipse"') == 1
+    assert notebook.cells[4].outputs[0].data["text/plain"] == "[]"

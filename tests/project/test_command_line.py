@@ -329,7 +329,7 @@ def test_save_writes_an_animation(tmp_path: Path) -> None:
         ("--save no/such/folder/a.gif", "no/such/folder/a.gif"),
         ("--time --json", "--time"), ("--omega -x", "--omega"), ("-1e-3", "-1e-3"),
         ("--json -1", "-1"), ("explore --a -1", "a must"), ("explore --bogus", "--bogus"),
-        ("explore --time 300", "--time must be at most"), ("explore --press 20", "--press"),
+        ("explore --time 300", "t_end must be at most"), ("explore --press 20", "--press"),
         ("explore --save no/such/page.html", "page.html"), ("explore --save .", "'.'"),
     ],
 )  # fmt: skip

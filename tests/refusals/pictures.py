@@ -26,6 +26,7 @@ FAR = rl.simulate(Scene(2.0, 1.0, x=1e24), [0.0, 1.0])
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 OWN_START: Any = report.simulate(Q, Q_DOT, [0.0, 0.1], a=2.0, b=1.0)
 WRONG: Any = 1
+WORDS = rl.explore(scenes.report).words
 FILM: dict[str, Any] = {"width": 160, "dpi": 50}
 
 
@@ -179,6 +180,9 @@ REFUSALS: list[Row] = [
     *wrong(rl.explore, {}, scene=[None, 42, "report", scenes, MOTION]),
     *wrong(rl.explore, {"scene": scenes.report},  # spans up to 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
            t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
+    *wrong(rl.explore, {"scene": scenes.report},
+           language=["fr", 1, {"title": "x"}, WORDS | {"x": "x"}, WORDS | {"lang": 1},
+                     WORDS | {"place": "{F}"}]),
     ("scene", lambda _: rl.explore(scenes.report.replace(x=1e30))),
     ("path", lambda folder: rl.explore(scenes.report).to_html(folder / "a.gif")),
 ]  # fmt: skip

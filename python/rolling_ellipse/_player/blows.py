@@ -32,7 +32,7 @@ _PIXEL = 2.5e-4  # tolerance over the width of the view
 _SAMPLES = 100  # of a motion; up to ten times as many if places or forces need them
 ROWS, COLUMNS = 168.0, 540.0  # pixels of the plot of forces
 CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # its largest and its least range [weights]
-_WITHIN = 0.5 + np.array([-1, 0, 1]) / math.sqrt(12)  # parabolas miss most at first and last
+_WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])  # irregular parts of an interval
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
 _SELDOM = {
     "theta": ("θ", "rad"), "omega": ("ω", "rad/s"), "z": ("z", "m"), "x_dot": ("ẋ", "m/s"),
@@ -72,11 +72,12 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
     first = np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist()
     codes, headlines, reasons = zip(*map(told, motions, first), strict=True)
     sampled = [_sampled(motion, tolerance) for motion in motions]
-    middles = [motion.sol(_middles(motion.t)) for motion in sampled]
     weight = 1e-3 * scene.mass * scene.gravity
     return {
         "columns": columns(sampled, tolerance) | {
-            f"{name}_middle": packed(np.concatenate([getattr(m, name) for m in middles]), weight)
+            f"{name}_middle": packed(
+                np.concatenate([_middles(motion, name) for motion in sampled]), weight
+            )
             for name in FORCES
         },
         "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
@@ -101,8 +102,8 @@ def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
     """Return the motion at the times for the player; at even times if these are too many.
 
-    Between them, parabolas through the forces and their values at the middles miss by at most half
-    a pixel in a plot of the forces; a peak that it cuts off has an error of up to a tenth.
+    Between them, parabolas through the forces and their values at the middles miss by less than
+    a pixel in a plot of the forces; a peak that it cuts off has an error of up to a fifth.
     """
     end, most = motion.t_end, 10 * _SAMPLES
     times = sample_times(motion, end, tolerance, most=most, for_forces=0)
@@ -122,25 +123,32 @@ def _misses(
     motion: Trajectory, left: FloatArray, right: FloatArray, rows: float
 ) -> npt.NDArray[np.bool_]:
     """Return whether parabolas between the times miss the forces, of which one weight is `rows`."""
-    span, bad = right - left, np.zeros(left.size, bool)
-    inner = motion.sol(np.ravel(left[:, np.newaxis] + span[:, np.newaxis] * _WITHIN))
+    span, weight = (right - left)[:, np.newaxis], motion.scene.mass * motion.scene.gravity
+    inner = motion.sol((left[:, np.newaxis] + span * _WITHIN).ravel())
     first, last = motion.sol(left), motion.sol(right)
+    bad, u, v = np.zeros(left.size, bool), _WITHIN, 1 - _WITHIN
     for name in FORCES:
-        weight = motion.scene.mass * motion.scene.gravity
-        p, q = getattr(first, name) / weight, getattr(last, name) / weight
-        within = getattr(inner, name).reshape(left.size, 3).T / weight
-        steep = rows * np.abs(q - p) / (COLUMNS * span / motion.t_end)  # pixels in a pixel
-        for u, true in zip(_WITHIN[::2], within[::2], strict=True):
-            drawn = (1 - u) * (1 - 2 * u) * p + 4 * u * (1 - u) * within[1] + u * (2 * u - 1) * q
-            seen = np.abs(np.clip(drawn, *CUT) - np.clip(true, *CUT)) * rows
-            bad |= seen > 0.5 * np.hypot(1, steep)
-            bad |= np.abs(drawn - true) > 0.1 * (1 + np.abs(true))
+        p, q = (getattr(at, name)[:, np.newaxis] / weight for at in (first, last))
+        true = getattr(inner, name).reshape(left.size, u.size) / weight
+        middle = true[:, u.size // 2, np.newaxis]
+        drawn = v * (v - u) * p + 4 * u * v * middle + u * (u - v) * q
+        steep = (4 * u - 3) * p + 4 * (v - u) * middle + (4 * u - 1) * q
+        steep *= rows / COLUMNS * motion.t_end / span  # pixels in a pixel
+        seen = (
+            rows
+            * np.abs(np.clip(drawn, *CUT) - np.clip(true, *CUT))
+            / np.minimum(np.hypot(1, steep), 3)
+        )
+        bad |= np.any((seen > 0.35) | (np.abs(drawn - true) > 0.2 * (1 + np.abs(true))), axis=1)
     return bad
 
 
-def _middles(t: FloatArray) -> FloatArray:
-    """Return the middles of intervals, and the last time."""
-    return np.append((t[:-1] + t[1:]) / 2, t[-1])
+def _middles(motion: Trajectory, name: str) -> FloatArray:
+    """Return forces at the middles of intervals, and the last force; a jump has their mean."""
+    t, forces = motion.t, getattr(motion, name)
+    middles: FloatArray = getattr(motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), name)
+    means = (forces + np.append(forces[1:], forces[-1])) / 2
+    return np.where(np.diff(t, append=np.inf) > 1e-9 * t[-1], middles, means)
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:

@@ -57,7 +57,7 @@ export class Explorer extends Player {
       moved(event);
     });
     canvas.addEventListener("touchstart", (event) => { // a held finger does not scroll the page
-      if (held) event.preventDefault();
+      if (held && event.cancelable) event.preventDefault();
     }, { passive: false });
     canvas.addEventListener("pointermove", (event) => {
       if (held) moved(event);

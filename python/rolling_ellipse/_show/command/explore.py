@@ -23,10 +23,7 @@ def explore(options: Namespace) -> str:
         If the page cannot be written.
     """
     scene, path = chosen_scene(options), options.save
-    try:
-        explorer = _player.explore(scene, t_end=options.time, language=options.language)
-    except ValueError as error:
-        raise ValueError(str(error).replace("t_end", "--time")) from None
+    explorer = _player.explore(scene, t_end=options.time, language=options.language)
     if path is None:
         handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
         os.close(handle)
