@@ -16,7 +16,6 @@ from .._ask.scene import Impulse, Scene, require_scene
 from .._motion.export.atomic import replacing
 from . import blows
 from .page import document, fragment
-from .poster import positions, poster
 from .words import escaped, filled, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
@@ -164,9 +163,9 @@ class Explorer(FieldsOnly):
         }
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
-        still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
+        motion = motion.sol(np.linspace(0.0, motion.t_end, 61))
         text = filled(self.words, "poster", F=-blow.jz, d=blow.dx)
-        return fragment(data, still, text, starts="Explorer", around=self._markup(table))
+        return fragment(data, [motion], text, "Explorer", self._markup(table))
 
     def _markup(self, table: dict[str, Any]) -> str:
         """Return the parts around the player with their texts."""

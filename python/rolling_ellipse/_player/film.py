@@ -1,4 +1,4 @@
-"""The player of an animation: its data, its page and its poster."""
+"""The player of an animation: its data and its page."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from .._ask.scene import Scene
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.camera import cameras
-from .._pictures.ground import SHOWN_TURNS, touching_x
-from .._pictures.sampling import turned_until
+from .._pictures.ground import touching_x
 from .page import document, fragment
-from .poster import positions, poster
 from .tracks import track
 
 _PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of a film 2000 pixels wide
@@ -67,16 +65,7 @@ def film_html(animation: RollingAnimation) -> str:
     }
     text = f"{len(motions)} ellipses" if len(motions) > 1 else "An ellipse"
     text += f" on the ground in motion for {last:g} s, at even times"
-    return fragment(data, still(motions, animation.labels, seen.shape), text)
-
-
-def still(motions: list[Trajectory], labels: tuple[str, ...], shape: float) -> str:
-    """Return the poster: even times of the whole motion, or of its first three turns."""
-    end = min(turned_until(motion, SHOWN_TURNS, "omega") for motion in motions)
-    at = [positions(motion, end) for motion in motions]
-    seen = cameras(at, shape, _HEAD, _FOOT)
-    windows = [tuple(map(float, views[0])) for views in seen.views]
-    return poster(at, windows, labels, shape)  # type: ignore[arg-type]
+    return fragment(data, motions, text)
 
 
 def body(scene: Scene) -> dict[str, Any]:

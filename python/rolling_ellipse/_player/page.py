@@ -7,23 +7,26 @@ import gzip
 import hashlib
 import html
 import json
+from collections.abc import Sequence
+from string import Template
 from typing import Any
 
+from .._motion.strobe_svg import strobe_svg
+from .._motion.trajectory import Trajectory
 from .colours import DARK, LIGHT
 from .words import escaped, packaged, words
 
 
 def fragment(
     data: dict[str, Any],
-    poster: str,
+    motions: Sequence[Trajectory],
     text: str,
-    *,
     starts: str = "Player",
     around: str = "{player}",
 ) -> str:
-    """Return a `div` with a poster, an SVG, whose script replaces it by the player.
+    """Return a `div` with pictures of the motions, whose script replaces them by the player.
 
-    If scripts are not run, the poster and its text stay. A page may have the same fragment several
+    If scripts are not run, pictures and text stay. A page may have the same fragment several
     times. Data without words get the English ones. `around` is HTML around the player.
     """
     scripts = ["track", "strip", "player", *["explorer"] * (starts == "Explorer")]
@@ -37,19 +40,30 @@ def fragment(
     }
     known = json.dumps(data, separators=(",", ":"))
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
-    name = hashlib.sha256((known + poster).encode()).hexdigest()[:12]
+    name = hashlib.sha256(known.encode()).hexdigest()[:12]
     module = "\n".join(packaged(f"{each}.js") for each in scripts)
-    picture = base64.b64encode(poster.encode()).decode()
+    pictures = filter(None, (strobe_svg(motion, _style()) for motion in motions))
+    codes = [base64.b64encode(picture.encode()).decode() for picture in pictures]
     return (
         f'<div class="rolling-ellipse" data-film="{name}" data-lm-suppress-shortcuts="true">'
-        f'<img alt="{html.escape(text)}" style="max-width:100%" '
-        f'src="data:image/svg+xml;base64,{picture}">\n'
+        f"{''.join(_image(code, text) for code in codes)}\n"
         f'<script type="module">\n{module}\n'
         f'const free = `.rolling-ellipse[data-film="{name}"]:not([data-ready])`;\n'
         f'const film = await unzipped("{packed}");\n'
         f"const host = document.querySelector(free);\nnew {starts}(host, film);\n"
         "host.addEventListener('keydown', (event) => event.stopPropagation());\n</script></div>"
     )
+
+
+def _image(code: str, text: str) -> str:
+    source = f"data:image/svg+xml;base64,{code}"
+    return f'<img alt="{html.escape(text)}" style="width: 100%" src="{source}">'
+
+
+def _style() -> str:
+    """Return the style sheet of pictures, for light and for dark."""
+    light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
+    return f"<style>{light}@media (prefers-color-scheme: dark) {{ {dark}}}</style>"
 
 
 def document(title: str, content: str, language: str = "en") -> str:

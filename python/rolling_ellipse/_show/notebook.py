@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .._ask.printing import Row, brief, html_table
-from .strobe_svg import strobe_svg
+from .._motion.strobe_svg import strobe_svg
 
 if TYPE_CHECKING:
     from .._motion.trajectory import Trajectory

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .._motion.samples import even_times
+from .samples import even_times
 
 if TYPE_CHECKING:
-    from .._motion.trajectory import Trajectory
+    from .trajectory import Trajectory
 
 _Places = npt.NDArray[np.complex128]
 
@@ -23,8 +23,8 @@ _REACH = 12.0  # largest distance from the start in the picture [long semi-axes]
 _TURNING = 4 * math.pi  # most that the body turns in the picture, back and forth [rad]
 
 
-def strobe_svg(trajectory: Trajectory) -> str:
-    """Return the picture as SVG, with gravity downwards; "" for a motion without samples.
+def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
+    """Return the picture, with gravity downwards; "" for a motion without samples.
 
     Points are complex numbers, x - iz relative to the foot of the first centre: i points down as on
     a screen, and clockwise rotation is positive. Their unit is the long semi-axis, so that no scene
@@ -66,7 +66,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
         f'viewBox="0 0 {width} {height}" fill="none" stroke="currentColor">'
-        f"<title>t = {first:g} … {last:.4g} s</title>{''.join(lines + bodies)}</svg>"
+        f"{style}<title>t = {first:g} … {last:.4g} s</title>{''.join(bodies + lines)}</svg>"
     )
 
 
