@@ -1,8 +1,9 @@
-"""The work-precision chart: a run stands at its numbers, or on the rim with its reason."""
+"""The work-precision chart: fronts, factors and names agree with made runs, and can be read."""
 
+import itertools
 import math
 from dataclasses import replace
-from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -10,28 +11,48 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from rolling_ellipse import Scene, WorkPrecision, work_precision
-from rolling_ellipse._verbs.work_precision import Errors
+from matplotlib.text import Text
+from rolling_ellipse import Scene, WorkPrecision
+from rolling_ellipse._verbs.work_precision.run import Errors, Reference, Run
 
-SCENE = Scene(2.0, 1.0, theta=0.2, omega=3.2)
-FOUND = work_precision(
-    SCENE, [1.0, 3.0], rounds=2, samples=8, tolerances=[1e-2, 1e-6, 1e-10], steps=[0.4, 0.02],
-    methods=["flow", "dop853", "rk4", "multipliers/rk4/none", "multipliers/radau/ggl"],
-)  # fmt: skip
-# times of the methods: no picture depends on the load of the machine; NaN stays NaN
-TIMES = {"flow": 2e-6, "dop853": 2e-5, "rk4": 1e-5}
-FOUND = replace(
-    FOUND,
-    runs=tuple(
-        replace(
-            run,
-            time=TIMES.get(run.name, 1e-3) * (1 + run.steps / 100) + 0 * run.time,
-            setup=1e-5 + 0 * run.setup,
+LIBRARIES = "SciPy", "heyoka", "Boost", "SUNDIALS", "diffrax"
+DECADES = [10.0**-k for k in range(2, 15)]
+LIMIT = 3e-13
+
+
+def run(name: str, error: float, time: float, **how: Any) -> Run:
+    tags = ("peer",) if name.split()[0] in LIBRARIES else ("own",)
+    return Run(
+        name, "rolling", how.pop("method", name), "", how.pop("setting", error), time=time,
+        errors=Errors(error, error, error), tags=tags, t_end=2.0, setup=0.01, samples_time=time,
+        **how,
+    )  # fmt: skip
+
+
+def made(count: int, best: float = 1e-13, kind: str = "ladders") -> WorkPrecision:
+    """A race of `count`: one answer of "flow", own methods and peers of rising order and cost."""
+    runs = [run("flow", best / 10, 2e-6, method="exact", setting=math.nan)]
+    for i in range(1, count):
+        own = i % 4 == 2
+        name = f"method{i}" if own else f"{LIBRARIES[i % 5]} method {i}"
+        order, unit = 3 + i % 6, 1e-6 * 1.4 ** (i % 13) * (1 + i % 3)
+        errors = (
+            [10.0**-k for k in range(-2, 16) if 10.0**-k > best] if kind == "ladders" else [1e-5]
         )
-        for run in FOUND.runs
-    ),
-)
-FAILED = {run.name for run in FOUND.of() if not run.completed}
+        for error in errors:
+            # each method's steps grow as error^(-1/order), with a fixed cost of 10 units
+            runs.append(run(name, error, unit * (10 + error ** (-1 / order))))
+    reference = Reference("made", 2.0, 0.0, LIMIT if best < LIMIT else 3 * best)
+    return WorkPrecision(Scene(2.0, 1.0, omega=3.2), tuple(runs), (reference,), {"rounds": "9"})
+
+
+FOUND = made(23)
+OWN = {each.name for each in FOUND.runs if "own" in each.tags}
+READ = {
+    **{f"{count}": made(count) for count in (2, 7, 30)},
+    "7 of a thin body, whose errors stay large": made(7, 3e-4),
+    "7 with one answer each": made(7, kind="single"),
+}
 
 
 @pytest.fixture
@@ -39,131 +60,187 @@ def chart() -> Any:
     return FOUND.plot(ax=Figure().add_subplot())
 
 
-def test_every_answer_is_drawn_and_every_gap_is_marked(chart: Any) -> None:
-    floor, _ = FOUND.reference.limits("largest")
-    for name in FOUND.names:
-        answers = [run for run in FOUND.of() if run.name == name and run.completed]
-        x = [min(max(run.errors.final, run.errors.linf, floor), 10.0) for run in answers]
-        drawn = chart.lines[name].get_xydata()
-        assert np.array_equal(drawn, np.transpose([x, [run.time for run in answers]]))
-    assert FAILED and chart.failures.keys() == FAILED
-    for name in FAILED:
-        reason = next(r.reason for r in FOUND.of() if r.name == name and not r.completed)
-        line = next(
-            each for each in chart.reasons.get_text().splitlines() if each.startswith(f"× {name}")
-        )
-        assert reason[:40] in line
+def height(line: Any, error: float) -> float:
+    """Height of a drawn front at an error."""
+    x, y = line.get_data()
+    return float(next(value for at, value in zip(x, y, strict=True) if at <= error))
 
 
-def test_small_errors_are_on_the_right_and_what_cannot_be_known_is_grey(chart: Any) -> None:
+def test_the_fronts_are_the_least_times_of_the_camps_and_the_factors_their_ratios() -> None:
+    chart: Any = FOUND.plot(ax=Figure(figsize=(8, 5)).add_subplot())
+    for decade in DECADES[:11]:
+        least = FOUND.least(decade)
+        own = min(time for name, time in least.items() if name in OWN)
+        peers = min(time for name, time in least.items() if name not in OWN)
+        assert height(chart.fronts["highlight"], decade) == own
+        assert height(chart.fronts["others"], decade) == peers
+        if decade in chart.factors:
+            shown = chart.factors[decade].get_text()
+            assert shown.split()[1:] == ["×", "faster"]
+            assert float(shown.split()[0]) == pytest.approx(peers / own, rel=0.05)
+    assert list(chart.factors) == [1e-2, 1e-6, 1e-10]
+
+
+def test_who_is_ahead_is_told_either_way_and_a_tie_is_one() -> None:
+    slow = next(name for name in FOUND.names if name not in OWN)
+    chart: Any = FOUND.plot(highlight=slow, ax=Figure(figsize=(8, 5)).add_subplot())
+    assert {text.get_text().split()[-1] for text in chart.factors.values()} == {"slower"}
+    runs = run("one", 1e-5, 1e-3), run("SciPy two", 1e-5, 1.1e-3)
+    tie: Any = replace(FOUND, runs=runs).plot(ax=Figure().add_subplot())
+    assert {text.get_text() for text in tie.factors.values()} == {"equal"}
+
+
+def test_highlights_are_names_or_tags_that_are_there() -> None:
+    def camp(**how: Any) -> Any:
+        found = how.pop("found", FOUND)
+        chart: Any = found.plot(ax=Figure().add_subplot(), **how)
+        own = chart.fronts["highlight"].get_color()
+        return {name for name, line in chart.lines.items() if line.get_color() == own}
+
+    assert camp() == OWN == camp(highlight="own") == camp(highlight=["own"])
+    assert camp(highlight=["flow", "Boost method 7"]) == {"flow", "Boost method 7"}
+    alone = replace(FOUND, runs=tuple(each for each in FOUND.runs if each.name in OWN))
+    assert camp(found=alone) == {"flow"}  # without peers, the method that is ahead most
+    with pytest.raises(ValueError, match=r"highlight must be among .*flow.*own.*peer.*'nobody'"):
+        camp(highlight="nobody")
+    with pytest.raises(ValueError, match=r"highlight must be among .*got"):
+        camp(highlight=[])
+    assert camp(tags="own", highlight="method2") == {"method2"}
+    with pytest.raises(ValueError, match=r"tags must be among .*got 'lost'"):
+        camp(tags="lost")
+
+
+def test_errors_go_from_ten_to_what_can_be_attained_without_a_pile_at_the_rim(chart: Any) -> None:
     first, last = chart.ax.get_xlim()
-    floor, attainable = FOUND.reference.limits("largest")
-    assert first > 1e-2 > attainable > last
-    assert chart.ax.get_xscale() == chart.ax.get_yscale() == "log"
-    assert chart.attainable.get_xdata()[0] == attainable
-    left, right = chart.floor.get_x(), chart.floor.get_x() + chart.floor.get_width()
-    assert max(left, right) == pytest.approx(floor)
-
-
-def test_set_up_is_a_hollow_mark_above_the_most_accurate_run(chart: Any) -> None:
-    line, hollow = chart.lines["flow"], chart.setups["flow"]
-    run = next(run for run in FOUND.of() if run.name == "flow")
-    assert hollow.get_xydata()[0].tolist() == [line.get_xdata()[0], run.time + run.setup]
-    assert hollow.get_markerfacecolor() == "#ffffff"
-
-
-def test_names_stand_apart_in_the_margin() -> None:
-    chart: Any = FOUND.plot()
-    figure = chart.ax.figure
-    figure.canvas.draw()
-    boxes = [chart.names[name].get_window_extent() for name in chart.lines]
-    assert {text.get_text() for text in chart.names.values()} == set(FOUND.names)
-    tops = sorted((box.y0, box.y1) for box in boxes)
-    assert all(below[1] <= above[0] + 1 for below, above in pairwise(tops))
-    width, height = figure.canvas.get_width_height()
-    for text in (*chart.names.values(), chart.reasons, chart.stamp):
-        box = text.get_window_extent()
-        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, text
-    plt.close(figure)
-
-
-def test_kinds_of_ways_differ_in_grey_and_ways_of_a_kind_in_their_marks(chart: Any) -> None:
-    def grey(colour: Any) -> float:
-        return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
-
-    kinds = {n: grey(chart.lines[n].get_color()) for n in ("flow", "rk4", "multipliers/rk4/none")}
-    shades = sorted(kinds.values())
-    assert all(abs(b - a) > 0.07 for a, b in pairwise(shades))
-    assert chart.lines["rk4"].get_marker() != chart.lines["dop853"].get_marker()
-
-
-def test_the_stamp_says_what_it_was_taken_on() -> None:
-    chart: Any = FOUND.plot()
-    text = chart.stamp.get_text().replace("\n", " ")
-    for name in ("processor", "compiler", "flags", "python", "numpy", "date", "rounds"):
-        assert f"{name} {FOUND.machine[name]}" in text
-    plt.close(chart.ax.figure)
-
-
-@pytest.mark.parametrize("x", ["linf", "energy", "gap", "steps", "evaluations", "setting"])
-@pytest.mark.parametrize("y", ["time", "samples_time", "final", "setup"])
-def test_any_quantity_goes_on_either_axis(x: str, y: str) -> None:
-    chart: Any = FOUND.plot(x, y, ax=Figure().add_subplot())
-    line = chart.lines["dop853"].get_xydata()
-    runs = [run for run in FOUND.of() if run.name == "dop853"]
-    last = runs[-1].value(y)
-    assert line[-1, 1] == (max(last, FOUND.reference.floor) if y == "final" else last)
-    if x in ("steps", "evaluations", "setting"):  # axes without a rim
-        assert line[-1, 0] == runs[-1].value(x)
-    chart.ax.figure.canvas.draw()
-
-
-def test_over_the_span_each_setting_has_its_line() -> None:
-    chart: Any = FOUND.plot("t_end", "final", tags=["dop853"], ax=Figure().add_subplot())
-    assert chart.lines.keys() == {("dop853", s) for s in (1e-2, 1e-6, 1e-10)}
+    assert first == 10 and LIMIT / 10 < last < LIMIT == chart.limit.get_xdata()[0]
     for line in chart.lines.values():
-        assert line.get_xdata().tolist() == [1.0, 3.0]
-    everything: Any = FOUND.plot("t_end", "time", ax=Figure().add_subplot())
-    for mark in everything.failures.values():
-        assert set(mark.get_xdata()) <= {1.0, 3.0}
+        x = line.get_xdata()
+        assert np.all(np.diff(x) < 0) and np.min(x) >= LIMIT
+        assert np.sum(x == 10.0) <= 1  # an error of 100 stays at 100, out of view
+    assert {"10 µs", "1 ms"} <= {tick.get_text() for tick in chart.ax.get_yticklabels()}
 
 
-def test_tags_choose() -> None:
-    chart: Any = FOUND.plot(tags=["multipliers"], ax=Figure().add_subplot())
-    assert {*chart.lines, *chart.failures} == {"multipliers/rk4/none", "multipliers/radau/ggl"}
-    with pytest.raises(ValueError, match=r"tags must be among dop853, exact, flow, .*got 'peer'"):
-        FOUND.plot(tags="peer", ax=Figure().add_subplot())
+def test_camps_differ_in_grey(chart: Any) -> None:
+    def grey(line: Any) -> float:
+        return float(np.dot(to_rgb(line.get_color()), (0.299, 0.587, 0.114)))
+
+    rest = next(line for name, line in chart.lines.items() if name not in OWN)
+    shades = [grey(line) for line in (*chart.fronts.values(), rest)]
+    assert all(abs(one - other) > 0.15 for one, other in itertools.combinations(shades, 2))
+    assert min(line.get_linewidth() for line in chart.fronts.values()) > 2 * rest.get_linewidth()
 
 
-def test_who_was_not_run_is_named_with_an_arrow_and_is_no_failure() -> None:
-    """In a chart of errors at samples an arrow also names methods judged at the end only."""
-    of = {name: [run for run in FOUND.of() if run.name == name] for name in FOUND.names}
-    late = of["dop853"][1:] + of["rk4"]
-    runs = [
-        replace(run, status="NOT_RUN", errors=Errors(), time=math.nan) if run in late else run
-        for run in FOUND.of()
-    ]
-    flow = next(i for i, run in enumerate(runs) if run.name == "flow")
-    runs[flow] = replace(runs[flow], errors=Errors(final=runs[flow].errors.final))
-    found = replace(FOUND, runs=tuple(runs), references=FOUND.references[1:])
-    chart: Any = found.plot(ax=Figure().add_subplot())
-    titles = {name: text.get_text() for name, text in chart.names.items()}
-    assert titles.pop("dop853") == "dop853 →" and titles.pop("flow") == "flow (end alone)"
-    assert set(titles) == set(titles.values()) == set(FOUND.names) - {"dop853", "flow", "rk4"}
-    assert chart.failures.keys() == FAILED - {"rk4"}
-    assert "→ finer settings were not run, for want of time" in chart.reasons.get_text()
-    alone: Any = found.plot("final", ax=Figure().add_subplot())
-    assert alone.names["flow"].get_text() == "flow"
+# -------------------------------------------------------------------------------- texts
+
+
+@pytest.mark.parametrize("found", READ.values(), ids=READ)
+@pytest.mark.parametrize("width", [3.4, 5.0, 8.0, 12.0])
+def test_no_text_lies_on_another(width: float, found: WorkPrecision) -> None:
+    """The boxes of all texts are apart and in the figure: of a column, 500 px, 800 px, a slide."""
+    with plt.rc_context({"figure.figsize": (width, 0.7 * width), "figure.dpi": 100}):
+        chart: Any = found.plot()
+    figure = chart.ax.figure
+    figure.draw_without_rendering()
+    ax = chart.ax
+    ticks = {
+        tick.label1: limits()[0] <= tick.get_loc() <= limits()[1]
+        for axis, limits in ((ax.xaxis, lambda: sorted(ax.get_xlim())), (ax.yaxis, ax.get_ylim))
+        for tick in axis.get_major_ticks()
+    }  # ticks out of view are not drawn
+    texts = [text for text in figure.findobj(Text) if ticks.get(text, text.get_visible())]
+    boxes = {text: text.get_window_extent() for text in texts if text.get_text()}
+    for (one, left), (other, right) in itertools.combinations(boxes.items(), 2):
+        assert not left.padded(-0.5).overlaps(right.padded(-0.5)), (one, other)
+    whole = figure.bbox.padded(1)
+    for text, box in boxes.items():
+        assert whole.x0 <= box.x0 and box.x1 <= whole.x1, text
+        assert whole.y0 <= box.y0 and box.y1 <= whole.y1, text
+        assert text.get_fontsize() >= 8
+    plt.close(figure)
+    assert 2 <= len(chart.names) <= 8 and "flow" in chart.names
+
+
+def test_holders_of_the_fronts_are_named_first(chart: Any) -> None:
+    holders = {min(FOUND.least(d), key=FOUND.least(d).__getitem__) for d in DECADES[:11]}
+    assert holders <= set(chart.names) and len(chart.names) <= 8
+
+
+# ------------------------------------------------------------------------------ gaps
+
+
+LOST: dict[str, Any] = {"errors": Errors(), "time": math.nan, "status": "FAILED"}
+LACKING = replace(
+    FOUND,
+    runs=(
+        *FOUND.runs,
+        replace(run("method2", 1e-3, 1.0), **LOST, reason="singular"),
+        replace(run("SciPy late", 1e-2, 1e-3)),
+        replace(run("SciPy late", 1e-4, 1.0), **(LOST | {"status": "NOT_RUN"}), reason="max"),
+    ),
+)
+
+
+def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
+    table = str(LACKING.gaps())
+    assert [line.split("  ")[0] for line in table.splitlines()[1:]] == ["method2", "SciPy late"]
+    for said in (
+        "  1e-03  ",
+        "FAILED, singular",
+        "beyond 1e-02  no time left (1 ms a call so far)",
+    ):
+        assert said in table
+    for width, drawn in ((8.0, True), (3.4, False)):
+        with plt.rc_context({"figure.figsize": (width, 5.0)}):
+            chart: Any = LACKING.plot()
+        assert (table in chart.below.get_text()) == drawn
+        assert str(chart.gaps) == table and "least of 9 rounds" in chart.below.get_text()
+        plt.close(chart.ax.figure)
+    assert LACKING.plot(ax=Figure().add_subplot()).below is None
 
 
 def test_a_chart_without_an_answer_still_says_why() -> None:
-    gap: dict[str, Any] = {"status": "MAX_STEPS", "time": math.nan}
-    reasons = ["", *["too many"] * len(FOUND.runs)]
-    pairs = zip(FOUND.runs, reasons, strict=False)
-    runs = tuple(replace(run, reason=reason, **gap) for run, reason in pairs)
-    found: WorkPrecision = replace(FOUND, runs=runs)
-    chart: Any = found.plot()
-    assert not chart.lines and chart.failures.keys() == set(FOUND.names)
-    assert "too many" in chart.reasons.get_text()
+    runs = tuple(replace(each, **LOST, reason="too many") for each in FOUND.runs)
+    chart: Any = replace(FOUND, runs=runs).plot()
+    assert not chart.lines and {gap.name for gap in chart.gaps} == set(FOUND.names)
+    assert {gap.reason for gap in chart.gaps} == {"too many"}
     chart.ax.figure.canvas.draw()
     plt.close(chart.ax.figure)
+
+
+# ------------------------------------------------------------------- other charts, result
+
+
+def test_small_multiples_have_a_library_each_and_the_same_axes() -> None:
+    chart: Any = FOUND.plot(by="library")
+    titles = [ax.get_title(loc="left") for ax in chart.axes]
+    assert sorted(titles) == sorted([*LIBRARIES, "rolling_ellipse"])
+    assert len({(ax.get_xlim(), ax.get_ylim()) for ax in chart.axes}) == 1
+    assert set(chart.lines) == set(FOUND.names)
+    for name, line in chart.lines.items():
+        title = line.axes.get_title(loc="left")
+        assert title == ("rolling_ellipse" if name in OWN else name.split()[0])
+        assert len(line.axes.lines) >= len(FOUND.names)  # the others are there, in grey
+    plt.close(chart.ax.figure)
+    with pytest.raises(ValueError, match="by must be one of 'library', got 'colour'"):
+        FOUND.plot(by="colour")
+    with pytest.raises(ValueError, match="ax must be None where by is given"):
+        FOUND.plot(by="library", ax=Figure().add_subplot())
+
+
+@pytest.mark.parametrize("x", ["linf", "energy", "gap"])
+@pytest.mark.parametrize("y", ["samples_time", "setup", "evaluations"])
+def test_any_cost_goes_over_any_error(x: str, y: str) -> None:
+    runs = [
+        replace(each, errors=Errors(*[each.errors.final] * 6), evaluations=7) for each in FOUND.runs
+    ]
+    chart: Any = replace(FOUND, runs=tuple(runs)).plot(x, y, ax=Figure().add_subplot())
+    best = [each for each in runs if each.name == "method2" and each.errors.final >= LIMIT][-1]
+    assert chart.lines["method2"].get_xydata()[-1].tolist() == [best.errors.final, best.value(y)]
+    chart.ax.figure.canvas.draw()
+
+
+def test_the_result_has_axes_and_writes_its_file(chart: Any, tmp_path: Path) -> None:
+    chart.savefig(tmp_path / "chart.svg", transparent=True)
+    assert (tmp_path / "chart.svg").stat().st_size > 1000
+    assert chart.axes == (chart.ax,)
+    assert "23 lines, 2 fronts" in repr(chart)

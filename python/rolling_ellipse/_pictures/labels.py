@@ -1,15 +1,14 @@
-"""Labels that do not overlap: beside the axes, upright at a time, along lines."""
+"""Labels that do not overlap: beside lines, upright at a time, along lines."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
-from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
 
@@ -17,15 +16,17 @@ from .._ask.check import FloatArray
 from .palette import INK, palette_of
 
 _SMALL = "x-small"
-_PITCH = 1.25  # distance of lines of text, in font sizes
-_WIDTH = 0.56  # width of a letter, in font sizes
-_MARGIN_SIZES = 4.5, 7.0  # least and largest font size beside the axes [points]
+_CROSSED = 4  # most dots of lines under a text that may be left out
+_GAP = 2.0  # between a line and a text beside it [points]
+_PAD = np.array([5.0, 1.0])  # least sum of the gaps on both sides of a text [points]
+_BODY = 0.7  # height of the letters, in heights of a text
+_FARTHEST = 0.6  # farthest place from the wanted one, as a share of the line
 _TALLEST = 0.35  # largest height of an upright label, in heights of the axes
-_RISE = 0.65  # from a line to the middle of the letters on it, in font sizes
-_CLEAR = 0.9  # distance of a good place from other lines and names, in font sizes
-_TIGHT = 0.5  # a place with less distance is not used
 _FINE = 16  # parts into which a straight piece of a line is cut, to find where it enters the view
-_SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4, 0.5, -0.5, 0.6, -0.6)
+
+Sides = tuple[tuple[int, int], ...]
+BELOW_FIRST: Sides = ((0, -1), (0, 1))
+ABOVE_FIRST, BESIDE = BELOW_FIRST[::-1], ((1, 0), (-1, 0))
 
 
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
@@ -51,53 +52,6 @@ def size_in_points(ax: Axes) -> FloatArray:
     """Return the width and height of the axes on the page [points]."""
     window = ax.get_window_extent()
     return np.array([window.width, window.height]) * 72 / ax.figure.dpi
-
-
-def label_ends(
-    ax: Axes, lines: Mapping[Any, tuple[Line2D, str]], own_figure: bool
-) -> dict[Any, Annotation]:
-    """Write the name of each line beside the axes, as near to its right end as there is room.
-
-    If there is no room for all lines, evenly spread ones are named. In an own figure the layout
-    makes a margin for the names, which changes the room: there they are written twice.
-    """
-    if not lines:
-        return {}
-    found = _label_ends(ax, lines)
-    if own_figure:
-        ax.figure.draw_without_rendering()  # type: ignore[union-attr]
-        for name in found.values():
-            name.remove()
-        found = _label_ends(ax, lines)
-    return found
-
-
-def _label_ends(ax: Axes, lines: Mapping[Any, tuple[Line2D, str]]) -> dict[Any, Annotation]:
-    ends = {key: _right_end(ax, line) for key, (line, _) in lines.items()}
-    height = size_in_points(ax)[1]
-    size = float(np.clip(height / (_PITCH * len(ends)), *_MARGIN_SIZES))
-    room = min(len(ends), max(1, int(height / (_PITCH * size))))
-    keys = sorted(ends, key=lambda key: float(ends[key][1]))
-    keys = [keys[i] for i in np.linspace(0, len(keys) - 1, room).round().astype(int)]
-    places = apart(np.array([ends[key][1] for key in keys]), _PITCH * size / height, 0.0, 1.0)
-    found = {}
-    for key, place in zip(keys, places, strict=True):
-        line, name = lines[key]
-        found[key] = ax.annotate(
-            name, tuple(ends[key]), xycoords="axes fraction", xytext=(1.03, place),
-            textcoords="axes fraction", va="center", ha="left", fontsize=size,
-            color=line.get_color(), annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": line.get_color(), "alpha": 0.6,
-                        "shrinkA": 1, "shrinkB": 3},
-        )  # fmt: skip
-    return found
-
-
-def _right_end(ax: Axes, line: Line2D) -> FloatArray:
-    """Return where a line is farthest to the right, in shares of the axes."""
-    shown = ax.transAxes.inverted().transform(ax.transData.transform(line.get_xydata()))
-    end: FloatArray = shown[np.argmax(shown[:, 0])]
-    return np.clip(end, 0.0, 1.0)
 
 
 def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
@@ -142,90 +96,133 @@ def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 class Label(NamedTuple):
-    """Names along a line, from long to short, and the wanted place of the middle of one.
+    """Texts for a line, from long to short, of which the first with a clear place is written.
 
-    `line` is in shares of the axes, `place` a share of its length. `above` is the wanted side of
-    the line for a reader.
+    `line` is in shares of the axes, `place` the wanted share of its length, and `sides` are
+    directions from the line to the text. The text is level, or runs along the line. What must be
+    written is bold, and its last text may cross lines.
     """
 
+    texts: Sequence[str]
     line: FloatArray
-    names: Sequence[str]
-    place: float
-    above: bool
+    place: float = 0.5
+    sides: Sides = BELOW_FIRST
+    color: str = INK
+    halo: str = "white"
+    along: bool = False
+    must: bool = False
 
 
-def label_lines(ax: Axes, labels: Mapping[str, Label]) -> dict[str, Text]:
-    """Write along each line the first of its names that has a place clear of lines and names."""
-    font, page = FontProperties(size=_SMALL).get_size_in_points(), size_in_points(ax)
-    lines = {key: _dotted(label.line * page, font / 4) for key, label in labels.items()}
+def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any, Text]:
+    """Write labels in a font size [points] beside their lines, clear of lines and of each other.
+
+    A label without a place is left out. Those before others choose first.
+    """
+    page = size_in_points(ax)
+    dots = [page[None]]
+    for line in ax.lines:
+        to_axes = line.get_transform() - ax.transAxes
+        corners = np.array(line.get_path().transformed(to_axes).vertices)
+        corners = corners[np.all(np.isfinite(corners), axis=1)]
+        dots.append(_dotted(corners * page, size / 3) if len(corners) else corners)
+    lines = np.vstack(dots)
+    lines = lines[np.all((lines > -size) & (lines < page + size), axis=1)]
     taken, found = np.empty((0, 2)), {}
     for key, label in labels.items():
-        others = np.vstack([*(line for other, line in lines.items() if other != key), taken])
-        for name in label.names:
-            spot = _best(_spots(lines[key], others, font, _WIDTH * font * len(name), label))
+        for text in label.texts:
+            last = label.must and text == label.texts[-1]
+            extent = _extent(ax, text, size, label.must)
+            spot = _best(label, extent, lines, taken, page, np.inf if last else _CROSSED)
             if spot is not None:
-                taken = np.vstack([taken, spot.dots])
-                found[key] = _written(ax, name, spot, page)
+                grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 40), (-0.5, 0.0, 0.5)), axis=-1)
+                frame = np.array([spot.lead, (-spot.lead[1], spot.lead[0])])
+                taken = np.vstack([taken, spot.middle + (grid.reshape(-1, 2) * extent) @ frame])
+                found[key] = _written(ax, text, label, spot, size)
                 break
     return found
 
 
 class _Spot(NamedTuple):
-    """A place of a name on the page [points].
-
-    It has the middle of the foot, direction and side of the name, dots along the middle of its
-    letters, and the distance from other lines and names [font sizes].
-    """
+    """A place of a text on the page [points]: a point of the line, middle, direction and side."""
 
     foot: FloatArray
+    middle: FloatArray
     lead: FloatArray
-    above: bool
-    dots: FloatArray
-    clear: float
+    side: tuple[int, int]
 
 
-def _spots(
-    line: FloatArray, others: FloatArray, font: float, width: float, label: Label
-) -> Iterator[_Spot]:
-    along, margin = _along(line), (width + font) / 2
-    for shift in _SHIFTS:
-        middle = (label.place + shift) * along[-1]
-        if not margin <= middle <= along[-1] - margin:
-            continue
-        first, foot, last = _at(np.array([-width / 2, 0, width / 2]) + middle, along, line)
-        lead = last - first
-        if lead[0] < -1e-6 or (lead[0] < 1e-6 and lead[1] < 0):
-            lead = -lead  # text runs from left to right, or upwards
-        lead = lead / np.hypot(*lead)
-        for above in (label.above, not label.above):
-            up = np.array([-lead[1], lead[0]]) * (1 if above else -1)
-            dots = foot + up * _RISE * font + np.outer(np.linspace(-width / 2, width / 2, 25), lead)
-            own = _distance(dots, line) * _CLEAR / _RISE
-            clear = min(own, _distance(dots, others)) / font
-            yield _Spot(foot, lead, above, dots, clear)
+def _extent(ax: Axes, text: str, size: float, bold: bool) -> FloatArray:
+    """Return the width and height of a text [points]."""
+    weight = "bold" if bold else "normal"
+    written = ax.text(0.5, 0.5, text, fontsize=size, fontweight=weight, transform=ax.transAxes)
+    box = written.get_window_extent()
+    written.remove()
+    return np.array([box.width, box.height]) * 72 / ax.figure.dpi
 
 
-def _best(spots: Iterator[_Spot]) -> _Spot | None:
-    """Return the first good place, else the best one that is not tight, if any."""
-    best = None
-    for spot in spots:
-        if best is None or spot.clear > best.clear + 1e-6:
-            best = spot
-        if best.clear >= _CLEAR:
-            break
-    return best if best is not None and best.clear >= _TIGHT else None
+def _best(
+    label: Label, extent: FloatArray, lines: FloatArray, taken: FloatArray, page: FloatArray,
+    most: float,
+) -> _Spot | None:  # fmt: skip
+    """Return the place with the least sum of crossed lines and distance from the wanted place."""
+    line = label.line * page
+    along = _along(line)
+    share = np.linspace(0.0, 1.0, 2 + int(along[-1] / (extent[1] / 3)))
+    middle, moved = share * along[-1], np.abs(share - label.place)
+    feet = _at(middle, along, line)
+    lead = np.tile([1.0, 0.0], (share.size, 1))
+    if label.along:  # text runs from left to right, or upwards
+        lead = _at(middle + extent[0] / 2, along, line) - _at(middle - extent[0] / 2, along, line)
+        lead *= np.where((lead[:, :1] < -1e-6) | ((lead[:, :1] < 1e-6) & (lead[:, 1:] < 0)), -1, 1)
+        lead /= np.maximum(np.hypot(*lead.T), 1e-9)[:, None]
+    up = np.column_stack([-lead[:, 1], lead[:, 0]])
+    best, least = None, np.inf
+    for turn, side in enumerate(label.sides):
+        apart = np.array(side) * (extent / 2 + _GAP)
+        places = feet + apart[0] * lead + apart[1] * up
+        reach = np.abs(lead) * extent[0] / 2 + np.abs(up) * extent[1] / 2
+        free = np.all((places >= reach) & (places <= page - reach), axis=1)
+        free &= _inside(taken, places, lead, up, extent + _PAD) == 0
+        free &= (moved < _FARTHEST) | label.must
+        if label.along:
+            free &= np.minimum(middle, along[-1] - middle) > extent[0] / 2 + 1.5 * extent[1]
+        crossed = _inside(lines, places, lead, up, extent * (1, _BODY))
+        cost = crossed + turn + 12 * moved
+        cost[~free | (crossed > most)] = np.inf
+        i = np.argmin(cost)
+        if cost[i] < least:
+            best, least = _Spot(feet[i], places[i], lead[i], side), cost[i]
+    return best
 
 
-def _written(ax: Axes, name: str, spot: _Spot, page: FloatArray) -> Text:
-    to_data = (ax.transData - ax.transAxes).inverted()
+def _inside(dots: FloatArray, middle: Any, lead: Any, up: Any, extent: Any) -> Any:
+    """Return how many of the dots are inside each rectangle, (n,)."""
+    off = dots[None] - middle[:, None]
+    near = [np.abs(np.sum(off * axis[:, None], axis=2)) for axis in (lead, up)]
+    return np.sum((near[0] < extent[0] / 2) & (near[1] < extent[1] / 2), axis=1)
+
+
+def _written(ax: Axes, text: str, label: Label, spot: _Spot, size: float) -> Text:
+    to_data, page = (ax.transData - ax.transAxes).inverted(), size_in_points(ax)
     foot, ahead = to_data.transform([spot.foot, spot.foot + 1e-3 * spot.lead] / page)
-    halo: Any = withStroke(linewidth=2, foreground="white", alpha=0.8)
-    return ax.text(
-        float(foot[0]), float(foot[1]), name, color=INK, fontsize=_SMALL, ha="center",
-        va="bottom" if spot.above else "top", zorder=4, path_effects=[halo],
-        rotation=math.degrees(math.atan2(*(ahead - foot)[::-1])), rotation_mode="anchor",
-        transform_rotates_text=True, clip_on=True,
+    how: dict[str, Any] = {
+        "color": label.color, "fontsize": size, "fontweight": "bold" if label.must else "normal",
+        "zorder": 5, "ha": "center",
+        "path_effects": [withStroke(linewidth=2, foreground=label.halo, alpha=0.8)],
+    }  # fmt: skip
+    if label.along:  # the text turns with its line if the axes change
+        return ax.text(
+            float(foot[0]), float(foot[1]), text, clip_on=True,
+            va="bottom" if spot.side[1] > 0 else "top",
+            rotation=math.degrees(math.atan2(*(ahead - foot)[::-1])),
+            rotation_mode="anchor", transform_rotates_text=True, **how,
+        )  # fmt: skip
+    written = ax.annotate(
+        text, tuple(foot), tuple(spot.middle - spot.foot), textcoords="offset points", va="center",
+        annotation_clip=False, **how,
     )  # fmt: skip
+    written.set_in_layout(False)
+    return written
 
 
 def _along(line: FloatArray) -> FloatArray:
@@ -241,8 +238,3 @@ def _dotted(line: FloatArray, step: float) -> FloatArray:
     """Return points of the line that are at most a step apart."""
     along = _along(line)
     return _at(np.linspace(0, along[-1], max(int(along[-1] / step) + 2, 2)), along, line)
-
-
-def _distance(dots: FloatArray, points: FloatArray) -> float:
-    apart = dots[:, None] - points[None]
-    return float(np.sqrt(np.min(np.sum(apart**2, axis=2), initial=math.inf)))

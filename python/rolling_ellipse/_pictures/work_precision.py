@@ -1,26 +1,28 @@
-"""The work-precision diagram: time against error for each method."""
+"""The work-precision diagram: the front of some contenders before the front of all others."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from textwrap import shorten, wrap
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.markers import CARETDOWN
 from matplotlib.text import Text
+from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, NullLocator
 
-from .._ask.check import shown
-from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, Run, require_quantity
-from .._verbs.work_precision.verdict import end_alone
+from .._ask.check import choice, shown
+from .._verbs.work_precision.gaps import Gaps, gaps
+from .._verbs.work_precision.run import ERRORS, OF_STATES, Run, require_quantity
 from .artists import Artists
-from .axes import axes_of, picture
-from .labels import label_ends
-from .palette import Palette, palette_of
+from .axes import axes_of, picture, pyplot_figure
+from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
+from .palette import palette_of
 
 if TYPE_CHECKING:  # results.py imports this file
     from .._verbs.work_precision.results import WorkPrecision
@@ -30,181 +32,312 @@ _NAMES = {
     "l2": "root mean square error of the state", "energy": "error of the energy",
     "linf": "largest error of the state at the samples",
     "gap": "distance from the ground / long semi-axis",
-    "slip": "slip / (long semi-axis × largest ω)", "time": "time of a call [s]",
-    "samples_time": "time of a call for all samples [s]", "setup": "set-up [s]",
-    "setting": "rtol, or step [s]", "t_end": "span [s]",
+    "slip": "slip / (long semi-axis × largest ω)", "time": "time of a call",
+    "samples_time": "time of a call for all samples", "setup": "set-up",
 }  # fmt: skip
-_LIMITS = "dashed line: attainable; grey: less than the reference's own error"
-_MARKERS = "osD^vPX<>ph*8"
-_DASHES = ("-", "--", "-.", ":")
-_LEAST, _MOST = 1e-17, 10.0  # errors beyond these are drawn at them
-_REASONS, _LINE = 12, 110  # most lines on runs without an answer, characters of a line
-_STAMP = ("processor", "compiler", "flags", "python", "numpy", "rolling_ellipse", "date", "rounds")
+_SECONDS = ("time", "samples_time", "setup")
+_LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn there; larger ones are out of view
+_EQUAL = 1.2  # ratio of times that count as equal
+_TEXT = 8.0  # size of all text in the axes and below [points]
+_LETTER = 0.63  # width of a letter of the table, in sizes
+_ROWS, _COLUMNS = 9, 70  # most rows, and least letters in a line, of a table below the axes
+_MARGIN = 14  # letters left of the axes
+_AROUND = (1, 0), (0, 1), (0, -1)  # sides of the end of a line
+_NAMED = 8  # most names of contenders
+_DECADES = tuple(10.0**-k for k in range(2, 16))
+_STAMP = ("processor", "vectors", "date")
+
+Point = tuple[float, float]  # error, value
 
 
 @dataclass(frozen=True, repr=False)
 class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
-    Mappings have the name of the way as key, or (name, setting) over "t_end": `lines` through the
-    runs, `setups` (hollow, at time + set-up of the most accurate run), `names` in the margin, and
-    `failures` on the rim. `reasons` is the text below: the reasons of the failures, and the ways
-    that were not run at all settings. `floor` and `attainable` exist over errors of the state,
-    `stamp` in an own figure.
+    `lines` and `names` have the names of contenders as keys, `fronts` and `arrows` "highlight" and
+    "others", and `factors` the errors. `gaps` is the table of missing runs, and `below` the text
+    under an own figure: this table, where it fits, and the machine. `limit` exists for errors of
+    the state.
     """
 
-    ax: Axes
-    lines: dict[Any, Line2D]
-    setups: dict[Any, Line2D]
-    failures: dict[Any, Line2D]
-    names: Mapping[Any, Text]
-    reasons: Text | None
-    floor: Artist | None
-    attainable: Line2D | None
-    stamp: Text | None
+    axes: tuple[Axes, ...]
+    gaps: Gaps
+    lines: dict[str, Line2D] = field(default_factory=dict)
+    fronts: dict[str, Line2D] = field(default_factory=dict)
+    factors: dict[float, Text] = field(default_factory=dict)
+    names: dict[str, Text] = field(default_factory=dict)
+    limit: Line2D | None = None
+    below: Text | None = None
+
+    @property
+    def ax(self) -> Axes:
+        """The first Axes."""
+        return self.axes[0]
+
+    def savefig(self, path: Any, **options: Any) -> None:
+        """Write the figure to a file, as matplotlib does."""
+        self.ax.get_figure(root=True).savefig(path, **options)  # type: ignore[union-attr]
 
 
 @picture
 def draw(
     found: WorkPrecision, x: str, y: str, tags: Sequence[str] | None, ax: Axes | None,
-    t_end: float | None,
+    highlight: Sequence[str] | None, by: str | None, t_end: float | None,
 ) -> WorkPrecisionChart:  # fmt: skip
     """Draw the runs; see `WorkPrecision.plot`."""
-    for name, quantity in (("x", x), ("y", y)):
-        require_quantity(name, quantity)
-    spans = "t_end" in (x, y)
-    runs = _tagged(found.runs if spans else found.of(t_end), tags)
+    choice("x", x, ERRORS)
+    require_quantity("y", y)
+    runs = found.of(t_end)
+    if tags is not None:
+        chosen = _chosen("tags", tags, runs)
+        runs = tuple(run for run in runs if run.name in chosen)
+    race = _Race(found, x, y, runs, highlight)
+    if by is not None:
+        choice("by", by, ("library",))
+        if ax is not None:
+            raise ValueError(f"ax must be None where by is given, got {shown(ax)}")
+        return _multiples(race)
     own_figure = ax is None
-    ax = axes_of(ax, (10, 7))
+    ax = axes_of(ax, (8, 5.6))
+    chart = WorkPrecisionChart((ax,), gaps(runs), **_drawn(ax, race, None))
+    below = _below(ax, race, chart.gaps, found.machine) if own_figure else None
+    ax.get_figure(root=True).draw_without_rendering()  # type: ignore[union-attr]
+    return WorkPrecisionChart(**{**vars(chart), **_named(ax, race, chart), "below": below})
+
+
+def _chosen(argument: str, wanted: Any, runs: Sequence[Run]) -> set[str]:
+    """Return the names of the contenders that names and tags mean."""
+    words = {wanted} if isinstance(wanted, str) else set(wanted)
+    known = {word for run in runs for word in (*run.tags, run.name)}
+    if not words or not words <= known:
+        listed = ", ".join(sorted(known))
+        raise ValueError(f"{argument} must be among {listed}, got {shown(wanted)}")
+    return {run.name for run in runs if words & {*run.tags, run.name}}
+
+
+class _Race:
+    """The points of each contender, and the fronts of the two camps."""
+
+    def __init__(
+        self, found: WorkPrecision, x: str, y: str, runs: Sequence[Run], highlight: Any
+    ) -> None:
+        self.x, self.y, self.runs = x, y, runs
+        limits = found.judged_by(runs[0].t_end).limits(x) if x in OF_STATES else ()
+        self.limit = float(np.nanmax([_LEAST, *limits]))  # attained and judged at best
+        self.points: dict[str, list[Point]] = {}
+        for run in runs:
+            at, value = max(run.value(x), self.limit), run.value(y)
+            if run.completed and value > 0 and not math.isnan(at):
+                points = self.points.setdefault(run.name, [])
+                if not points or points[-1][0] != at:  # finer settings may gain nothing
+                    points.append((at, value))
+        own = {run.name for run in runs if "own" in run.tags}
+        if highlight is not None:
+            self.ours = _chosen("highlight", highlight, runs)
+            self.camp = highlight if isinstance(highlight, str) else ", ".join(highlight)
+        elif own & self.points.keys() and self.points.keys() - own:
+            self.ours, self.camp = own, "own methods"
+        else:
+            self.ours = self._winners()
+            self.camp = ", ".join(name for name in self.points if name in self.ours)
+        self.fronts = {
+            "highlight": self._front(self.points.keys() & self.ours),
+            "others": self._front(self.points.keys() - self.ours),
+        }
+
+    def _front(self, names: Iterable[str]) -> dict[Point, str]:
+        """Return the holders of the points that none of these contenders beats, by error."""
+        front: dict[Point, str] = {}
+        least = _MOST
+        for value, at, name in sorted((y, x, n) for n in names for x, y in self.points[n]):
+            if at < least:
+                front[at, value], least = name, at
+        return front
+
+    def _winners(self) -> set[str]:
+        """Return the names with the method of the contender that is ahead over most decades."""
+        held = parts(self._front(self.points))
+        methods = {run.name: (run.model, run.method) for run in self.runs}
+        best = methods[held[0][0]] if held else None
+        return {name for name, method in methods.items() if method == best}
+
+
+def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
+    """Return the names along a front with the corners of their steps, the widest part first."""
+    found, before = [], _MOST
+    for name, held in groupby(front, key=front.__getitem__):
+        corners = []
+        for at, value in held:
+            corners += [(before, value), (at, value)]
+            before = at
+        found.append((name, corners))
+    return sorted(found, key=lambda part: part[1][-1][0] / part[1][0][0])
+
+
+def _least(front: dict[Point, str], error: float) -> float:
+    """Return the least value at an error of at most `error`, or NaN."""
+    return next((value for at, value in front if at <= error), math.nan)
+
+
+def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, Any]:
+    """Draw the lines and the fronts; members of a small multiple stand out instead of a camp."""
+    palette = palette_of(ax)
+    colors = {"highlight": palette.blue, "others": palette.orange}
+    strong = race.ours if members is None else members
+    lines, fronts = {}, {}
+    for name, points in race.points.items():
+        color, width, size = palette.shade(0.28), 0.7, 1.5
+        if name in strong:
+            color, width, size = colors["highlight" if name in race.ours else "others"], 1.0, 2.6
+        # one answer serves every larger error
+        first = [(max(_MOST, points[0][0]), points[0][1])] if len(points) == 1 else []
+        lines[name] = ax.plot(
+            *zip(*first, *points, strict=True), color=color, lw=width, marker="o", ms=size, mew=0,
+            markevery=slice(len(first), None), zorder=2.2 if name in strong else 2,
+        )[0]  # fmt: skip
+    for camp, front in race.fronts.items():
+        if front:
+            corners = sorted((c for _, part in parts(front) for c in part), key=_along_front)
+            fronts[camp] = ax.plot(
+                *zip(*corners, strict=True), color=colors[camp], solid_capstyle="butt",
+                lw=2.6 if members is None else 1.2, zorder=2.8 if camp == "highlight" else 2.9,
+            )[0]  # fmt: skip
+    return {"lines": lines, "fronts": fronts, "limit": _framed(ax, race)}
+
+
+def _along_front(corner: Point) -> tuple[float, float]:
+    return -corner[0], corner[1]
+
+
+def _framed(ax: Axes, race: _Race) -> Line2D | None:
+    """Set the axes, with errors from 10 to what can be attained; mark the latter."""
+    palette, x, y = palette_of(ax), race.x, race.y
     ax.set(xscale="log", yscale="log", xlabel=_NAMES.get(x, x), ylabel=_NAMES.get(y, y))
     ax.spines[["top", "right"]].set_visible(False)
-    ax.grid(True, color=palette_of(ax).grey, alpha=0.25, lw=0.5)
-    styles = _styles(found, palette_of(ax))
-    groups: dict[Any, list[Run]] = {}
-    for run in runs:
-        setting = None if math.isnan(run.setting) else run.setting  # NaN is no key
-        groups.setdefault((run.name, setting) if spans else run.name, []).append(run)
-    lines, setups = {}, {}
-    for key, members in groups.items():
-        points = [
-            (_place(found, run, x), _place(found, run, y), run) for run in members if run.completed
-        ]
-        points = [point for point in points if point[0] > 0 and point[1] > 0]
-        if not points:
-            continue
-        style = styles[members[0].name]
-        places, values, _ = zip(*points, strict=True)
-        lines[key] = ax.plot(places, values, ms=4, mew=0, **style)[0]
-        at, time, best = min(points, key=lambda point: point[0])
-        if y == "time" and best.setup > 0.1 * time:
-            hollow = style | {"ls": "", "mfc": palette_of(ax).background}
-            setups[key] = ax.plot([at], [time + best.setup], ms=4.5, mew=0.8, **hollow)[0]
-    floor = attainable = None
-    if x in OF_STATES:
-        own, least = found.judged_by(runs[-1].t_end).limits(x)
-        if least > 0:
-            attainable = ax.axvline(least, color=palette_of(ax).grey, lw=1, ls="--", zorder=1)
-        if own > 0:
-            across = min(own, ax.get_xlim()[0]), own
-            floor = ax.axvspan(*across, color=palette_of(ax).grey, alpha=0.18, lw=0, zorder=0)
-    if x in ERRORS:
-        ax.invert_xaxis()
-    failures, why = _rim(ax, groups, styles, x)
-    late = [key for key, members in groups.items() if NOT_RUN in {run.status for run in members}]
-    if late:
-        why.append("→ finer settings were not run, for want of time")
-    alone = end_alone(runs) if x == "largest" else []
-    titles = {
-        key: _title(key) + " (end alone)" * (groups[key][0].name in alone) + " →" * (key in late)
-        for key in lines
-    }
-    names = label_ends(ax, {key: (line, titles[key]) for key, line in lines.items()}, own_figure)
-    facts = ", ".join(f"{name} {found.machine.get(name, '?')}" for name in _STAMP)
-    stamped = wrap(facts, _LINE, break_on_hyphens=False)
-    if attainable or floor:
-        why.append(_LIMITS)
-    reasons = _below(ax, why, 0)
-    stamp = _below(ax, stamped, len(why)) if own_figure else None
-    return WorkPrecisionChart(ax, lines, setups, failures, names, reasons, floor, attainable, stamp)
-
-
-def _tagged(runs: Sequence[Run], tags: Sequence[str] | None) -> list[Run]:
-    if tags is None:
-        return list(runs)
-    wanted = {tags} if isinstance(tags, str) else set(tags)
-    chosen = [run for run in runs if wanted & {*run.tags, run.name}]
-    if not chosen:
-        known = sorted({tag for run in runs for tag in (*run.tags, run.name)})
-        raise ValueError(f"tags must be among {', '.join(known)}, got {shown(tags)}")
-    return chosen
-
-
-def _styles(found: WorkPrecision, palette: Palette) -> dict[str, dict[str, Any]]:
-    """Return line properties by name: a colour for each kind of method, a marker within a kind."""
-    styles: dict[str, dict[str, Any]] = {}
-    for run in found.runs:
-        kind = (palette.blue, 1.2)
-        if "peer" in run.tags:
-            kind = (palette.orange, 1.0)
-        elif run.method == "exact" or run.model == "contact":
-            kind = (palette.ink, 1.8)
-        elif run.model == "multipliers":
-            kind = (palette.plum, 1.0)
-        if run.name not in styles:
-            count = sum(style["color"] == kind[0] for style in styles.values())
-            mark, dash = _MARKERS[count % len(_MARKERS)], _DASHES[count % len(_DASHES)]
-            styles[run.name] = {"color": kind[0], "lw": kind[1], "marker": mark, "ls": dash}
-    return styles
-
-
-def _place(found: WorkPrecision, run: Run, quantity: str) -> float:
-    """Return the place of a run along an axis; NaN or 0 if it is not drawn."""
-    value = run.value(quantity)
-    if quantity not in ERRORS or math.isnan(value):
-        return value
-    floor = found.judged_by(run.t_end).limits(quantity)[0] if quantity in OF_STATES else 0.0
-    return min(max(value, floor or _LEAST), _MOST)
-
-
-def _rim(
-    ax: Axes, groups: dict[Any, list[Run]], styles: dict[str, dict[str, Any]], x: str
-) -> tuple[dict[Any, Line2D], list[str]]:
-    """Mark the runs without an answer on the rim; return the marks and lines with the reasons."""
-    failed = {
-        key: gaps
-        for key, runs in groups.items()
-        if (gaps := [run for run in runs if not run.completed and run.status != NOT_RUN])
-    }
-    marks, lines = {}, []
-    for i, (key, runs) in enumerate(failed.items()):
-        at, height, across = [0.0], 0.03 + 0.95 * i / len(failed), ax.transAxes
-        if x in ("setting", "t_end"):  # x is known without an answer
-            at, height, across = [run.value(x) for run in runs], 1.0, ax.get_xaxis_transform()
-        marks[key] = ax.plot(
-            at, np.full(len(at), height), "x", color=styles[runs[0].name]["color"], ms=5,
-            transform=across, clip_on=False, zorder=5, scalex=False, scaley=False,
-        )[0]  # fmt: skip
-        count = f", {len(runs)} runs" if len(runs) > 1 else ""
-        reason = shorten(runs[0].reason, _LINE, placeholder=" …")
-        lines.append(f"× {_title(key)}{count}: {runs[0].status}, {reason}")
-    if len(lines) > _REASONS:
-        lines = [*lines[: _REASONS - 1], f"… and {len(lines) - _REASONS + 1} more"]
-    return marks, lines
-
-
-def _title(key: Any) -> str:
-    if isinstance(key, str):
-        return key
-    name, setting = key
-    return name if setting is None else f"{name}, {setting:.0e}"
-
-
-def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
-    """Write lines of text under the axes, below the first `after` lines."""
-    if not lines:
+    ax.tick_params(labelsize=_TEXT + 1)
+    ax.grid(True, axis="y", color=palette.grey, alpha=0.2, lw=0.5)
+    points = [point for points in race.points.values() for point in points]
+    errors = [at for at, _ in points] or [_MOST]
+    end = race.limit if x in OF_STATES else min(errors)
+    ax.set_xlim(_MOST, min(end, 1.0) / 3)
+    values = np.log10([value for at, value in points if at <= _MOST] or [1.0])
+    width, height = size_in_points(ax)
+    scale = max(1.0, np.ptp(values)) / max(height - 5 * _TEXT, _TEXT)  # decades to a point
+    ax.set_ylim(10 ** (min(values) - 2.5 * _TEXT * scale), 10 ** (max(values) + 2 * _TEXT * scale))
+    first, last = np.log10(ax.get_xlim())
+    stride = 2 if 2 * width / (first - last) > 5 * _TEXT else 4
+    ax.xaxis.set_major_locator(FixedLocator([10.0**k for k in range(-2 - 8 * stride, 2, stride)]))
+    ax.xaxis.set_major_formatter(LogFormatterMathtext())
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_minor_locator(NullLocator())
+    if y in _SECONDS:
+        ax.yaxis.set_major_formatter(EngFormatter("s"))
+    if x not in OF_STATES:
         return None
-    return ax.annotate(
-        "\n".join(lines), (0, 0), xycoords="axes fraction", xytext=(0, -38 - 7.8 * after),
-        textcoords="offset points", ha="left", va="top", fontsize=6, linespacing=1.1,
-        color=palette_of(ax).grey, annotation_clip=False,
+    return ax.axvline(race.limit, color=palette.grey, lw=1, ls="--", zorder=1)
+
+
+def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
+    """Write the factors between the fronts, and the names of contenders and of the limit."""
+    palette = palette_of(ax)
+    halo = palette.background
+    ours, others = race.fronts["highlight"], race.fronts["others"]
+    both = [d for d in _DECADES if not math.isnan(_least(ours, d) * _least(others, d))]
+    stride = 4 if len(both) > 6 else 2 if len(both) > 3 else 1
+    first, last = np.log10(ax.get_xlim())
+    wide = size_in_points(ax)[0] * stride > 10 * _TEXT * (first - last)
+    labels: dict[Any, Label] = {}
+    for decade in both[::stride]:
+        mine, best = _least(ours, decade), _least(others, decade)
+        low, high, color = mine, best, palette.blue
+        if best < mine:
+            low, high, color = best, mine, palette.orange
+        ends = np.array([(decade, high), (decade, low)])
+        texts, sides = ["equal"], BELOW_FIRST
+        if high > _EQUAL * low:
+            ax.plot(
+                *ends.T, color=color, lw=1, marker=CARETDOWN, ms=6, mew=0, markevery=[1], zorder=2.7
+            )
+            word = ("faster" if mine < best else "slower") if race.y in _SECONDS else ""
+            factor = f"{high / low:.0f} ×" if high > 9.95 * low else f"{high / low:.1f} ×"
+            texts, sides = [f"{factor} {word}".strip() if wide else factor], BESIDE
+        labels[decade] = Label(texts, visible_part(ax, *ends.T), 0.5, sides, color, halo, must=True)
+    named: dict[str, Label] = {}
+    for front, color in ((ours, palette.blue), (others, palette.orange)):
+        for name, corners in parts(front):
+            line = visible_part(ax, *np.array(corners).T)
+            named.setdefault(name, Label([name], line, color=color, halo=halo, must=True))
+    labels |= dict(list(named.items())[:_NAMED])
+    if chart.limit is not None:
+        at = (first - math.log10(race.limit)) / (first - last)
+        upright = np.array([(at, 0.0), (at, 1.0)])
+        labels[""] = Label(["attainable"], upright, 0.9, BESIDE[::-1], palette.grey, halo)
+    if ours and others and (nearest := list(others)[-1])[0] > 3 * list(ours)[-1][0]:
+        end = visible_part(ax, *np.array([nearest, nearest]).T)
+        labels["end"] = Label(["no other\ngets nearer"], end, 0.5, _AROUND, palette.orange, halo)
+    for name, drawn in chart.lines.items():
+        line = visible_part(ax, *np.array(drawn.get_data()))
+        color = palette.blue if name in race.ours else palette.grey
+        named.setdefault(name, Label([name], line, 0.9, color=color, halo=halo))
+    labels |= {name: named[name] for name in list(named)[:_NAMED] if len(named[name].line) > 1}
+    written = label_lines(ax, labels, _TEXT)
+    factors = {key: text for key, text in written.items() if isinstance(key, float)}
+    return {"factors": factors, "names": {key: written[key] for key in named if key in written}}
+
+
+def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Text:
+    """Write the title of an own figure, and below its axes the table of gaps and the machine."""
+    figure: Any = ax.figure
+    width, height = 72 * figure.get_size_inches()
+    room = int(width / (_LETTER * _TEXT)) - 2
+    if race.fronts["others"]:
+        others = race.points.keys() - race.ours
+        rest = f"the best of {len(others)} others" if len(others) > 1 else "".join(others)
+        title = wrap(f"{race.camp} and {rest}", room - _MARGIN)
+        ax.set_title("\n".join(title), loc="left", fontsize=_TEXT + 1)
+    known = [machine[name] for name in _STAMP if name in machine]
+    lines = wrap(", ".join([*known, f"least of {machine.get('rounds', '?')} rounds"]), room)
+    if 0 < len(missing) <= _ROWS and room >= _COLUMNS:
+        table = str(missing).splitlines()
+        lines = [*(row if len(row) <= room else f"{row[: room - 1]}…" for row in table), "", *lines]
+    foot = _TEXT / height
+    figure.get_layout_engine().set(rect=(0, top := (1.2 * len(lines) + 1) * foot, 1, 1 - top))
+    written: Text = figure.text(
+        0.6 * _TEXT / width, 0.5 * foot, "\n".join(lines), va="bottom", fontsize=_TEXT,
+        family="monospace", color=palette_of(ax).grey, linespacing=1.2, in_layout=False,
     )  # fmt: skip
+    return written
+
+
+def _multiples(race: _Race) -> WorkPrecisionChart:
+    """Draw a chart for each library, whose lines stand out, all with the same axes."""
+    libraries: dict[str, list[str]] = {}
+    for run in race.runs:
+        library = "rolling_ellipse" if "own" in run.tags else run.name.split()[0]
+        if run.name in race.points and run.name not in libraries.setdefault(library, []):
+            libraries[library].append(run.name)
+    columns = min(len(libraries), 4)
+    rows = -(-len(libraries) // columns)
+    figure = pyplot_figure(figsize=(8, 0.6 + 2.1 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    lines: dict[str, Line2D] = {}
+    for ax, (library, members) in zip(panels, libraries.items(), strict=False):
+        drawn = _drawn(ax, race, members)["lines"]
+        ax.set_title(library, loc="left", fontsize=_TEXT + 1, fontweight="bold")
+        lines |= {name: drawn[name] for name in members}
+        ax.label_outer()
+    for ax in panels[len(libraries) :]:
+        ax.set_visible(False)
+    figure.draw_without_rendering()
+    names: dict[str, Text] = {}
+    for ax, (library, members) in zip(panels, libraries.items(), strict=False):
+        labels = {
+            name: Label(
+                [name.removeprefix(f"{library} ")],
+                visible_part(ax, *np.array(lines[name].get_data())), 0.7, must=True,
+                color=str(lines[name].get_color()), halo=palette_of(ax).background,
+            )
+            for name in members
+        }  # fmt: skip
+        names |= label_lines(ax, labels, _TEXT)
+    return WorkPrecisionChart(tuple(panels[: len(libraries)]), gaps(race.runs), lines, names=names)

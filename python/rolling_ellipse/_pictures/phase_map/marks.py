@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from ..._ask.check import FloatArray
 from ..._verbs.classify import Thresholds, thresholds
-from ..labels import Label, label_lines, visible_part
+from ..labels import ABOVE_FIRST, BELOW_FIRST, Label, label_lines, visible_part
 from ..palette import INK, PLUM
 from .plane import Plane
 
@@ -134,5 +135,10 @@ def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict
         mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LINE | mark.line))[0]
         for mark, _ in seen
     }
-    labels = {mark.key: Label(part, mark.names, mark.place, mark.above) for mark, part in seen}
-    return lines, label_lines(ax, labels)
+    labels = {
+        mark.key: Label(
+            mark.names, part, mark.place, ABOVE_FIRST if mark.above else BELOW_FIRST, along=True
+        )
+        for mark, part in seen
+    }
+    return lines, label_lines(ax, labels, FontProperties(size="x-small").get_size_in_points())

@@ -12,6 +12,7 @@ from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
 from ..._motion.export.tables import required
 from . import files
+from .gaps import Gaps, gaps
 from .run import ERRORS, NOT_RUN, OF_STATES, Reference, Run, require_quantity
 from .verdict import verdict
 
@@ -125,28 +126,52 @@ class WorkPrecision:
         """
         return verdict(self, self.judged_by(t_end), DECADES)
 
+    def gaps(self, *, t_end: float | None = None) -> Gaps:
+        """Return the table of the runs that failed, were refused or were not run, with reasons.
+
+        Contenders whose answers all err by more than 1e-2 are there, too. It prints as a table, and
+        has `to_dataframe`.
+        """
+        return gaps(self.of(t_end))
+
     def plot(
         self, x: str = "largest", y: str = "time", tags: Sequence[str] | None = None,
-        ax: Axes | None = None, *, t_end: float | None = None,
+        ax: Axes | None = None, *, highlight: Sequence[str] | None = None, by: str | None = None,
+        t_end: float | None = None,
     ) -> WorkPrecisionChart:  # fmt: skip
         """Draw one quantity of the runs over another, both on logarithmic axes; return the artists.
 
-        The runs of a ladder are joined. Runs without an answer are on the rim, with their reasons
-        below. The name of a line that ends for want of time has an arrow. Over "t_end" the runs to
-        all ends are drawn, joined at equal settings.
+        Over an error the quickest of two camps stand out: the contenders of `highlight` and all
+        others. The two strong lines with steps are their fronts: the least `y` for every error.
+        Arrows have the factors between the fronts. Thin lines join the runs of each contender.
+        Errors above 10 are no answers, and out of view. Over "t_end" the runs to all ends are
+        drawn, joined at equal settings.
 
         Parameters
         ----------
         x, y : str
             Names of the quantities.
         tags : sequence of str, optional
-            Draw only runs with one of these tags (or names).
+            Draw only contenders with one of these tags (or names).
         ax : matplotlib Axes, optional
-            Axes to draw into; default: those of a new pyplot figure, with a stamp of the machine.
+            Axes to draw into; default: those of a new pyplot figure, which has the table of `gaps`
+            where it fits, and the machine.
+        highlight : sequence of str, optional
+            Names or tags of the first camp. Default: the package's own methods beside peers, else
+            the method that is the quickest over most errors.
+        by : {"library"}, optional
+            Draw a small chart for each library instead, all with the same axes: for twenty
+            contenders and more. A peer's library is the first word of its name.
+
+        Raises
+        ------
+        ValueError
+            If an argument is not as above; names that are not in the race are refused with all
+            valid ones.
         """
         from ..._pictures.work_precision import draw
 
-        return draw(self, x, y, tags, ax, t_end)
+        return draw(self, x, y, tags, ax, highlight, by, t_end)
 
     def to_dataframe(self) -> DataFrame:
         """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each run."""

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from .run import NOT_RUN, Reference, Run
+from .gaps import brief_time, gaps
+from .run import COMPLETED, NOT_RUN, Reference, Run
 
 if TYPE_CHECKING:
     from .results import WorkPrecision
@@ -66,7 +67,7 @@ def _leaders(runs: Sequence[Run], table: Table, is_open: dict[float, bool]) -> I
         rank = "the fastest that was run" if more else "unbeaten"
         # the longest set-up: some contenders compile once, at their first setting
         setup = max(run.setup for run in runs if run.name == name and run.completed)
-        cost = f"{_time(table[decades[-1]][name])}, set-up {_time(setup)}"
+        cost = f"{brief_time(table[decades[-1]][name])}, set-up {brief_time(setup)}"
         yield f"{name} is {rank} {_span(decades)} ({cost});"
         for same in _ranges(decades, second):
             if rival := second(same[0]):
@@ -80,22 +81,16 @@ def _leaders(runs: Sequence[Run], table: Table, is_open: dict[float, bool]) -> I
 
 def _without_answer(runs: Sequence[Run]) -> list[str]:
     """Return a line for each contender without an answer, with a poor one, or cut short."""
-    lines, late = [], []
-    for name in dict.fromkeys(run.name for run in runs):
-        found = [run for run in runs if run.name == name]
-        made = [run for run in found if run.status != NOT_RUN]
-        answers = [run for run in made if run.completed]
-        whole = len(made) == len(found)
-        if not whole:
-            so_far = f" ({_time(answers[-1].time)} a call so far)" if answers else ""
-            beyond = f"beyond {made[-1].setting:.0e}" if made else "at all"
-            late.append(f"{name} was not run {beyond}: no time left{so_far}")
-        if made and not answers:
-            so_far = "" if whole else " so far"
-            lines.append(f"{name} reached nothing{so_far}: {made[0].status}, {made[0].reason}")
-        elif whole and (nearest := min(run.errors.largest for run in answers)) > 1e-2:
-            lines.append(f"{name} came no nearer than {nearest:.1e}")
-    return lines + late
+    found = gaps(runs)
+    late = {gap.name: gap.sentence() for gap in found if gap.status == NOT_RUN}
+    lines = []
+    for gap in found:
+        if gap.status == COMPLETED:
+            lines.append(gap.sentence())
+        elif gap.status != NOT_RUN and not gap.answers:
+            so_far = " so far" if gap.name in late else ""
+            lines.append(f"{gap.name} reached nothing{so_far}: {gap.status}, {gap.reason}")
+    return [*dict.fromkeys(lines), *late.values()]
 
 
 def _ranges(decades: Decades, key: Callable[[float], Any]) -> Iterator[list[float]]:
@@ -106,9 +101,3 @@ def _span(decades: Decades) -> str:
     if len(decades) == 1:
         return f"at {decades[0]:.0e}"
     return f"from {decades[0]:.0e} to {decades[-1]:.0e}"
-
-
-def _time(seconds: float) -> str:
-    sizes = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
-    unit = next((unit for unit, size in sizes.items() if seconds >= size), "ns")
-    return f"{seconds / sizes[unit]:.3g} {unit}"
