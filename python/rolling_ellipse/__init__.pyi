@@ -46,6 +46,7 @@ from ._verbs.classify import classify as classify
 from ._verbs.classify import thresholds as thresholds
 from ._verbs.flow import flow as flow
 from ._verbs.flow import period as period
+from ._verbs.flow import rolling_equation as rolling_equation
 from ._verbs.outcome import outcome as outcome
 from ._verbs.outcome import required_friction as required_friction
 from ._verbs.simulate import simulate as simulate

@@ -6,7 +6,6 @@ The reference on level ground is the exact flow, which takes no steps and has an
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -139,21 +138,6 @@ def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> 
 PEERS = {"dop853": "DOP853", "dopri5": "RK45"}
 
 
-def rolling_equation(scene: Scene) -> Callable[[float, Any], list[float]]:
-    """(theta', omega') on level ground, from h, h' and rho."""
-    a2, b2, gravity, gyration2 = scene.a**2, scene.b**2, scene.gravity, scene.gyration2
-
-    def slopes(_: float, y: Any) -> list[float]:
-        theta, omega = y
-        sine, cosine = math.sin(theta), math.cos(theta)
-        h = math.sqrt(a2 * sine**2 + b2 * cosine**2)
-        lead = (a2 - b2) * sine * cosine / h
-        load = gravity + a2 * b2 / h**3 * omega**2
-        return [omega, -lead * load / (gyration2 + h**2 + lead**2)]
-
-    return slopes
-
-
 @pytest.mark.parametrize("name", PAIRS)
 def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
     """SciPy has the same pairs with the same step control: steps and evaluations agree within 10 %,
@@ -163,7 +147,7 @@ def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
         trajectory = roll(scene, [5.0], name, rtol=rtol, atol=rtol / 100)
         start = [scene.theta, scene.omega]
         peer = solve_ivp(
-            rolling_equation(scene), (0, 5), start, PEERS[name], rtol=rtol, atol=rtol / 100
+            rl.rolling_equation(scene), (0, 5), start, PEERS[name], rtol=rtol, atol=rtol / 100
         )
         assert trajectory.stats["steps"] == pytest.approx(peer.t.size - 1, rel=0.1, abs=2)
         assert trajectory.stats["evaluations"] == pytest.approx(peer.nfev, rel=0.1, abs=20)

@@ -109,6 +109,20 @@ def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
 # ------------------------------------------------------------------------------- required friction
 
 
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 1.5), (1.0, 1.0)])
+def test_lying_still_needs_the_tangent_of_the_slope(a: float, b: float) -> None:
+    """The weight acts through the contact if that leads the centre by h tan(slope). The maximum of
+    lead/h is flat, so that the largest of 1e5 angles misses it by some 1e-9."""
+    theta = np.linspace(0.0, math.pi, 100_001)
+    leads = rl.geometry.support_slope(theta, a=a, b=b) / rl.geometry.support(theta, a=a, b=b)
+    steepest = math.atan(leads.max())
+    for slope in (0.999 * steepest, -0.5 * steepest):
+        needed = required_friction(rl.Scene(a, b, slope=slope, omega=1.0), to="rest")
+        assert needed == math.tan(abs(slope))
+    steep = rl.Scene(a, b, slope=1.001 * steepest + 1e-9)
+    assert math.isinf(required_friction(steep, to="rest"))
+
+
 def test_required_friction_is_what_blow_and_motion_need() -> None:
     """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
     (1e-12 of the forces). Below it the certificate finds the end of rolling, with a little more it

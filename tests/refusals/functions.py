@@ -88,6 +88,11 @@ REFUSALS: list[Row] = [
     # functions of a scene
     *wrong(rl.certify, {}, scene=[None, 1, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5]),
     *wrong(rl.period, {}, scene=[None, 1, AIR, scenes.slope]),
+    *wrong(rl.required_friction, {"scene": ROLLING}, scene=[None], to=["slide", None]),
+    *wrong(rl.rolling_equation, {}, scene=[None]),
+    *(("y", lambda _, y=y: rl.rolling_equation(ROLLING)(0.0, y)) for y in (1.0, [1.0], [1.0] * 4)),
+    *wrong(Scene.from_density, {**AXES, "density": 1.0, "thickness": 0.1},
+           a=["2"], density=NOT_POSITIVE, thickness=NOT_POSITIVE),
     *wrong(rl.outcome, {"scene": ROLLING}, impulse=[1, Impulse.press(1.0, [0.0, 5.0])]),
     *wrong(rl.outcome, {}, scene=["flat"]),
     ("impulse", lambda _: rl.outcome(Scene(2.0, 1.0, mass=1e-20), Impulse([0.0, 1e40], dz=1.0))),

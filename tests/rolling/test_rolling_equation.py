@@ -14,7 +14,7 @@ import numpy as np
 import oracles.geometry
 import pytest
 from oracles.numbers import DIGITS, ulps
-from rolling_ellipse import Scene, _core
+from rolling_ellipse import Scene, _core, kinematics, rolling_equation
 
 SLOPES = (0.0, 0.1, -0.7, 1.4)
 SPEEDS = (0.0, 1e-8, -1.3, 40.0)
@@ -102,8 +102,10 @@ def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -
     fine = min(shape) / max(shape)
     d = 1e-5 * fine
 
+    rhs = rolling_equation(scene)
+
     def acceleration(turn: Any, speed: Any) -> Any:
-        return _core.rolling_equation(scene.core, turn, speed)[0]
+        return rhs(0.0, [turn, speed])[1]
 
     _, jacobian = _core.rolling_equation(scene.core, theta, omega)
     by_theta = (acceleration(theta + d, omega) - acceleration(theta - d, omega)) / (2 * d)
@@ -111,4 +113,8 @@ def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -
     by_omega = (acceleration(theta, omega + step) - acceleration(theta, omega - step)) / (2 * step)
     size = np.abs(acceleration(theta, omega)) + scene.gravity / max(shape) + omega**2
     assert np.all(np.abs(by_theta - jacobian[:, 0]) <= 1e-8 * size / fine)
+    _, rates = kinematics(theta, omega, a=shape[0], b=shape[1])
+    found = rhs(0.0, [theta, omega, theta])  # also x' of a third column, h omega in both
+    assert np.array_equal(found[:2], rhs(0.0, [theta, omega])) and np.array_equal(found[0], omega)
+    assert found[2] == pytest.approx(rates[:, 0], rel=1e-14)
     assert np.all(np.abs(by_omega - jacobian[:, 1]) <= 1e-8 * size / np.abs(omega) / fine)

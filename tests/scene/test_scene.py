@@ -154,6 +154,9 @@ def test_gyration2() -> None:
     assert scene().gyration2 == 1.25  # a uniform disc, eq 12 of the report
     assert scene(mass=4.0).gyration2 == 1.25
     assert scene(mass=4.0, inertia=2.0).gyration2 == 0.5
+    steel = Scene.from_density(0.2, 0.1, density=7850.0, thickness=0.05, omega=2.0)
+    assert steel == Scene(0.2, 0.1, mass=steel.mass, omega=2.0)
+    assert steel.mass == pytest.approx(7850.0 * 1e-3 * math.pi, rel=1e-15)
 
 
 def test_what_is_taken_as_inertia_is_taken_as_gyration2() -> None:

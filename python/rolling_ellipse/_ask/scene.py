@@ -6,12 +6,12 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
-from typing import Any, ClassVar, TypedDict, Unpack
+from typing import Any, ClassVar, Self, TypedDict, Unpack
 
 from .. import _core
 from .._core import Mode
 from . import reason as words
-from .check import number, shown
+from .check import number, positive, shown
 from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .records import FieldsOnly, cached_property
@@ -180,6 +180,29 @@ class Scene(FieldsOnly, Listed):
             )
         core = _for_core(given, impulse, reached)  # refuses numbers out of range
         object.__setattr__(self, "__dict__", given | {"impulse": impulse, "core": core})
+
+    @classmethod
+    def from_density(
+        cls, a: float, b: float, *, density: float, thickness: float, **others: Any
+    ) -> Self:
+        """Return the scene of a uniform elliptical cylinder, its mass pi a b density thickness.
+
+        Parameters
+        ----------
+        a, b : float
+            Semi-axes [m].
+        density, thickness : float
+            Density [kg/m^3], and length of the cylinder across the plane of motion [m].
+        **others
+            As of `Scene`.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of its range.
+        """
+        height = positive("thickness", thickness) * positive("density", density)
+        return cls(a, b, mass=math.pi * number("a", a) * number("b", b) * height, **others)
 
     @cached_property
     def core(self) -> _core.Scene:

@@ -45,12 +45,16 @@ class Event(FieldsOnly):
     state_before, state_after : InitialState
         State just before and just after; the latter has the reaction impulse of an impact and the
         energy lost in it.
+    energy_before, energy_after : float
+        Kinetic and potential energy of the two states [J].
     """
 
     t: float
     kind: EventKind
     state_before: InitialState
     state_after: InitialState
+    energy_before: float
+    energy_after: float
 
     def _row(self) -> Row:
         """Return the event as a table row, with the columns of `_HEAD`."""
@@ -135,4 +139,17 @@ def _state(event: Any, after: bool, reason: str) -> InitialState:
     return trusted(InitialState, found | {"mode": _MODES[found["mode"]], "reason": reason})
 
 
+def energies(scene: Scene, of: Any) -> tuple[Any, Any, Any]:
+    """Return translational, rotational and potential energy of a state, or of samples [J]."""
+    translational = 0.5 * scene.mass * (of.x_dot**2 + of.z_dot**2)
+    rotational = 0.5 * (scene.mass * scene.gyration2) * of.omega**2
+    height = of.z * math.cos(scene.slope) - of.x * math.sin(scene.slope)
+    return translational, rotational, scene.mass * scene.gravity * height
+
+
+def _energy(name: str) -> Any:
+    return lambda event: sum(energies(event._scene, getattr(event, name)))
+
+
 find_late(Event, state_before=_before, state_after=_after)
+find_late(Event, energy_before=_energy("state_before"), energy_after=_energy("state_after"))

@@ -18,7 +18,7 @@ from .._ask.settings import METHODS, MODELS, Method, Model, Settings
 from .._ask.words import MEANT, meant
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
-from .events import Event, Events, events
+from .events import Event, Events, energies, events
 from .quantities import MODE, QUANTITIES
 from .samples import (
     ContactSamples,
@@ -72,6 +72,10 @@ def _column(name: str, column: int) -> cached_property[FloatArray]:
 
 def _touching(name: str) -> cached_property[FloatArray]:
     return _derived(lambda self: self._touch[name])
+
+
+def _energy(kind: int) -> cached_property[FloatArray]:
+    return _derived(lambda self: self._energies[kind])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -278,22 +282,15 @@ class Trajectory(FieldsOnly):
     def turns(self) -> FloatArray:
         return (self.theta - self.scene.theta) / (2 * math.pi)
 
-    @_derived
-    def translational_energy(self) -> FloatArray:
-        return 0.5 * self.scene.mass * (self.x_dot**2 + self.z_dot**2)
+    @cached_property
+    def _energies(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return energies(self.scene, self)
 
-    @_derived
-    def rotational_energy(self) -> FloatArray:
-        return 0.5 * (self.scene.mass * self.scene.gyration2) * self.omega**2
+    translational_energy, rotational_energy, potential_energy = map(_energy, range(3))
 
     @_derived
     def kinetic_energy(self) -> FloatArray:
         return self.translational_energy + self.rotational_energy
-
-    @_derived
-    def potential_energy(self) -> FloatArray:
-        weight, slope = self.scene.mass * self.scene.gravity, self.scene.slope
-        return weight * (self.z * math.cos(slope) - self.x * math.sin(slope))
 
     @_derived
     def energy(self) -> FloatArray:

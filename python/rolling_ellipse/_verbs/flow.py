@@ -1,7 +1,8 @@
-"""Exact rolling as a function of time, and its period."""
+"""Exact rolling as a function of time, its period, and its equation for other integrators."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from types import NoneType
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from .. import _core
 from .._ask.check import FloatArray, array, evaluate, shaped, uniform_disc
 from .._ask.scene import Scene, require_scene
+from ..geometry import support
 from .workers import shared, threads_of
 
 _SCALARS = (float, int, np.float64)
@@ -133,3 +135,38 @@ def period(scene: Scene) -> float:
         If it does not.
     """
     return _core.period(require_scene(scene).core)
+
+
+def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
+    """Return the right-hand side of the equation of rolling without slip, for any integrator.
+
+    ``solve_ivp(rolling_equation(scene), (0.0, 6.0), [start.theta, start.omega])`` is the motion
+    from ``start = scene.initial_state``. It is not checked that the ground can hold it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its body, gravity and slope.
+
+    Returns
+    -------
+    callable
+        ``rhs(t, y)``: the rates of y = (theta, omega) [rad, rad/s], or of (theta, omega, x) with
+        the centre x [m], as an array of the shape of y, (2,) or (3,); columns of shape (2, n) or
+        (3, n) are n states. omega' is physics (18), x' = h omega is (9). It raises ValueError for
+        y of another shape.
+    """
+    core, axes = require_scene(scene).core, {"a": scene.a, "b": scene.b}
+
+    def rhs(t: float, y: Any) -> FloatArray:
+        state = array("y", y)
+        if state.ndim == 0 or len(state) not in (2, 3):
+            raise ValueError(f"y must be theta, omega and perhaps x, got shape {state.shape}")
+        theta, omega = state[0], state[1]
+        acceleration, _ = _core.rolling_equation(core, theta.ravel(), omega.ravel())
+        rates = [omega, acceleration.reshape(theta.shape)]
+        if len(state) == 3:
+            rates.append(support(theta, **axes) * omega)
+        return np.array(rates)
+
+    return rhs

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._ask.check import broadcast, shown
+from .._ask.check import broadcast, choice, shown
 from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
 from .._core import Outcome
@@ -73,7 +74,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     return np.array(codes, dtype=np.int8).reshape(shape)
 
 
-def required_friction(scene: Scene) -> float:
+def required_friction(scene: Scene, *, to: Literal["roll", "rest"] = "roll") -> float:
     """Return the least coefficient of friction with which the ground holds the rolling for ever.
 
     It is the larger of two coefficients. The blow requires |Λx|/Λz of the sticking contact, or
@@ -83,6 +84,14 @@ def required_friction(scene: Scene) -> float:
     circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
     along the angle, by a scan and golden section). The scene's own friction has no effect.
 
+    Parameters
+    ----------
+    scene : Scene
+    to : {"roll", "rest"}
+        "rest": the friction with which the body, whatever its start, can lie still on its slope:
+        tan(slope), or infinite where it is steeper than |a^2 - b^2|/(2 a b), the largest lead of
+        the contact over the height of the centre.
+
     Returns
     -------
     float
@@ -91,4 +100,8 @@ def required_friction(scene: Scene) -> float:
         ever. Infinite friction may hold some of these: see `certify`. 0 if any positive coefficient
         is enough: without friction a moving contact slides.
     """
-    return _core.required_friction(require_scene(scene).core)
+    require_scene(scene)
+    if choice("to", to, ("roll", "rest")) == "rest":
+        a, b, needed = scene.a, scene.b, math.tan(abs(scene.slope))
+        return needed if needed <= abs((a - b) * (a + b)) / (2 * a * b) else math.inf
+    return _core.required_friction(scene.core)

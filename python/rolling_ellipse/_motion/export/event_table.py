@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 def to_dataframe(events: Events) -> DataFrame:
     """Return a pandas DataFrame with a row for each event.
 
-    Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, the
-    reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the units by
-    column.
+    Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, with their
+    energies, the reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the
+    units by column.
 
     Raises
     ------
@@ -39,6 +39,9 @@ def to_dataframe(events: Events) -> DataFrame:
             columns[f"{name}_{when}"] = np.array([getattr(each, name) for each in states], float)
             units[f"{name}_{when}"] = unit
         columns[f"mode_{when}"] = [each.mode.name for each in states]
+        energy = f"energy_{when}"
+        columns[energy] = np.array([getattr(found, energy) for found in events], float)
+        units[energy] = "J"
     for name, unit in (("reaction_x", "N s"), ("reaction_z", "N s"), ("energy_lost", "J")):
         columns[name] = np.array([getattr(found.state_after, name) for found in events], float)
         units[name] = unit
