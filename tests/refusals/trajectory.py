@@ -55,6 +55,8 @@ REFUSALS: list[Row] = [
     ),
     *wrong(MOTION.when, {"theta": 0.1}, direction=[2, True]),
     ("function's result", lambda _: MOTION.when(function=lambda at: "x")),
+    ("event", lambda _: TURNING.when(event="roll_over")),
+    ("event", lambda _: MOTION.when(event="impacts")),
     *(("exactly one of theta", lambda _, given=given: MOTION.when(**given))
       for given in ({}, {"theta": 1.0, "x": 2.0})),
     ("z", lambda _: TURNING.when(z=1.5)),

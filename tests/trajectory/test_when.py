@@ -114,11 +114,27 @@ def test_turns_of_the_reports_ellipse() -> None:
     for i, expected in enumerate(tips):
         upright = motion.when(theta=(i + 0.5) * math.pi)
         assert upright == pytest.approx([expected], rel=1e-15)
+    assert motion.when(event="roll_over") == pytest.approx(tips, rel=1e-15)
+    with pytest.warns(CompletenessWarning, match=r"^theta = 90 rad is never reached \(degrees\?"):
+        assert motion.when(theta=90).size == 0
     with pytest.warns(CompletenessWarning):
         found = motion.when(function=lambda m: np.cos(m.theta))
     assert found == pytest.approx(tips, rel=1e-14)
     assert motion.when(contact_x=9.6884482205476762) == pytest.approx([2 * half], rel=2e-15)
     assert motion.when(x=9.6884482205476762) == pytest.approx([2 * half], rel=2e-15)
+
+
+def test_events_by_their_kinds() -> None:
+    """A body that turns, stands up and falls back passes its tip once each way at most; the kinds
+    of all events together are the events."""
+    back = simulate(Scene(1.0, 2.0, theta=-1.0, omega=4.0, slope=-0.3), 4.0)
+    over, again = back.when(event="roll_over")
+    assert back.theta[0] < 0 < back.at(0.5 * (over + again)).theta and back.theta[-1] < 0
+    assert back.when(event="roll_over", direction=-1).tolist() == [again]
+    assert simulate(rl.scenes.rocking, 9.0).when(event="roll_over").size == 0
+    drop = simulate(rl.scenes.drop, 9.0)
+    found = [drop.when(event=kind.name.lower()) for kind in rl.EventKind]
+    assert sorted(np.concatenate(found)) == [event.t for event in drop.events]
 
 
 def test_far_away_and_too_often() -> None:

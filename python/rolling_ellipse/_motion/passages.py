@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -9,8 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._ask.categories import CompletenessWarning
-from .._ask.check import FloatArray, array, finite, shown, whole
-from .._core import Quantity
+from .._ask.check import FloatArray, array, choice, finite, shown, whole
+from .._core import EventKind, Quantity
+
+_EVENTS = (*(kind.name.lower() for kind in EventKind), "roll_over")
+_MOST = 10**6  # times that a value may be passed, in the core, too
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -25,6 +29,7 @@ def when(
     omega: Any = None,
     contact_x: Any = None,
     function: Callable[[Trajectory], Any] | None = None,
+    event: str | None = None,
     direction: int = 0,
 ) -> Any:
     """Return all times in [0, t_end] at which the motion passes a value.
@@ -45,6 +50,9 @@ def when(
         or `function`.
     function : callable, optional
         Takes a Trajectory and returns one number for each sample; its zeros are searched.
+    event : str, optional
+        Kind of events, ``"slip"`` to ``"jam"`` as of `EventKind`; or ``"roll_over"``: the body
+        passes a position with its long axis at right angles to the ground (a circle: its axis a).
     direction : {0, 1, -1}
         1: only where it rises through the value; -1: only where it falls; 0: both, and touches.
 
@@ -62,7 +70,7 @@ def when(
     """
     given = {
         "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
-        "function": function,
+        "function": function, "event": event,
     }  # fmt: skip
     chosen = {name: value for name, value in given.items() if value is not None}
     if len(chosen) != 1:
@@ -72,12 +80,18 @@ def when(
     ((name, asked),) = chosen.items()
     if name == "function" and not callable(asked):
         raise TypeError(f"function must be a function of a Trajectory, got {shown(asked)}")
-    values = np.empty(()) if name == "function" else finite(name, asked)
-    if values.ndim > 1:
-        raise ValueError(f"{name} must be a number or a 1-D array, got shape {values.shape}")
     sense = whole("direction", direction)
     if sense not in (-1, 0, 1):
         raise ValueError(f"direction must be 1, -1 or 0, got {shown(direction)}")
+    if name == "event":
+        kind = choice("event", asked, _EVENTS)
+        if kind != "roll_over":
+            return np.array([each.t for each in motion.events if each.kind.name.lower() == kind])
+        rolled = when(motion, theta=_tips(motion), direction=sense)
+        return np.sort(np.concatenate([[], *rolled]))
+    values = np.empty(()) if name == "function" else finite(name, asked)
+    if values.ndim > 1:
+        raise ValueError(f"{name} must be a number or a 1-D array, got shape {values.shape}")
     if name == "function":
         found, unproved = motion._solution.zeros(_measure(motion, asked), sense)
     else:
@@ -89,7 +103,33 @@ def when(
             CompletenessWarning,
             stacklevel=2,
         )
+    if name == "theta" and not any(each.size for each in found):
+        _ask_for_radians(motion, values)
     return found if values.ndim == 1 else found[0]
+
+
+def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
+    """Warn of angles that are never reached, but would be if they were degrees."""
+    degrees = values[(values != 0) & (values % 15 == 0)]
+    times, _ = motion._solution.passages(Quantity.theta, np.radians(degrees), 0)
+    if any(each.size for each in times):
+        warnings.warn(
+            f"theta = {degrees[0]:g} rad is never reached (degrees? times pi/180)",
+            CompletenessWarning,
+            stacklevel=3,
+        )
+
+
+def _tips(motion: Trajectory) -> FloatArray:
+    """Return the angles on the tip that are reached; between turning points theta is monotonic."""
+    turning = motion._solution.passages(Quantity.omega, np.zeros(1), 0)[0][0]
+    theta = motion.sol([0.0, *turning, motion.t_end]).theta
+    tip = math.pi / 2 if motion.scene.a >= motion.scene.b else 0.0
+    first = math.ceil((theta.min() - tip) / math.pi)
+    last = math.floor((theta.max() - tip) / math.pi)
+    if last - first > _MOST:
+        raise ValueError(f"event must happen at most {_MOST} times, got {last - first}")
+    return tip + math.pi * np.arange(first, last + 1)
 
 
 def _measure(
