@@ -109,6 +109,8 @@ def require_the_same_bits(workers: Any, folder: Path) -> None:
         require_same(one, other)
     simulate_many(NAMED * 5, TIMES, workers=workers, out=folder)
     assert list(load_many(folder)) == expected
+    arrays = simulate_many(NAMED * 5, TIMES, workers=workers, returns="z")
+    assert np.array_equal(arrays["z"], [each.z for each in expected])
     body = {"a": 2.0, "b": 1.0, "omega": 1.0}
     for call in (
         lambda workers: rl.flow(2.0, theta=THETA, workers=workers, **body),
@@ -264,6 +266,8 @@ def test_a_pool_that_breaks_loses_a_part() -> None:
     found = simulate_many(MANY, [1.0], workers=Mapping(lost=True))
     assert len(found) == len(MANY) and {type(each) for each in found} == {WorkerError}
     assert "BrokenPipeError" in str(found[0])
+    lost = simulate_many(MANY, [1.0], workers=Mapping(lost=True), returns="x")
+    assert set(lost.status) == {"LOST"} and np.isnan(lost["x"]).all() and len(lost.errors) == 400
 
 
 @pytest.mark.parametrize("workers", [Here(lost=(0, 3)), Here(closes_after=4), Mapping(lost=True)])

@@ -2,6 +2,7 @@
 
 import inspect
 import itertools
+import json
 import math
 import weakref
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
 from rolling_ellipse._verbs.batches.asked import sizes
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all
 
 ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
 WAYS: dict[str, dict[str, Any]] = {
@@ -51,6 +53,52 @@ def test_the_ways_lead_everywhere() -> None:
     statuses = {each.status for answers in found.values() for each in answers
                 if isinstance(each, rl.Trajectory)}  # fmt: skip
     assert {rl.Status.COMPLETED, rl.Status.VALIDITY_LOST, rl.Status.MAX_EVENTS} <= statuses
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_arrays_have_the_bits_of_the_list(way: dict[str, Any]) -> None:
+    """Samples that a motion has not reached, or whose scene is refused, are NaN."""
+    names = ("x", "theta", "omega", "z", "friction_force", "mode")
+    listed = simulate_many(NAMED * 3, TIMES, **way)
+    found = simulate_many(NAMED * 3, TIMES, returns=names, **way)
+    for i, each in enumerate(listed):
+        motion = getattr(each, "trajectory", each)
+        reached = motion.t.size if isinstance(motion, rl.Trajectory) else 0
+        for name in names:
+            assert np.array_equal(found[name][i, :reached], getattr(motion, name, []))
+            assert np.isnan(found[name][i, reached:]).all()
+        assert found.status[i] == (motion.status.name if reached else "REFUSED")
+    errors = {(i,): str(each) for i, each in enumerate(listed) if isinstance(each, Exception)}
+    assert {place: str(each) for place, each in found.errors.items()} == errors
+    for name, values in simulate_many(NAMED * 3, TIMES, returns=names[:2], **way).items():
+        assert np.array_equal(values, found[name], equal_nan=True)  # without any trajectory
+
+
+def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
+    """Shape and names are those of the arrays, in memory and in a folder; one argument alone along
+    an axis names it, and two of them, or scenes of an iterable, are coordinates of "scene"."""
+    b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
+    grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
+    data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()
+    assert dict(data.sizes) == {"b": 3, "omega0": 4, "t": TIMES.size}
+    assert data["z"].attrs["units"] == "m" and data.attrs["friction"] == 0.8
+    motion = simulate(Scene(2.0, b[1], omega=3.0, friction=0.8), TIMES)
+    assert np.array_equal(data["z"].sel(b=b[1], omega0=3.0), motion.z)
+    stored = rl.load_many(simulate_many(grid, TIMES, out=tmp_path / "out"))
+    assert stored.to_xarray(("theta", "z")).identical(data)
+    frame = stored.to_dataframe("theta")
+    assert np.array_equal(frame.loc[(b[1], 3.0)]["theta"], motion.theta)
+    assert len(stored) == 12 and stored[5] == motion == stored[-7] and stored[4:6][1] == motion
+    together = {"a": 2.0, "b": 1.0, "omega": speeds, "theta": np.arange(4.0)}
+    for wanted in (together, [Scene(2.0, 1.0, theta=i, omega=w) for i, w in enumerate(speeds)]):
+        listed = simulate_many(wanted, TIMES, returns="x").to_xarray()
+        assert listed["x"].dims == ("scene", "t") and np.array_equal(listed["omega0"], speeds)
+        assert listed["theta0"].dims == ("scene",) and "b" not in listed.coords
+    (end,) = (tmp_path / "out").glob("end.json")  # of a folder before shapes were stored
+    names, about = _chunks(tmp_path / "out"), json.loads(end.read_text())
+    digest = _digest_of_all(names[0][0].split("-")[1], 12, names, {})
+    end.write_text(json.dumps({"scenes": 12, "digest": digest}))
+    assert about["axes"] == ["b", "omega0"] and rl.load_many(end.parent).arrays().axes == ("scene",)
 
 
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
@@ -111,9 +159,11 @@ def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> N
     assert done == []
 
 
-@pytest.mark.parametrize("nothing", [[], iter(()), {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
-def test_no_scenes(nothing: Any) -> None:
-    assert simulate_many(nothing, 1.0) == []
+@pytest.mark.parametrize("nothing", [[], {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
+def test_no_scenes(nothing: Any, tmp_path: Path) -> None:
+    assert simulate_many(nothing, 1.0) == [] == simulate_many(iter(()), 1.0)
+    found = rl.load_many(simulate_many(nothing, [1.0], out=tmp_path / "none")).arrays()
+    assert found.status.size == found["x"].size == found.to_xarray()["x"].size == 0
 
 
 # ------------------------------------------------------------------------------- other arguments
@@ -122,7 +172,7 @@ def test_no_scenes(nothing: Any) -> None:
 def test_arguments_are_those_of_simulate() -> None:
     mine = dict(inspect.signature(simulate_many).parameters)
     others = dict(inspect.signature(simulate).parameters)
-    for name in ("scene", "scenes", "workers", "progress", "out"):
+    for name in ("scene", "scenes", "workers", "progress", "out", "returns"):
         mine.pop(name, None)
         others.pop(name, None)
     assert mine == others

@@ -281,13 +281,6 @@ def test_nothing_is_unpickled(
     assert not Path("harmed").exists()
 
 
-def test_nothing_is_unpacked(contents: dict[str, bytes], tmp_path: Path) -> None:
-    """A compressed file of a megabyte could hold arrays of a gigabyte."""
-    about, arrays = taken_apart(contents["rolling"])
-    content = put_together(about, arrays, np.savez_compressed)
-    refusal(content, tmp_path / "motion.npz", ".* must not be compressed")
-
-
 def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> None:
     """A directory with a million members of the same bytes would take a week."""
     path = tmp_path / "motion.npz"

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas
 import pytest
 import rolling_ellipse as rl
 import xarray
@@ -55,13 +54,6 @@ def test_the_dataset_holds_the_arrays(motion: rl.Trajectory) -> None:
     for variable in found.data_vars.values():
         assert set(variable.attrs) >= {"units", "long_name"}
     assert found["t"].attrs == {"units": "s", "long_name": "time"}
-
-
-def test_the_energies_of_a_disc() -> None:
-    """Of a rolling disc a third is rotation, k^2 = r^2/2; 1e-14 is some roundings."""
-    disc = rl.simulate(rl.scenes.circle.replace(mass=3.0), [0.0, 1.0])
-    assert disc.translational_energy == pytest.approx(3.0 * 2.0**2 / 2, rel=1e-14)
-    assert disc.rotational_energy == pytest.approx(disc.kinetic_energy / 3, rel=1e-14)
 
 
 def test_no_array_of_a_trajectory_is_left_out(motion: rl.Trajectory) -> None:
@@ -139,13 +131,6 @@ def test_netcdf_and_back(motion: rl.Trajectory, tmp_path: Path) -> None:
     assert read.identical(written)
     again = rl.simulate(scene_in(read.attrs), read["t"].to_numpy())
     assert np.array_equal(again.theta, motion.theta)
-
-
-def test_a_dataframe_and_back(motion: rl.Trajectory) -> None:
-    frame = motion.to_dataframe()
-    again = rl.simulate(scene_in(frame.attrs), frame.index.to_numpy()).to_dataframe()
-    pandas.testing.assert_frame_equal(again, frame, check_exact=True)
-    assert again.attrs == frame.attrs
 
 
 def test_modes_have_their_names() -> None:

@@ -20,7 +20,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
-from oracles.pictures import frames_of
 from PIL import Image
 from rolling_ellipse import __main__ as command_line
 from rolling_ellipse.__main__ import main
@@ -292,22 +291,6 @@ def test_extreme_motions_are_still_json(command: Any) -> None:
         f"--omega {speed!r}", "--a 1 --b 1 --omega 2",
     ):  # fmt: skip
         assert set(strict_json(command(*options.split(), "--json").out)) == KEYS
-
-
-# ---------------------------------------------------------------------------------- files
-
-
-def test_save_writes_an_animation(tmp_path: Path) -> None:
-    code, out, err = typed(tmp_path, "--time", "0.5", "--save", "roll.gif")
-    assert (code, err) == (0, "") and "distance" in out
-    with Image.open(tmp_path / "roll.gif") as picture:
-        assert picture.format == "GIF" and frames_of(picture) > 5
-        shown = 0
-        for i in range(frames_of(picture)):
-            picture.seek(i)
-            shown += picture.info["duration"]
-            picture.load()
-    assert 450 <= shown <= 1000  # half a second [ms]; the last frame may stay longer
 
 
 # ------------------------------------------------------------------------------ bad input

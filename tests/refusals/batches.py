@@ -27,10 +27,6 @@ def many(scenes: Any, **options: Any) -> Callable[[Path], Any]:
     return lambda _: rl.simulate_many(scenes, TIMES, **options)
 
 
-class Pool(ThreadPoolExecutor):
-    """Threads instead of processes: refusals need no worker in another process."""
-
-
 class Broken(ThreadPoolExecutor):
     def submit(self, function: Any, /, *arguments: Any, **options: Any) -> Any:
         return super().submit(lambda: 1 // 0)
@@ -115,12 +111,8 @@ def of_schema(number: int) -> Callable[[Any], Any]:
     return lambda about: np.array(json.dumps(json.loads(str(about)) | {"schema": number}))
 
 
-def negative_count(path: Path) -> None:
-    (path / "end.json").write_text('{"scenes": -1, "digest": ""}')
-
-
-def another_digest(path: Path) -> None:
-    (path / "end.json").write_text('{"scenes": 2, "digest": ""}')
+def ended(text: str) -> Callable[[Path], Any]:
+    return lambda path: (path / "end.json").write_text(text)
 
 
 def renamed(folder: Path) -> Any:
@@ -134,7 +126,7 @@ def renamed(folder: Path) -> Any:
     file.unlink()
     with (path / _name(0, request, arrays["scenes"])).open("wb") as new:
         np.savez(new, **arrays)
-    digest = _digest_of_all(request, 2, _chunks(path))
+    digest = _digest_of_all(request, 2, _chunks(path), {})
     (path / "end.json").write_text(json.dumps({"scenes": 2, "digest": digest}))
     return list(rl.load_many(path))
 
@@ -154,7 +146,8 @@ REFUSALS: list[Row] = [
     ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),
     *wrong(rl.simulate_many, {"scenes": [], "t": 1.0},
            t=[-1.0], rtol=[-1.0], model=["roling"], raise_on_failure=[1], progress=[1, "yes"],
-           out=[3], workers=WORKERS),
+           out=[3], returns=[3, ["x", "vx"], ["reason"]], workers=WORKERS),
+    ("out", many([], out="here", returns="x")),
     ("step", many([], method="rk4")),
     ("out", other_folder),
     ("out", lambda folder: again(folder, rtol=1e-3)),
@@ -164,13 +157,13 @@ REFUSALS: list[Row] = [
     ("out", mixed),
     ("out", fewer),
     (rl.WorkerError, broken),
-    ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=Pool())),
+    ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=ThreadPoolExecutor(1))),
     # folders
-    ("path", lambda folder: rl.load_many(folder)),
+    ("path", lambda folder: rl.load_many(folder)), *wrong(rl.load_many, {}, path=[3]),
     ("path", spoilt(lambda path: (path / "end.json").unlink())),
     ("path", spoilt(lambda path: next(path.glob("0*.npz")).unlink())),
-    ("path", spoilt(negative_count)),
-    ("path", spoilt(another_digest)),
+    ("path", spoilt(ended('{"scenes": -1, "digest": ""}'))),
+    ("path", spoilt(ended('{"scenes": 2, "digest": ""}'))),
     ("path", renamed),
     forged("request.npz", about=of_schema(99)),
     forged("request.npz", t=lambda _: np.array([1.0, 0.0])),

@@ -52,18 +52,8 @@ def random_scenes(count: int, seed: int = 5) -> list[Scene]:
         dz = along_b * math.cos(theta) - along_a * math.sin(theta)
         impulse = Impulse(6 * jx, 6 * jz, dx=dx, dz=dz)
         inertia = MASS * max(a, b) ** 2 * rng.uniform(0.05, 0.6)
-        scenes.append(
-            Scene(
-                a,
-                b,
-                mass=MASS,
-                inertia=float(inertia),
-                theta=float(theta),
-                omega=float(omega),
-                friction=friction,
-                impulse=impulse,
-            )
-        )
+        start = {"theta": float(theta), "omega": float(omega), "inertia": float(inertia)}
+        scenes.append(Scene(a, b, mass=MASS, friction=friction, impulse=impulse, **start))
     return scenes
 
 

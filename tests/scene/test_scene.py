@@ -261,9 +261,3 @@ def test_rest_is_equilibrium(theta: float, mode: Mode) -> None:
     """Rest needs |h'| within 8 ulp: the nearest doubles to the first multiples of pi/2."""
     assert scene(theta=theta).initial_state.mode == mode
     assert scene(theta=theta, omega=1e-9).initial_state.mode != Mode.REST
-
-
-def test_modes_are_numbered() -> None:
-    assert [mode.value for mode in Mode] == [0, 1, 2, 3]
-    assert [mode.name for mode in Mode] == ["ROLLING", "SLIDING", "FLIGHT", "REST"]
-    assert Mode.SLIDING == 1

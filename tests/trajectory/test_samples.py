@@ -176,8 +176,11 @@ def test_newton_and_euler(motion: Trajectory) -> None:
 
 def test_energies(motion: Trajectory) -> None:
     scene = motion.scene
-    kinetic = (scene.mass * (motion.x_dot**2 + motion.z_dot**2)) / 2
-    kinetic = kinetic + scene.mass * scene.gyration2 * motion.omega**2 / 2
+    translational = (scene.mass * (motion.x_dot**2 + motion.z_dot**2)) / 2
+    rotational = scene.mass * scene.gyration2 * motion.omega**2 / 2
+    kinetic = translational + rotational
+    close(motion.translational_energy, translational, translational, 8)
+    close(motion.rotational_energy, rotational, rotational, 8)
     potential = scene.mass * scene.gravity * motion.z
     close(motion.kinetic_energy, kinetic, kinetic, 8)
     close(motion.potential_energy, potential, potential, 8)

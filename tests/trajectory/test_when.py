@@ -3,6 +3,7 @@
 import math
 import sys
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,18 +15,10 @@ from rolling_ellipse import CompletenessWarning, Mode, Scene, Status, Trajectory
 # ---------------------------------------------------------------------------- against dense samples
 
 
-def all_times(motion: Trajectory, name: str, value: float, direction: int = 0) -> Floats:
+def all_times(motion: Trajectory, name: str, values: Any, direction: int = 0) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CompletenessWarning)
-        return motion.when(**{name: value}, direction=direction)  # type: ignore[arg-type]
-
-
-def every_time(
-    motion: Trajectory, name: str, values: list[float], direction: int = 0
-) -> list[Floats]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", CompletenessWarning)
-        return motion.when(**{name: values}, direction=direction)  # type: ignore[arg-type]
+        return motion.when(**{name: values}, direction=direction)
 
 
 def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
@@ -41,7 +34,7 @@ def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Float
 
 def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float]) -> int:
     """Assert that no time is missed or invented beside dense samples; return their number."""
-    tables = [every_time(motion, name, values, direction) for direction in (0, 1, -1)]
+    tables = [all_times(motion, name, values, direction) for direction in (0, 1, -1)]
     for value, found, rising, falling in zip(values, *tables, strict=True):
         assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))
         less = getattr(dense, name) - value
@@ -73,7 +66,7 @@ def test_tables_of_values_beside_brute_force(first: int) -> None:
             values = [seen[0], seen[-1], seen.min(), seen.max(), *rng.uniform(-4, 4, 1)]
             values += rng.uniform(seen.min(), seen.max(), 2).tolist()
             passages += check(motion, dense, name, values)
-            alone, among = all_times(motion, name, values[4]), every_time(motion, name, values)[4]
+            alone, among = all_times(motion, name, values[4]), all_times(motion, name, values)[4]
             assert np.array_equal(alone, among)
             noise = 16 * EPS * (np.abs(seen).max() + max(motion.scene.a, motion.scene.b))
             if (
@@ -125,8 +118,7 @@ def test_turns_of_the_reports_ellipse() -> None:
 
 
 def test_events_by_their_kinds() -> None:
-    """A body that turns, stands up and falls back passes its tip once each way at most; the kinds
-    of all events together are the events."""
+    """A body thrown uphill passes its tip and comes back; all kinds of events are the events."""
     back = simulate(Scene(1.0, 2.0, theta=-1.0, omega=4.0, slope=-0.3), 4.0)
     over, again = back.when(event="roll_over")
     assert back.theta[0] < 0 < back.at(0.5 * (over + again)).theta and back.theta[-1] < 0

@@ -54,7 +54,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     """
     xarray = required("xarray", "to_xarray")
     variables: dict[str, Any] = {
-        each.name: ("t", getattr(trajectory, each.name).copy(), _attributes(each))
+        each.name: ("t", getattr(trajectory, each.name).copy(), attributes(each))
         for each in QUANTITIES
     }
     variables["multipliers"] = (
@@ -69,9 +69,9 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
         "flag_values": np.array(list(Mode), dtype=np.int8),
         "flag_meanings": " ".join(mode.name for mode in Mode),
     }
-    variables["mode"] = ("t", trajectory.mode.copy(), _attributes(MODE) | flags)
+    variables["mode"] = ("t", trajectory.mode.copy(), attributes(MODE) | flags)
     coordinates = {
-        "t": ("t", trajectory.t.copy(), _attributes(TIME)),
+        "t": ("t", trajectory.t.copy(), attributes(TIME)),
         "constraint": ["f1", "f2", "f3", "f4"],
     }
     found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
@@ -92,7 +92,7 @@ def _names(quantities: tuple[Quantity, ...]) -> list[str]:
     return [each.name for each in quantities]
 
 
-def _attributes(quantity: Quantity) -> dict[str, Any]:
+def attributes(quantity: Quantity) -> dict[str, Any]:
     return {"units": quantity.unit, "long_name": quantity.meaning}
 
 

@@ -30,7 +30,7 @@ MODELS, METHODS = _core.MODELS, _core.METHODS  # names, at the places of their c
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
-_AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
+AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def answers(
             stats=dict(zip(_STATS, count, strict=True)),
             kept_events=kept,
         )
-        failed = request.raise_on_failure and status not in _AT_AN_END
+        failed = request.raise_on_failure and status not in AT_AN_END
         found.append(IntegrationError(made) if failed else made)
     return found
 

@@ -19,7 +19,7 @@ from ... import _core
 from ..._ask.check import FloatArray, array, common_shape, shown
 from ..._ask.scene import OPTIONAL, Impulse, Scene
 from ..._ask.words import meant
-from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
+from .tables import BLOW, NAMES, WIDTH, name_of, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk
 _SHARE = 32  # scenes before a chunk that make it larger than the first by one scene
@@ -56,6 +56,7 @@ class SceneList:
 
     def __init__(self, scenes: Iterable[Any]) -> None:
         self._each = iter(scenes)
+        self.shape, self.axes = None, ("scene",)
         self.total = len(scenes) if isinstance(scenes, Sized) else None
 
     def chunks(self, samples: int) -> Iterator[Chunk]:
@@ -99,12 +100,27 @@ class SceneGrid:
             if name in OPTIONAL:
                 self._require_numbers(name)
         entries = {_entry(name): values for name, values in self._arrays.items()}
-        self._shape = common_shape(entries, slice(None))
-        self.total = int(np.prod(self._shape, dtype=object))
+        self.shape = common_shape(entries, slice(None))
+        self.total = int(np.prod(self.shape, dtype=object))
         for begin, size in sizes(1):
             if begin >= self.total:
                 break
             self._require_valid(begin, self._table(begin, size))
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the axes: of the only argument that varies along it alone, or "scene"."""
+        many = len(self.shape) > 1
+        owners: list[list[str]] = [[] for _ in self.shape]
+        for name, values in self._arrays.items():
+            first = len(self.shape) - values.ndim
+            long = [k for k, size in enumerate(values.shape, first) if size != 1]
+            if values.ndim == 1 or len(long) == 1:
+                owners[long[0] if long else -1].append(name)
+        return tuple(
+            name_of(names[0]) if len(names) == 1 else f"scene_{k}" if many else "scene"
+            for k, names in enumerate(owners)
+        )
 
     def chunks(self, samples: int) -> Iterator[Chunk]:
         for index, (begin, size) in enumerate(sizes(samples)):
@@ -120,7 +136,7 @@ class SceneGrid:
 
     def _table(self, begin: int, size: int) -> FloatArray:
         at = np.arange(begin, min(begin + size, self.total))
-        index = np.unravel_index(at, self._shape) if self._shape else ()
+        index = np.unravel_index(at, self.shape) if self.shape else ()
         table = np.empty((at.size, WIDTH))
         for column, name in enumerate((*NAMES, *BLOW)):
             values = self._arrays.get(name)
@@ -149,7 +165,7 @@ class SceneGrid:
         if refused is None:
             return
         row, message = refused
-        at = np.unravel_index(begin + row, self._shape) if self._shape else ()
+        at = np.unravel_index(begin + row, self.shape) if self.shape else ()
         name, _, rest = message.partition(" ")
         values = self._arrays.get(name)
         if values is None:

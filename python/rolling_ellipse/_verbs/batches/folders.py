@@ -12,13 +12,14 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Iterator
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from importlib.metadata import version
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import numpy as np
 
@@ -30,13 +31,19 @@ from ..._motion.export.npz import arrays as npz_arrays
 from ..._motion.export.npz import require_array
 from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
 from .answers import Answer, Request, Tables, answers
+from .arrays import DIRECT, MotionArrays, gathered, names_in
 from .asked import Chunk, sizes
 from .checked import NAMES, require_tables
 from .tables import scenes_of
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
 _SCHEMA = 2
 _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
+_GRID = ("axes", "shape")  # of the scenes, in `end.json`; older folders lack them
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
 # Names of the files that a folder may hold; hidden files are allowed, too
@@ -78,7 +85,8 @@ class Folder:
         remove_unfinished(self.path)
         self._scenes: float = math.inf
         with suppress(FileNotFoundError, ValueError):  # a damaged `end.json` is written again
-            self._scenes = _scenes_in(self.path, self._request, self._names, self._samples)
+            end = _end_of(self.path, self._request, self._names, self._samples)
+            self._scenes = end["scenes"]
 
     def has(self, chunk: Chunk) -> bool:
         """Whether the file of a chunk is there and whole; a file of other scenes is refused."""
@@ -107,13 +115,14 @@ class Folder:
             np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
         self._names[chunk.index] = [name]
 
-    def end(self, scenes: int, chunks: int) -> None:
+    def end(self, chunks: int, axes: tuple[str, ...], shape: tuple[int, ...]) -> None:
         """Write `end.json`, which makes the folder complete."""
+        scenes, grid = math.prod(shape), {"axes": axes, "shape": shape}
         if max(self._names, default=-1) >= chunks:
             self._refuse_scenes(f"which has more than {scenes}")
-        digest = _digest_of_all(self._request, scenes, self._names)
+        digest = _digest_of_all(self._request, scenes, self._names, grid)
         with _replacing(self.path / _END) as new:
-            new.write_text(json.dumps({"scenes": scenes, "digest": digest}))
+            new.write_text(json.dumps({"scenes": scenes, "digest": digest, **grid}))
 
     def _require_new(self) -> None:
         """Raise ValueError for a name that is not of simulate_many, in a folder without request."""
@@ -138,11 +147,69 @@ class Folder:
         raise ValueError(f"out must be {required}, got {str(self.path)!r}{why}")
 
 
-def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
-    """Return an iterator over the motions that `simulate_many` wrote to a folder, in order.
+class StoredMotions(Sequence[Answer]):
+    """The motions in a folder of `simulate_many`, read a file at a time when they are asked for.
 
-    A scene without a motion yields its exception, as in the list of `simulate_many`. Only a file of
-    at most 2048 scenes is in memory at a time.
+    A scene without a motion has its exception, as in the list of `simulate_many`.
+    """
+
+    def __init__(
+        self, folder: Path, request: Request, names: list[str], end: dict[str, Any]
+    ) -> None:
+        self._folder, self._request, self._names = folder, request, names
+        self._axes, self._shape = tuple(end["axes"]), tuple(end["shape"])
+        begins = islice(sizes(request.times.size), len(names))
+        self._begins: list[int] = [*(begin for begin, _ in begins), end["scenes"]]
+        self._last: tuple[int, list[Answer]] = -1, []
+
+    def __len__(self) -> int:
+        return self._begins[-1]
+
+    def __getitem__(self, place: Any) -> Any:
+        wanted = range(len(self))[place]
+        if isinstance(wanted, range):
+            return [self[i] for i in wanted]
+        index = bisect_right(self._begins, wanted) - 1
+        if self._last[0] != index:
+            self._last = index, self._answers(index)
+        return self._last[1][wanted - self._begins[index]]
+
+    def __iter__(self) -> Iterator[Answer]:
+        for index in range(len(self._names)):
+            yield from self._answers(index)
+
+    def __repr__(self) -> str:
+        return f"<StoredMotions of {len(self)} scenes in {str(self._folder)!r}>"
+
+    def _answers(self, index: int) -> list[Answer]:
+        tables = self._tables(index)
+        return answers(self._request, scenes_of(tables["scenes"]), tables, keep_events=True)
+
+    def _tables(self, index: int) -> Tables:
+        begin, end = self._begins[index : index + 2]
+
+        def read(content: bytes) -> Tables:
+            return _tables(content, self._names[index], end - begin, self._request.times.size)
+
+        return _chunk(self._folder / self._names[index], read)
+
+    def arrays(self, returns: Any = DIRECT) -> MotionArrays:
+        """Return quantities of all motions, as `simulate_many` does for ``returns``."""
+        each = map(self._tables, range(len(self._names)))
+        parts = ((tables["scenes"], tables) for tables in each)
+        return gathered(names_in(returns), self._request, parts, self._axes, self._shape)
+
+    def to_xarray(self, returns: Any = DIRECT) -> Dataset:
+        """Return `MotionArrays.to_xarray` of quantities of all motions."""
+        return self.arrays(returns).to_xarray()
+
+    def to_dataframe(self, returns: Any = DIRECT) -> DataFrame:
+        """Return `MotionArrays.to_dataframe` of quantities of all motions."""
+        return self.arrays(returns).to_dataframe()
+
+
+def load_many(path: str | os.PathLike[str]) -> StoredMotions:
+    """Return the motions that `simulate_many` wrote to a folder, as a sequence, in order.
 
     Parameters
     ----------
@@ -151,14 +218,17 @@ def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
 
     Returns
     -------
-    iterator of Trajectory or exception
-        The same bits as computed; ``events`` are those of the machine that computed them.
+    sequence of Trajectory or exception
+        The same bits as computed; ``events`` are those of the machine that computed them. Only a
+        file of at most 2048 scenes is in memory at a time. ``arrays(("theta", "x"))``,
+        ``to_xarray(…)`` and ``to_dataframe(…)`` have the quantities named (default: theta, omega,
+        x) in the shape of the scenes, with the axes of `MotionArrays`.
 
     Raises
     ------
     ValueError
         If it is another folder, of another schema version, or incomplete, or if its files do not
-        belong together; during iteration: if a file, which is named, is damaged.
+        belong together; when a motion is read: if a file, which is named, is damaged.
     OSError
         If it cannot be read.
     """
@@ -176,25 +246,13 @@ def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
             f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
         )
     names = _chunks(folder)
-    scenes = _scenes_in(folder, _digest_of(about, times), names, times.size)
+    end = _end_of(folder, _digest_of(about, times), names, times.size)
     request = Request(Settings(**about["settings"]), times, about["raise_on_failure"])
-    return _all(folder, request, list(chain.from_iterable(names.values())), scenes)
+    return StoredMotions(folder, request, list(chain.from_iterable(names.values())), end)
 
 
-def _all(folder: Path, request: Request, names: list[str], scenes: int) -> Iterator[Answer]:
-    samples = request.times.size
-    for name, (begin, size) in zip(names, sizes(samples), strict=False):
-
-        def read(content: bytes, name: str = name, n: int = min(size, scenes - begin)) -> Any:
-            tables = _tables(content, name, n, samples)
-            found = scenes_of(tables.pop("scenes"))
-            return answers(request, found, tables, keep_events=True)
-
-        yield from _chunk(folder / name, read)
-
-
-def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
-    """Return the number of scenes of a complete folder.
+def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
+    """Return number, axes and shape of the scenes of a complete folder.
 
     Raises
     ------
@@ -203,25 +261,25 @@ def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
     """
     cure = f": {_AGAIN} writes it anew"
     end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
-    scenes: int = end["scenes"]
     for index, (begin, _) in enumerate(sizes(samples)):
-        if begin >= scenes:
+        if begin >= end["scenes"]:
             break
         if index not in names:
             raise ValueError(
                 f"path must have the file {index:08d}-….npz, got {str(folder)!r}: {_AGAIN} makes it"
             )
-    if end["digest"] != _digest_of_all(request, scenes, names):
+    grid = {name: end[name] for name in _GRID if name in end}
+    if end["digest"] != _digest_of_all(request, end["scenes"], names, grid):
         raise ValueError(
             f"path must have just the files of its {_END}, got others in {str(folder)!r}: {_AGAIN} "
             "names one of other scenes, or completes the folder"
         )
-    return scenes
+    return {"axes": ["scene"], "shape": [end["scenes"]]} | end
 
 
-def _digest_of_all(request: str, scenes: int, names: _Names) -> str:
+def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any]) -> str:
     each = sorted(chain.from_iterable(names.values()))
-    return _digest(json.dumps([request, scenes, each]).encode())
+    return _digest(json.dumps([request, scenes, each, *grid.values()]).encode())
 
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
@@ -263,7 +321,7 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
 
 def _of_end(content: bytes) -> dict[str, Any]:
     found: dict[str, Any] = parsed("end", content.decode())
-    require_names("end", found, ("scenes", "digest"))
+    require_names("end", found, ("scenes", "digest", *(set(_GRID) & set(found))))
     if type(count := found["scenes"]) is not int or count < 0:
         raise ValueError(f"scenes must be a count, got {shown(count)}")
     return found

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from ... import _core
-from ..._ask.check import flag
+from ..._ask.check import flag, shown
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
@@ -16,6 +16,7 @@ from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
 from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
+from .arrays import gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
@@ -28,6 +29,7 @@ def simulate_many(
     workers: Any = 1,
     progress: bool | Callable[[int, int | None], Any] = False,
     out: str | os.PathLike[str] | None = None,
+    returns: str | Iterable[str] | None = None,
     model: Model = DEFAULTS.model,
     method: Method = DEFAULTS.method,
     rtol: float = DEFAULTS.rtol,
@@ -66,16 +68,20 @@ def simulate_many(
         Folder for the motions, a plain .npz file for each chunk; nothing is kept in memory. It is
         made if it is missing. A call with the folder of an interrupted one, by any workers,
         computes only missing and damaged chunks. `load_many` reads it.
+    returns : str or iterable of str, optional
+        Names of quantities of a trajectory: they are returned as `MotionArrays`, of the shape of
+        the scenes, then of the times. "theta", "omega" and "x" need no objects of Python.
     model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
     max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
 
     Returns
     -------
-    list of Trajectory or exception, or str
-        One for each scene, in order; with ``out`` the path of the folder. A scene that `simulate`
-        would refuse has a ValueError; an integration that stops early has an IntegrationError,
-        which has the trajectory (with ``raise_on_failure=False`` the trajectory itself); a scene
-        whose worker died or was missing has a WorkerError, whose cause is the executor's exception.
+    list of Trajectory or exception, or str, or MotionArrays
+        One for each scene, in order; with ``out`` the path of the folder; or what ``returns`` asks
+        for. A scene that `simulate` would refuse has a ValueError; an integration that stops early
+        has an IntegrationError, which has the trajectory (with ``raise_on_failure=False`` the
+        trajectory itself); a scene whose worker died or was missing has a WorkerError, whose cause
+        is the executor's exception.
 
     Raises
     ------
@@ -96,18 +102,35 @@ def simulate_many(
     _core.validate_settings(how.core, float(times[-1]))
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
     threads_of(workers)
+    names = None if returns is None else names_in(returns)
+    if names is not None and out is not None:
+        raise ValueError(
+            f"out must be None with returns, got {shown(out)}: load_many(out) makes arrays, too"
+        )
     wanted = asked(scenes)
     with reporting(progress, "scenes") as report:
         if out is not None:
             return _to_folder(Folder(out, request), request, wanted, workers, report)
-        found: list[Answer] = []
-        for chunk, tables in _solved(request, wanted.chunks(times.size), workers):
-            if isinstance(tables, Lost):
-                found += [_worker_error(chunk, tables)] * len(chunk.table)
-            else:
-                found += answers(request, chunk.scenes, tables)
-            report(len(found), wanted.total)
-        return found
+        parts = _parts(request, wanted, workers, report)
+        if names is not None:
+            found = ((chunk.table, tables) for chunk, tables in parts)
+            return gathered(names, request, found, wanted.axes, wanted.shape)
+        listed: list[Answer] = []
+        for chunk, tables in parts:
+            lost = isinstance(tables, WorkerError)
+            listed += (
+                [tables] * len(chunk.table) if lost else answers(request, chunk.scenes, tables)
+            )
+        return listed
+
+
+def _parts(
+    request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
+) -> Iterator[tuple[Chunk, Any]]:
+    """Yield the chunks with their tables, or with the loss of their worker."""
+    for chunk, tables in _solved(request, wanted.chunks(request.times.size), workers):
+        yield chunk, _worker_error(chunk, tables) if isinstance(tables, Lost) else tables
+        report(chunk.begin + len(chunk.table), wanted.total)
 
 
 def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
@@ -165,7 +188,7 @@ def _to_folder(
         report(done, wanted.total)
     if lost:
         raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
-    folder.end(done, count)
+    folder.end(count, wanted.axes, (done,) if wanted.shape is None else wanted.shape)
     return str(folder.path)
 
 

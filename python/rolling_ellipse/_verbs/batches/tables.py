@@ -16,7 +16,7 @@ import numpy as np
 from ... import _core
 from ..._ask.check import FloatArray
 from ..._ask.records import trusted
-from ..._ask.scene import OPTIONAL, Impulse, Scene
+from ..._ask.scene import OPTIONAL, STATE_UNITS, Impulse, Scene
 
 NAMES, BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 WIDTH = len(NAMES) + len(BLOW)
@@ -24,6 +24,11 @@ _OPTIONAL = tuple(OPTIONAL & set(NAMES))
 
 _numbers = attrgetter(*NAMES)
 _blow = attrgetter(*BLOW)
+
+
+def name_of(argument: str) -> str:
+    """Return the name of an argument beside quantities of motions: the start gets a 0."""
+    return f"{argument}0" if argument in STATE_UNITS else argument
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
