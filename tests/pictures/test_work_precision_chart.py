@@ -78,7 +78,8 @@ def test_the_fronts_are_the_least_times_of_the_camps_and_the_factors_their_ratio
             shown = chart.factors[decade].get_text()
             assert shown.split()[1:] == ["×", "faster"]
             assert float(shown.split()[0]) == pytest.approx(peers / own, rel=0.05)
-    assert list(chart.factors) == [1e-2, 1e-6, 1e-10]
+            assert {min(least, key=least.__getitem__)} <= set(chart.names)
+    assert list(chart.factors) == [1e-2, 1e-6, 1e-10] and len(chart.names) <= 8
 
 
 def test_who_is_ahead_is_told_either_way_and_a_tie_is_one() -> None:
@@ -103,11 +104,7 @@ def test_highlights_are_names_or_tags_that_are_there() -> None:
     assert camp(found=alone) == {"flow"}  # without peers, the method that is ahead most
     with pytest.raises(ValueError, match=r"highlight must be among .*flow.*own.*peer.*'nobody'"):
         camp(highlight="nobody")
-    with pytest.raises(ValueError, match=r"highlight must be among .*got"):
-        camp(highlight=[])
     assert camp(tags="own", highlight="method2") == {"method2"}
-    with pytest.raises(ValueError, match=r"tags must be among .*got 'lost'"):
-        camp(tags="lost")
 
 
 def test_errors_go_from_ten_to_what_can_be_attained_without_a_pile_at_the_rim(chart: Any) -> None:
@@ -160,35 +157,17 @@ def test_no_text_lies_on_another(width: float, found: WorkPrecision) -> None:
     assert 2 <= len(chart.names) <= 8 and "flow" in chart.names
 
 
-def test_holders_of_the_fronts_are_named_first(chart: Any) -> None:
-    holders = {min(FOUND.least(d), key=FOUND.least(d).__getitem__) for d in DECADES[:11]}
-    assert holders <= set(chart.names) and len(chart.names) <= 8
-
-
 # ------------------------------------------------------------------------------ gaps
 
 
 LOST: dict[str, Any] = {"errors": Errors(), "time": math.nan, "status": "FAILED"}
-LACKING = replace(
-    FOUND,
-    runs=(
-        *FOUND.runs,
-        replace(run("method2", 1e-3, 1.0), **LOST, reason="singular"),
-        replace(run("SciPy late", 1e-2, 1e-3)),
-        replace(run("SciPy late", 1e-4, 1.0), **(LOST | {"status": "NOT_RUN"}), reason="max"),
-    ),
-)
+FAILED = replace(run("method2", 1e-3, 1.0), **LOST, reason="singular")
+LACKING = replace(FOUND, runs=(*FOUND.runs, FAILED))
 
 
 def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
     table = str(LACKING.gaps())
-    assert [line.split("  ")[0] for line in table.splitlines()[1:]] == ["method2", "SciPy late"]
-    for said in (
-        "  1e-03  ",
-        "FAILED, singular",
-        "beyond 1e-02  no time left (1 ms a call so far)",
-    ):
-        assert said in table
+    assert table.splitlines()[1] == "method2            1e-03       FAILED, singular"
     for width, drawn in ((8.0, True), (3.4, False)):
         with plt.rc_context({"figure.figsize": (width, 5.0)}):
             chart: Any = LACKING.plot()
@@ -200,11 +179,9 @@ def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
 
 def test_a_chart_without_an_answer_still_says_why() -> None:
     runs = tuple(replace(each, **LOST, reason="too many") for each in FOUND.runs)
-    chart: Any = replace(FOUND, runs=runs).plot()
+    chart: Any = replace(FOUND, runs=runs).plot(ax=Figure().add_subplot())
     assert not chart.lines and {gap.name for gap in chart.gaps} == set(FOUND.names)
-    assert {gap.reason for gap in chart.gaps} == {"too many"}
-    chart.ax.figure.canvas.draw()
-    plt.close(chart.ax.figure)
+    chart.ax.figure.draw_without_rendering()
 
 
 # ------------------------------------------------------------------- other charts, result
@@ -221,22 +198,14 @@ def test_small_multiples_have_a_library_each_and_the_same_axes() -> None:
         assert title == ("rolling_ellipse" if name in OWN else name.split()[0])
         assert len(line.axes.lines) >= len(FOUND.names)  # the others are there, in grey
     plt.close(chart.ax.figure)
-    with pytest.raises(ValueError, match="by must be one of 'library', got 'colour'"):
-        FOUND.plot(by="colour")
-    with pytest.raises(ValueError, match="ax must be None where by is given"):
-        FOUND.plot(by="library", ax=Figure().add_subplot())
 
 
-@pytest.mark.parametrize("x", ["linf", "energy", "gap"])
-@pytest.mark.parametrize("y", ["samples_time", "setup", "evaluations"])
+@pytest.mark.parametrize(("x", "y"), [("linf", "samples_time"), ("gap", "evaluations")])
 def test_any_cost_goes_over_any_error(x: str, y: str) -> None:
-    runs = [
-        replace(each, errors=Errors(*[each.errors.final] * 6), evaluations=7) for each in FOUND.runs
-    ]
-    chart: Any = replace(FOUND, runs=tuple(runs)).plot(x, y, ax=Figure().add_subplot())
-    best = [each for each in runs if each.name == "method2" and each.errors.final >= LIMIT][-1]
-    assert chart.lines["method2"].get_xydata()[-1].tolist() == [best.errors.final, best.value(y)]
-    chart.ax.figure.canvas.draw()
+    found = replace(FOUND, runs=(run("method2", 1e-3, 2.0, evaluations=7),))
+    found = replace(found, runs=(replace(found.runs[0], errors=Errors(*[1e-3] * 6)),))
+    line: Any = found.plot(x, y, ax=Figure().add_subplot()).lines["method2"]
+    assert line.get_xydata()[-1].tolist() == [1e-3, found.runs[0].value(y)]
 
 
 def test_the_result_has_axes_and_writes_its_file(chart: Any, tmp_path: Path) -> None:

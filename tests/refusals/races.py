@@ -67,6 +67,8 @@ REFUSALS: list[Row] = [
     ("t_end", result(lambda found: found.best(1.0, t_end=9.0))),
     ("at", result(lambda found: found.best(-1.0))),
     ("tags", result(lambda found: found.plot(tags="x"))),
+    ("highlight", result(lambda found: found.plot(highlight=[]))),
+    ("ax", result(lambda found: found.plot(by="library", ax=WRONG))),
     (KeyError, result(lambda found: found.runs[0].errors["x"])),
     # files
     ("path", raced(lambda known: known.update(schema=99))),

@@ -19,7 +19,7 @@ _SMALL = "x-small"
 _CROSSED = 4  # most dots of lines under a text that may be left out
 _GAP = 2.0  # between a line and a text beside it [points]
 _PAD = np.array([5.0, 1.0])  # least sum of the gaps on both sides of a text [points]
-_BODY = 0.7  # height of the letters, in heights of a text
+_BODY = 0.7  # height of the letters, in heights of a text along a curve
 _FARTHEST = 0.6  # farthest place from the wanted one, as a share of the line
 _TALLEST = 0.35  # largest height of an upright label, in heights of the axes
 _FINE = 16  # parts into which a straight piece of a line is cut, to find where it enters the view
@@ -186,7 +186,7 @@ def _best(
         free &= (moved < _FARTHEST) | label.must
         if label.along:
             free &= np.minimum(middle, along[-1] - middle) > extent[0] / 2 + 1.5 * extent[1]
-        crossed = _inside(lines, places, lead, up, extent * (1, _BODY))
+        crossed = _inside(lines, places, lead, up, extent * (1, _BODY if label.along else 1))
         cost = crossed + turn + 12 * moved
         cost[~free | (crossed > most)] = np.inf
         i = np.argmin(cost)

@@ -17,8 +17,8 @@ from matplotlib.text import Text
 from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, NullLocator
 
 from .._ask.check import choice, shown
-from .._verbs.work_precision.gaps import Gaps, gaps
 from .._verbs.work_precision.run import ERRORS, OF_STATES, Run, require_quantity
+from .._verbs.work_precision.verdict import Gaps, gaps
 from .artists import Artists
 from .axes import axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
@@ -135,11 +135,10 @@ class _Race:
         if highlight is not None:
             self.ours = _chosen("highlight", highlight, runs)
             self.camp = highlight if isinstance(highlight, str) else ", ".join(highlight)
-        elif own & self.points.keys() and self.points.keys() - own:
-            self.ours, self.camp = own, "own methods"
         else:
-            self.ours = self._winners()
-            self.camp = ", ".join(name for name in self.points if name in self.ours)
+            exact = {r.name for r in runs if r.method == "exact" or r.model == "contact"}
+            self.ours = own if self.points.keys() - own else exact
+            self.camp = "own methods" if self.ours is own else ", ".join(sorted(exact))
         self.fronts = {
             "highlight": self._front(self.points.keys() & self.ours),
             "others": self._front(self.points.keys() - self.ours),
@@ -154,16 +153,9 @@ class _Race:
                 front[at, value], least = name, at
         return front
 
-    def _winners(self) -> set[str]:
-        """Return the names with the method of the contender that is ahead over most decades."""
-        held = parts(self._front(self.points))
-        methods = {run.name: (run.model, run.method) for run in self.runs}
-        best = methods[held[0][0]] if held else None
-        return {name for name, method in methods.items() if method == best}
-
 
 def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
-    """Return the names along a front with the corners of their steps, the widest part first."""
+    """Return the names along a front, each with the corners of its steps."""
     found, before = [], _MOST
     for name, held in groupby(front, key=front.__getitem__):
         corners = []
@@ -171,7 +163,7 @@ def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
             corners += [(before, value), (at, value)]
             before = at
         found.append((name, corners))
-    return sorted(found, key=lambda part: part[1][-1][0] / part[1][0][0])
+    return found
 
 
 def _least(front: dict[Point, str], error: float) -> float:
@@ -197,16 +189,12 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
         )[0]  # fmt: skip
     for camp, front in race.fronts.items():
         if front:
-            corners = sorted((c for _, part in parts(front) for c in part), key=_along_front)
+            corners = [corner for _, part in parts(front) for corner in part]
             fronts[camp] = ax.plot(
                 *zip(*corners, strict=True), color=colors[camp], solid_capstyle="butt",
                 lw=2.6 if members is None else 1.2, zorder=2.8 if camp == "highlight" else 2.9,
             )[0]  # fmt: skip
     return {"lines": lines, "fronts": fronts, "limit": _framed(ax, race)}
-
-
-def _along_front(corner: Point) -> tuple[float, float]:
-    return -corner[0], corner[1]
 
 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
@@ -264,7 +252,7 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
         labels[decade] = Label(texts, visible_part(ax, *ends.T), 0.5, sides, color, halo, must=True)
     named: dict[str, Label] = {}
     for front, color in ((ours, palette.blue), (others, palette.orange)):
-        for name, corners in parts(front):
+        for name, corners in sorted(parts(front), key=lambda part: part[1][-1][0] / part[1][0][0]):
             line = visible_part(ax, *np.array(corners).T)
             named.setdefault(name, Label([name], line, color=color, halo=halo, must=True))
     labels |= dict(list(named.items())[:_NAMED])

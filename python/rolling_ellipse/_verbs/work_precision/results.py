@@ -12,9 +12,8 @@ from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
 from ..._motion.export.tables import required
 from . import files
-from .gaps import Gaps, gaps
 from .run import ERRORS, NOT_RUN, OF_STATES, Reference, Run, require_quantity
-from .verdict import verdict
+from .verdict import Gaps, gaps, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -158,7 +157,7 @@ class WorkPrecision:
             where it fits, and the machine.
         highlight : sequence of str, optional
             Names or tags of the first camp. Default: the package's own methods beside peers, else
-            the method that is the quickest over most errors.
+            the exact ones.
         by : {"library"}, optional
             Draw a small chart for each library instead, all with the same axes: for twenty
             contenders and more. A peer's library is the first word of its name.
