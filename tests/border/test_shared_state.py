@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import pytest
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from rolling_ellipse import scenes, simulate
 
 ROLLED, DROPPED = simulate(scenes.rolling, 1.0), simulate(scenes.drop, 1.0)
@@ -117,13 +118,13 @@ def test_a_film_leaves_settings_alone_while_it_is_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The settings are compared within each frame, when other threads may run."""
-    before, seen, usual = dict(matplotlib.rcParams), [], Figure.savefig
+    before, seen, usual = dict(matplotlib.rcParams), [], Patch.draw
 
-    def compared(self: Figure, *args: Any, **options: Any) -> None:
+    def compared(self: Patch, *args: Any, **options: Any) -> None:
         seen.append(dict(matplotlib.rcParams) == before)
         usual(self, *args, **options)
 
-    monkeypatch.setattr(Figure, "savefig", compared)
+    monkeypatch.setattr(Patch, "draw", compared)
     film(tmp_path / f"film.{suffix}")
     assert len(seen) >= 11  # at least 11 frames: 1 s at 10 frames a second
     assert all(seen)
