@@ -78,7 +78,7 @@ class Strip:
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=ink)
         self.arrows = ax.quiver(
             *np.zeros((4, 3)), color=plum, zorder=9, angles="xy", scale_units="xy", scale=1,
-            units="dots", width=0.035 * ax.figure.dpi,
+            units="dots", width=0.035 * ax.figure.dpi, minlength=0,
         )  # fmt: skip
         self.names = [ax.text(0, 0, "", color=plum, zorder=9, clip_on=True) for _ in range(3)]
 
