@@ -37,24 +37,21 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         arguments, row);
 }
 
-// The names of a table as interned Python strings, which dictionaries find by their address.
-template <class Table>
-std::vector<py::str> interned(const Table& table) {
-    std::vector<py::str> names;
-    for (const auto& field : table) {
-        names.push_back(py::reinterpret_steal<py::str>(PyUnicode_InternFromString(field.name)));
-    }
-    return names;
-}
-
 // Makes a scene from numbers by the names of its fields; None stands for an absent one.
-class SceneMaker {
-  public:
+struct SceneMaker {
+    std::vector<py::str> names;  // interned: dictionaries find them by their address
+
+    SceneMaker() {
+        for (const auto& field : scene_fields) {
+            names.push_back(py::reinterpret_steal<py::str>(PyUnicode_InternFromString(field.name)));
+        }
+    }
+
     Scene operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
                      bool reached) const {
         SceneNumbers numbers;
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            PyObject* const given = PyDict_GetItemWithError(fields.ptr(), names_[i].ptr());
+            PyObject* const given = PyDict_GetItemWithError(fields.ptr(), names[i].ptr());
             if (given == nullptr) throw py::key_error(scene_fields[i].name);
             if (given != Py_None) numbers[i] = PyFloat_AsDouble(given);
         }
@@ -62,9 +59,6 @@ class SceneMaker {
         validate(scene, reached ? most_energy_reached : most_energy);
         return scene;
     }
-
-  private:
-    std::vector<py::str> names_ = interned(scene_fields);
 };
 
 // The state just after the blow, the mode that forces allow, and sentences about both.
