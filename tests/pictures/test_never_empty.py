@@ -51,10 +51,9 @@ def test_an_empty_picture_is_seen() -> None:
 def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout() -> None:
     axes = np.ravel(np.array(Figure().subplots(2, 2)))
     jump, bounce = rl.simulate(rl.scenes.jump, 3.0), rl.simulate(rl.scenes.bounce, 20.0)
-    rl.plot_forces(jump, ax=axes[0])
-    rl.plot_energy(bounce, ax=axes[1])
-    rl.plot_paths(jump, ax=axes[2])
-    rl.plot_strobe(bounce, ax=axes[3])
+    pictures: list[Any] = [rl.plot_forces, rl.plot_strobe, rl.plot_paths, rl.plot_energy]
+    for ax, draw, motion in zip(axes, pictures, [jump, jump, jump, bounce], strict=True):
+        draw(motion, ax=ax)
     figure = figure_of(axes[0])
     figure.draw_without_rendering()
     for ax in axes:
