@@ -211,5 +211,4 @@ def test_any_cost_goes_over_any_error(x: str, y: str) -> None:
 def test_the_result_has_axes_and_writes_its_file(chart: Any, tmp_path: Path) -> None:
     chart.savefig(tmp_path / "chart.svg", transparent=True)
     assert (tmp_path / "chart.svg").stat().st_size > 1000
-    assert chart.axes == (chart.ax,)
-    assert "23 lines, 2 fronts" in repr(chart)
+    assert chart.axes == (chart.ax,) and "23 lines, 2 fronts" in repr(chart)

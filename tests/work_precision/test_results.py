@@ -64,8 +64,6 @@ def test_unbeaten_are_those_within_the_margin() -> None:
     assert FOUND.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:11])}
     equal = FOUND.unbeaten(2.6)
     assert equal["sure"] == tuple(decades[:11]) and equal["fast"] == tuple(decades[:2])
-    with pytest.raises(ValueError, match=r"margin must be at least 1, got 0\.9"):
-        FOUND.unbeaten(0.9)
 
 
 def test_a_notebook_shows_the_least_of_each_way() -> None:
@@ -162,15 +160,6 @@ def test_a_table_has_a_row_for_each_run() -> None:
     assert list(frame["name"]) == [each.name for each in RUNS]
     assert list(frame["largest"])[:3] == [1e-13, 1e-13, 1e-3] and math.isnan(frame["final"][7])
     assert frame["tags"][2] == "peer"
-
-
-def test_errors_are_attributes_and_items() -> None:
-    errors = RUNS[0].errors
-    assert errors["final"] == errors.final and set(errors) == {
-        "largest", "final", "l2", "linf", "energy", "gap", "slip",
-    }  # fmt: skip
-    with pytest.raises(KeyError):
-        errors["median"]
 
 
 def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:

@@ -138,18 +138,17 @@ class WorkPrecision:
         ax: Axes | None = None, *, highlight: Sequence[str] | None = None, by: str | None = None,
         t_end: float | None = None,
     ) -> WorkPrecisionChart:  # fmt: skip
-        """Draw one quantity of the runs over another, both on logarithmic axes; return the artists.
+        """Draw a cost over an error, both on logarithmic axes, and return the artists.
 
-        Over an error the quickest of two camps stand out: the contenders of `highlight` and all
-        others. The two strong lines with steps are their fronts: the least `y` for every error.
-        Arrows have the factors between the fronts. Thin lines join the runs of each contender.
-        Errors above 10 are no answers, and out of view. Over "t_end" the runs to all ends are
-        drawn, joined at equal settings.
+        Two camps stand out: the contenders of `highlight` and all others. The two strong lines
+        with steps are their fronts, the least `y` for every error, and arrows have the factors
+        between them. Thin lines join the runs of each contender. Errors above 10 are no answers,
+        and out of view; those below what can be attained, or judged, are drawn there.
 
         Parameters
         ----------
         x, y : str
-            Names of the quantities.
+            Names of the error and of the cost.
         tags : sequence of str, optional
             Draw only contenders with one of these tags (or names).
         ax : matplotlib Axes, optional
