@@ -167,7 +167,7 @@ def _best(
     """Return the place with the least sum of crossed lines and distance from the wanted place."""
     line = label.line * page
     along = _along(line)
-    share = np.linspace(0.0, 1.0, 2 + int(along[-1] / (extent[1] / 3)))
+    share = np.linspace(0.0, 1.0, 2 + int(1.5 * along[-1] / extent[1]))
     middle, moved = share * along[-1], np.abs(share - label.place)
     feet = _at(middle, along, line)
     lead = np.tile([1.0, 0.0], (share.size, 1))

@@ -210,8 +210,10 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
     ax.set_xlim(_MOST, min(end, 1.0) / 3)
     values = np.log10([value for at, value in points if at <= _MOST] or [1.0])
     width, height = size_in_points(ax)
-    scale = max(1.0, np.ptp(values)) / max(height - 5 * _TEXT, _TEXT)  # decades to a point
-    ax.set_ylim(10 ** (min(values) - 2.5 * _TEXT * scale), 10 ** (max(values) + 2 * _TEXT * scale))
+    narrow = max(0.0, 1.0 - np.ptp(values)) / 2  # at least a decade is in view, with its tick
+    low, high = min(values) - narrow, max(values) + narrow
+    letter = _TEXT * (high - low) / max(height - 5 * _TEXT, _TEXT)
+    ax.set_ylim(10 ** (low - 2.5 * letter), 10 ** (high + 2 * letter))
     first, last = np.log10(ax.get_xlim())
     stride = 2 if 2 * width / (first - last) > 5 * _TEXT else 4
     ax.xaxis.set_major_locator(FixedLocator([10.0**k for k in range(-2 - 8 * stride, 2, stride)]))
