@@ -371,7 +371,7 @@ def test_the_reason_is_spoken_when_another_one_holds(opened: Opened) -> None:
 
 
 def test_the_lines_of_the_docstring_fit_a_frame_to_its_page(opened: Opened) -> None:
-    lines = rl.explore.__doc__.split("::\n\n")[1].split("</script>")[0] + "</script>"
+    lines = str(rl.explore.__doc__).split("::\n\n")[1].split("</script>")[0] + "</script>"
     text = html.escape(rl.explore(rl.scenes.report, t_end=1.0).to_html())
     frame = opened(lines.replace('src="strike.html"', f'srcdoc="{text}"')).frames[1]
     frame.wait_for_function("innerHeight > 600 && document.body.offsetHeight === innerHeight")

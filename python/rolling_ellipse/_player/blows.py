@@ -34,10 +34,6 @@ ROWS, COLUMNS = 168.0, 540.0  # pixels of the plot of forces
 CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # its largest and its least range [weights]
 _WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])  # irregular parts of an interval
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
-_SELDOM = {
-    "theta": ("θ", "rad"), "omega": ("ω", "rad/s"), "z": ("z", "m"), "x_dot": ("ẋ", "m/s"),
-    "z_dot": ("ż", "m/s"), "gravity": ("g", "m/s²"), "inertia": ("I", "kg m²"),
-}  # fmt: skip
 
 
 def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
@@ -152,13 +148,15 @@ def _middles(motion: Trajectory, name: str) -> FloatArray:
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the numbers of the scene in words, and by symbols those that it seldom has."""
-    said = filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
-                  e=scene.restitution, slope=scene.slope)  # fmt: skip
-    for name, (symbol, unit) in _SELDOM.items():
-        if name in scene._changed():
-            said += f", {symbol} = {written(getattr(scene, name), words)} {unit}"
-    return said
+    """Return the numbers of the scene in words, and by their names those that it seldom has."""
+    seldom = scene._changed().keys() - {"a", "b", "mass", "friction", "restitution", "slope"}
+    said = [
+        filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
+               e=scene.restitution, slope=scene.slope)
+    ]  # fmt: skip
+    for name in sorted(seldom - {"impulse"}):
+        said.append(f"{name} = {written(getattr(scene, name), words)}")
+    return ", ".join(said)
 
 
 def code(scene: Scene, t_end: float) -> str:

@@ -125,9 +125,10 @@ class Explorer(FieldsOnly):
         OSError
             If it cannot be written; what was there then stays.
         """
-        if path is not None:
-            return self.save(path)
-        return document(self.words["title"], self._repr_html_(), self.words["lang"])
+        if path is None:
+            return document(self.words["title"], self._repr_html_(), self.words["lang"])
+        self.save(path)
+        return None
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the page; errors are those of `to_html`."""
