@@ -14,7 +14,7 @@ from pathlib import Path
 
 from matplotlib import rcParams
 
-from . import Status, Trajectory, simulate
+from . import StabilityWarning, Status, Trajectory, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate
@@ -41,19 +41,23 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 on success; 1 if the motion could not be followed to its end (the summary is of the part
-        before); 2 (and one line) on bad input, or if a file cannot be written.
+        before); 2 (and one line) on bad input, or if a file cannot be written. A StabilityWarning is
+        a line, too.
     """
     typed = joined(sys.argv[1:] if arguments is None else arguments)
     exploring = typed[:1] == ["explore"]
     options = (explore_parser() if exploring else motion_parser()).parse_args(typed[exploring:])
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the summary has their messages
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("ignore")  # the summary says until when the model is valid
+            warnings.simplefilter("always", StabilityWarning)
             code, message = (0, explore(options)) if exploring else _motion(options)
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
     print(message)
+    for warning in caught:
+        _complain(warning.message)
     return code
 
 
@@ -98,7 +102,7 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
     return path
 
 
-def _complain(error: Exception) -> None:
+def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
         said = " ".join(str(error).split())
         option = "--" if said.startswith("step ") else ""  # an argument of `simulate`

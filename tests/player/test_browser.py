@@ -204,7 +204,9 @@ def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> Non
     assert page.title() == "An ellipse in motion"  # a notebook around it would obey, too
     assert page.locator("[data-lm-suppress-shortcuts]").count() == 1
     page.keyboard.press("Home")
-    assert told(page, "p => p.canvas.getAttribute('aria-label')") == "x = 0 m, θ = 0 rad"
+    assert told(page, "p => p.canvas.getAttribute('aria-label')") == (
+        "Ellipse on the ground, t = 0.000 s: θ = 0 rad, x = 0 m"
+    )
 
 
 def test_the_slider_seeks_and_events_are_marked_on_it(opened: Opened) -> None:

@@ -180,6 +180,8 @@ def test_model_and_method(command: Any) -> None:
     motion = rl.simulate(rl.scenes.report, 1.0, model="multipliers", method="rk4", step=0.01)
     assert found["distance"] == motion.x[-1]
     assert found["largest_velocity_residual"] > 0
+    lossy = command(*options[:4], "--step", "0.05", "--time", "50", "--json")
+    assert lossy.code == 0 and "take smaller steps" in lossy.err and strict_json(lossy.out)
     found = strict_json(command("--model", "contact", "--time", "1", "--json").out)
     assert (found["model"], found["period"]) == ("contact", rl.period(rl.scenes.report))
 

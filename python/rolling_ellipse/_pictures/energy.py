@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from .._ask.check import choice
+from .._core import Mode
 from .._motion.relative_errors import energy_error
 from .._motion.trajectory import Trajectory
 from .artists import Artists
@@ -84,8 +85,10 @@ def plot_energy(
     if wanted == "energies":
         names = ("total", "kinetic", "potential")
         handles = shown.handles(ax, list(zip(names, DASHES, strict=True)))
-    else:  # a loss by friction and impacts is no error
-        word = "change" if any(motion.events for motion in shown.motions) else "error"
+    else:
+        # Sliding and impacts lose energy; this is no error.
+        loses = any(each.events or (each.mode == Mode.SLIDING).any() for each in shown.motions)
+        word = "change" if loses else "error"
         dress_errors(ax, errors, f"relative energy {word}")
     marks = finish([ax], shown, handles)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())

@@ -69,15 +69,6 @@ class WorkPrecisionChart(Artists):
     limit: Line2D | None = None
     below: Text | None = None
 
-    @property
-    def ax(self) -> Axes:
-        """The first Axes."""
-        return self.axes[0]
-
-    def savefig(self, path: Any, **options: Any) -> None:
-        """Write the figure to a file, as matplotlib does."""
-        self.ax.get_figure(root=True).savefig(path, **options)  # type: ignore[union-attr]
-
 
 @picture
 def draw(

@@ -254,7 +254,7 @@ export class Player {
     const near = (value, unit) => Math.round((1000 * value) / unit) * (unit / 1000);
     return states.map(({ theta, x }, i) => this.say("stage", { theta: near(theta, 1),
       x: near(x, this.film.strips[i].a), t: this.clock.textContent,
-      name: this.film.strips[i].label })).join("; ");
+      name: this.film.strips[i].label }).trim()).join("; ");
   }
 
   /** The text of a key in the reader's language; values replace the names in braces. */
