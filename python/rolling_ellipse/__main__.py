@@ -41,8 +41,8 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 on success; 1 if the motion could not be followed to its end (the summary is of the part
-        before); 2 (and one line) on bad input, or if a file cannot be written. A StabilityWarning is
-        a line, too.
+        before); 2 (and one line) on bad input, or if a file cannot be written. A StabilityWarning
+        is a line, too.
     """
     typed = joined(sys.argv[1:] if arguments is None else arguments)
     exploring = typed[:1] == ["explore"]
