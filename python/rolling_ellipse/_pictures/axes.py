@@ -124,7 +124,7 @@ def figure_of(figure: Any, size: tuple[float, float], figsize: Any) -> Figure:
 
 
 def pyplot_figure(**options: Any) -> Figure:
-    """Open a pyplot figure, which is closed if the plot function fails."""
+    """Return a new pyplot figure; `picture` closes it if the plot function fails."""
     with _with_figures():
         figure = plt.figure(**options)
         _opened.get().append(figure)

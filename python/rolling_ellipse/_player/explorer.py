@@ -1,4 +1,4 @@
-"""A blow that the reader moves, and the motion after it: at once and without a kernel."""
+"""A page where the reader moves a blow and sees the motion at once, without a Python kernel."""
 
 from __future__ import annotations
 

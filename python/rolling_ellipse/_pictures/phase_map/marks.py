@@ -122,7 +122,7 @@ def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ..
 def _curve(
     plane: Plane, along: str, places: FloatArray, values: FloatArray, *args: Any, **how: Any
 ) -> Mark:
-    """Return the mark of values of one axis over places along the other."""
+    """Return a curve of the plane: `places` on the axis `along`, `values` on the other axis."""
     x, y = (places, values) if plane.axes[0] == along else (values, places)
     return Mark(x, y, *args, **how)
 

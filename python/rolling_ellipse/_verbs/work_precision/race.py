@@ -168,7 +168,7 @@ class _Attempt:
         self.call: Any = None  # the timed call; None before the first answer
         self.status, self.reason = COMPLETED, ""
         self.facts: dict[str, Any] = {}  # fields of its Run
-        self.setup = self.spent = 0.0  # of being judged: set-up, and all else [s]
+        self.setup = self.spent = 0.0  # time of `judge_once` [s]: its set-up, and the rest
         self.times: list[float] = []  # [s]
 
     def judge_once(self) -> None:

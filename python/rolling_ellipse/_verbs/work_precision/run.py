@@ -86,7 +86,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Reference:
-    """The reference for the runs up to one end.
+    """Source and error of the true motion by which the runs up to one end are judged.
 
     `attainable` is the change of the state at the end by a relative change of 2.2e-16 of every
     number of the scene, one after the other, and by two units in its last place: no computation
