@@ -29,14 +29,15 @@ def quantity_handles(quantities: Sequence[tuple[str, str]], palette: Palette) ->
     return [Line2D([], [], color=palette.grey, ls=dash, label=name) for name, dash in quantities]
 
 
-def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
+def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None) -> None:
     """Give the axes a legend above them on the right, where it covers nothing."""
     entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
     room = ax.get_window_extent().width
+    size = size or ("small" if room > _NARROW * ax.figure.dpi else "x-small")
     for columns in range(len(entries), 0, -1):  # the most that have room
         legend = ax.legend(
             handles=entries, ncols=columns, loc="lower right", bbox_to_anchor=(1, 1),
-            frameon=False, fontsize="small" if room > _NARROW * ax.figure.dpi else "x-small",
+            frameon=False, fontsize=size,
             borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=1.3,
         )  # fmt: skip
         if legend.get_window_extent().width <= room:

@@ -22,6 +22,7 @@ from .._verbs.work_precision.verdict import Gaps, gaps
 from .artists import Artists
 from .axes import axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
+from .legends import name_curves
 from .palette import palette_of
 
 if TYPE_CHECKING:  # results.py imports this file
@@ -41,7 +42,6 @@ _EQUAL = 1.2  # ratio of times that count as equal
 _TEXT = 8.0  # size of all text in the axes and below [points]
 _LETTER = 0.63  # width of a letter of the table, in sizes
 _ROWS, _COLUMNS = 9, 70  # most rows, and least letters in a line, of a table below the axes
-_MARGIN = 14  # letters left of the axes
 _AROUND = (1, 0), (0, 1), (0, -1)  # sides of the end of a line
 _NAMED = 8  # most names of contenders
 _DECADES = tuple(10.0**-k for k in range(2, 16))
@@ -157,9 +157,9 @@ def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
     return found
 
 
-def _least(front: dict[Point, str], error: float) -> float:
-    """Return the least value at an error of at most `error`, or NaN."""
-    return next((value for at, value in front if at <= error), math.nan)
+def _least(front: dict[Point, str], error: float) -> tuple[float, str]:
+    """Return the least value at an error of at most `error` and who holds it; NaN if nobody."""
+    return next(((v, name) for (at, v), name in front.items() if at <= error), (math.nan, ""))
 
 
 def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, Any]:
@@ -181,8 +181,10 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
     for camp, front in race.fronts.items():
         if front:
             corners = [corner for _, part in parts(front) for corner in part]
+            apart = members is None or camp == "highlight"  # in a multiple, orange has its members
             fronts[camp] = ax.plot(
-                *zip(*corners, strict=True), color=colors[camp], solid_capstyle="butt",
+                *zip(*corners, strict=True), solid_capstyle="butt",
+                color=colors[camp] if apart else palette.shade(0.6),
                 lw=2.6 if members is None else 1.2, zorder=2.8 if camp == "highlight" else 2.9,
             )[0]  # fmt: skip
     return {"lines": lines, "fronts": fronts, "limit": _framed(ax, race)}
@@ -191,7 +193,12 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
     """Set the axes, with errors from 10 to what can be attained; mark the latter."""
     palette, x, y = palette_of(ax), race.x, race.y
-    ax.set(xscale="log", yscale="log", xlabel=_NAMES.get(x, x), ylabel=_NAMES.get(y, y))
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel=f"{_NAMES.get(x, x)} (smaller →)",
+        ylabel=_NAMES.get(y, y),
+    )
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(labelsize=_TEXT + 1)
     ax.grid(True, axis="y", color=palette.grey, alpha=0.2, lw=0.5)
@@ -223,13 +230,13 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
     palette = palette_of(ax)
     halo = palette.background
     ours, others = race.fronts["highlight"], race.fronts["others"]
-    both = [d for d in _DECADES if not math.isnan(_least(ours, d) * _least(others, d))]
+    both = [d for d in _DECADES if not math.isnan(_least(ours, d)[0] * _least(others, d)[0])]
     stride = 4 if len(both) > 6 else 2 if len(both) > 3 else 1
     first, last = np.log10(ax.get_xlim())
     wide = size_in_points(ax)[0] * stride > 10 * _TEXT * (first - last)
     labels: dict[Any, Label] = {}
     for decade in both[::stride]:
-        mine, best = _least(ours, decade), _least(others, decade)
+        (mine, own), (best, other) = _least(ours, decade), _least(others, decade)
         low, high, color = mine, best, palette.blue
         if best < mine:
             low, high, color = best, mine, palette.orange
@@ -241,7 +248,9 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
             )
             word = ("faster" if mine < best else "slower") if race.y in _SECONDS else ""
             factor = f"{high / low:.0f} ×" if high > 9.95 * low else f"{high / low:.1f} ×"
-            texts, sides = [f"{factor} {word}".strip() if wide else factor], BESIDE
+            loser = other if mine < best else own
+            texts, sides = [f"{factor} {word}\nthan {loser}"] if word and wide else [], BESIDE
+            texts.append(factor)
         labels[decade] = Label(texts, visible_part(ax, *ends.T), 0.5, sides, color, halo, must=True)
     named: dict[str, Label] = {}
     for front, color in ((ours, palette.blue), (others, palette.orange)):
@@ -267,15 +276,17 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
 
 
 def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Text:
-    """Write the title of an own figure, and below its axes the table of gaps and the machine."""
+    """Write the legend of an own figure, and below its axes the table of gaps and the machine."""
     figure: Any = ax.figure
     width, height = 72 * figure.get_size_inches()
     room = int(width / (_LETTER * _TEXT)) - 2
+    palette, others = palette_of(ax), race.points.keys() - race.ours
+    entries = [(race.camp, palette.blue, 2.6)] if race.fronts["highlight"] else []
     if race.fronts["others"]:
-        others = race.points.keys() - race.ours
         rest = f"the best of {len(others)} others" if len(others) > 1 else "".join(others)
-        title = wrap(f"{race.camp} and {rest}", room - _MARGIN)
-        ax.set_title("\n".join(title), loc="left", fontsize=_TEXT + 1)
+        entries += [(rest, palette.orange, 2.6), ("each of them", palette.shade(0.28), 0.7)]
+    keys = [Line2D([], [], color=color, lw=lw, label=name) for name, color, lw in entries]
+    name_curves(ax, keys[: 2 if room < _COLUMNS else len(others) + 1], _TEXT)
     known = [machine[name] for name in _STAMP if name in machine]
     lines = wrap(", ".join([*known, f"least of {machine.get('rounds', '?')} rounds"]), room)
     if 0 < len(missing) <= _ROWS and room >= _COLUMNS:
@@ -285,7 +296,7 @@ def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Tex
     figure.get_layout_engine().set(rect=(0, top := (1.2 * len(lines) + 1) * foot, 1, 1 - top))
     written: Text = figure.text(
         0.6 * _TEXT / width, 0.5 * foot, "\n".join(lines), va="bottom", fontsize=_TEXT,
-        family="monospace", color=palette_of(ax).grey, linespacing=1.2, in_layout=False,
+        family="monospace", color=palette.grey, linespacing=1.2, in_layout=False,
     )  # fmt: skip
     return written
 
@@ -307,8 +318,10 @@ def _multiples(race: _Race) -> WorkPrecisionChart:
         ax.set_title(library, loc="left", fontsize=_TEXT + 1, fontweight="bold")
         lines |= {name: drawn[name] for name in members}
         ax.label_outer()
+        ax.set_xlabel("")
     for ax in panels[len(libraries) :]:
         ax.set_visible(False)
+    figure.supxlabel(f"{_NAMES.get(race.x, race.x)} (smaller →)", fontsize="medium")
     figure.draw_without_rendering()
     names: dict[str, Text] = {}
     for ax, (library, members) in zip(panels, libraries.items(), strict=False):
