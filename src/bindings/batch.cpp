@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
 constexpr int refused = -1;  // code of a refused scene; Ending uses 0 and above
 
-// The scene of a row; NaN stands for an absent number.
+// The scene of a row, refused above the energy `most`; NaN stands for an absent number.
 Scene scene_in(const double* row, double most) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);

@@ -53,13 +53,13 @@ class RootBracket {
         if ((f > 0) == rises_) {
             ends_.high = x;
             f_high_ = f;
-            if (kept_ == 1) f_low_ /= 2;
-            kept_ = 1;
+            if (moved_ == 1) f_low_ /= 2;
+            moved_ = 1;
         } else {
             ends_.low = x;
             f_low_ = f;
-            if (kept_ == -1) f_high_ /= 2;
-            kept_ = -1;
+            if (moved_ == -1) f_high_ /= 2;
+            moved_ = -1;
         }
     }
 
@@ -71,7 +71,7 @@ class RootBracket {
     double f_high_;
     bool rises_;
     int secants_ = 0;
-    int kept_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none yet
+    int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none yet
 };
 
 template <class Function>

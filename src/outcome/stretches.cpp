@@ -50,6 +50,7 @@ struct Course {
     std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
     bool monotone = false;                 // the observable is monotone between knots, provably
     std::optional<DoubleDouble> period = {};
+    double swung = 0.0;  // quarter turns in a period that leads back to its start
 };
 
 // The course of each law, for one observable.
@@ -66,6 +67,7 @@ struct CourseOf {
         found.monotone = quantity && (!moves || (turns && is_along()));
         const DoubleDouble half = flow.phase.half_turn;
         if (moves && !std::isinf(half.high)) found.period = turns ? half : half * 2.0;
+        found.swung = turns ? 0.0 : 4.0;
         return found;
     }
 
@@ -74,6 +76,7 @@ struct CourseOf {
         Course found{flow.kind == MotionKind::rest ? resting : rolling};
         if (flow.kind == MotionKind::libration) {
             found.period = (flow.turnings[1] - flow.turnings[0]) * 2.0 * unit;
+            found.swung = 4.0;
             return found;
         }
         const bool runs = flow.kind == MotionKind::rotation;
@@ -146,7 +149,7 @@ struct Survey {
         const double period = double(*course.period) * unit;
         const double periods = (last - first) / period;
         if (!of.quantity || periods < 5) {
-            count(4 * periods);
+            count(course.swung * periods);
             found.proved = divide(times, std::ceil(parts_a_period * periods));
             return;
         }

@@ -40,7 +40,7 @@ struct ShapePlace {
 
 ShapePlace place_at(const Shape& shape, double sin2, double cos2);
 
-// The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
+// The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape and an energy reaches.
 struct EnergyRange : Shape {
     double width;       // width of the range of heights
     double energy_gap;  // H minus the greatest height reached (0 in libration)

@@ -68,7 +68,8 @@ class Watcher {
         return bisect(good, bad, [this](double t) { return sample(t).margin < 0; }).high;
     }
 
-    // The minimum by the parabola through three samples, then by one through closer samples.
+    // The time of the minimum by the parabola through three samples, then by one through closer
+    // samples.
     double lowest(const Sample& a, const Sample& b, const Sample& c) const {
         const double rough = bottom_of_parabola(a, b, c);
         if (!std::isfinite(rough)) return b.t;  // the margins have overflowed

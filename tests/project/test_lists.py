@@ -47,9 +47,8 @@ class Kind(NamedTuple):
 KINDS = {
     "an event": Kind(
         [kind.name for kind in EventKind],
-        ("src/contact/segments.cpp", "tests/border/test_stub.py",
-         "tests/contact/test_contact_reference.py", "tests/core/golden.cpp",
-         "tests/core/test_core.py"),
+        ("src/contact/segments.cpp", "tests/border/test_stub.py", "tests/core/golden.cpp",
+         "tests/contact/test_contact_reference.py", "tests/core/test_core.py"),
     ),
     "a method": Kind(
         ["dopri5"],  # the tableaus call it DormandPrince5
@@ -58,10 +57,8 @@ KINDS = {
          "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
          "benchmarks/bench_integrators.py"),
     ),
-    "a picture": Kind(
-        [name for name in PLOTS if name != "plot_phase_map"],
-        ("python/rolling_ellipse/_pictures/comparison.py",),
-    ),
+    "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
+                      ("python/rolling_ellipse/_pictures/comparison.py",)),
     "a verb": Kind(of_room("_verbs")),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
     "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),

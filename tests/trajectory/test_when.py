@@ -204,6 +204,9 @@ def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
         simulate(thin, 1.7e10, model="rolling", method="rk4", step=1.15e9)
     with pytest.raises(ValueError, match=r"^z must be searched over at most 100000 quarter"):
         stopped.value.trajectory.when(z=0.5)
+    turns = simulate(rl.scenes.report, 20_000 * rl.period(rl.scenes.report))
+    with pytest.warns(CompletenessWarning):  # 80 000 quarter turns, each counted once
+        assert turns.when(function=lambda m: m.t - 7.0) == pytest.approx([7.0])
 
 
 def test_touches_between_two_looks_of_a_function() -> None:

@@ -33,7 +33,7 @@ def meant(word: str, names: Iterable[str]) -> str:
 
 
 def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Let the TypeError of a call that does not fit the arguments say which ones are meant."""
+    """Let the TypeError of a call that does not fit name the arguments meant, or show the call."""
 
     @wraps(function)
     def call(*given: _Given.args, **named: _Given.kwargs) -> _Found:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
 # Largest accepted error of the constraints, over the long semi-axis: a pixel of a picture
 _MISSED = 1e-3
-_MOVED = 0.1  # largest accepted error of the constraints after a step, before its projection
+_MOVED = 0.1  # largest accepted error of a step before its projection [long semi-axes]
 _OF_RTOL = 10.0  # with error control, accepted relative change of the energy over rtol
 
 

@@ -164,7 +164,7 @@ def _best(
     label: Label, extent: FloatArray, lines: FloatArray, taken: FloatArray, page: FloatArray,
     most: float,
 ) -> _Spot | None:  # fmt: skip
-    """Return the place with the least sum of crossed lines and distance from the wanted place."""
+    """Return the free place with the least sum of lines crossed, rank of side and distance."""
     line = label.line * page
     along = _along(line)
     share = np.linspace(0.0, 1.0, 2 + int(1.5 * along[-1] / extent[1]))

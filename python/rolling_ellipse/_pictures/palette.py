@@ -66,7 +66,7 @@ class Palette:
 
 
 def palette_of(where: Axes | FigureBase | None = None) -> Palette:
-    """Return the colours of the style in force before the background of Axes or a figure."""
+    """Return the colours of the style in force that suit the background of Axes or a figure."""
     background = _background(where)
     if rcParams["axes.prop_cycle"] != rcParamsDefault["axes.prop_cycle"]:
         return _styled(background)

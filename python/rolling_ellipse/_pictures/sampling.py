@@ -77,7 +77,7 @@ def _refined(motion: Trajectory, begin: float, end: float, count: float) -> Traj
     times = np.union1d(even_times(begin, end, points), _jumps(motion, begin, end))
     values = _bending(motion, times)
     scale = np.ptp(values, axis=1, keepdims=True)
-    scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # a constant does not bend
+    scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # constants and infinities do not bend
     places = np.arange(times.size - 1)
     for _ in range(_ROUNDS):
         left, right = times[places], times[places + 1]

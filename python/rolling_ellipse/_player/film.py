@@ -32,7 +32,7 @@ def film_html(animation: RollingAnimation) -> str:
     parts = [(begin, min(end, last)) for begin, end in pace.parts]
     seen = cameras(motions, None, _HEAD, _FOOT, beside)
     if seen.shape > (most := max(_TALLEST, _TALLEST * (not beside) * len(motions) / 2)):
-        seen = cameras(motions, most, _HEAD, _FOOT, beside)  # a cell of a notebook is wide
+        seen = cameras(motions, most, _HEAD, _FOOT, beside)  # no higher than fits a notebook's cell
     wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {

@@ -22,7 +22,7 @@ void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
     }
 }
 
-// States of bodies side by side; bodies with times that are refused are left open.
+// States of bodies side by side. `is_open` marks bodies that must be sampled alone: at late times.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;

@@ -45,7 +45,7 @@ struct SlopeBody {
 
 SlopeBody slope_body(const Body& body, double slope);
 
-// A place of the motion, beside the flat position (even quarters) or tip (odd quarters) nearby.
+// A place of the motion, by its angle from a flat position (even quarters) or tip (odd quarters).
 struct SlopePlace {
     DoubleDouble time;
     double quarters;

@@ -39,7 +39,7 @@ CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
 PANEL = 0.36  # height of a panel below the strips, over the width
 _drawing_late = Alone()
-_with_settings = Alone()  # rcParams, which matplotlib's own writers change
+_with_settings = Alone()  # lock of rcParams, which matplotlib's own writers change
 
 
 class RollingAnimation(FuncAnimation):
