@@ -168,7 +168,7 @@ LACKING = replace(FOUND, runs=(*FOUND.runs, FAILED))
 
 def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
     table = str(LACKING.gaps())
-    assert table.splitlines()[1] == "method2    1e-03         FAILED, singular"
+    assert table.splitlines()[1] == "method2       1e-03       FAILED, singular"
     for width, drawn in ((8.0, True), (3.4, False)):
         with plt.rc_context({"figure.figsize": (width, 5.0)}):
             chart: Any = LACKING.plot()

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
+_TOUCH = ("z", "x_dot", "z_dot", "normal_force", "friction_force")  # of a body on the ground
+_CONTACT = _core.COLUMNS["contact"]
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 _HELD = {code for code, each in STATUSES.items() if each in AT_AN_END}
 _LOST = max(STATUSES) + 1  # the ending of a scene whose worker was lost
@@ -166,6 +168,9 @@ def _fill(
             here = reached & (code["model"] == MODELS.index(model))[:, None]
             values[name][here] = stored[model][row]
     others = values.keys() - set(DIRECT)
+    if others & set(_TOUCH) and MODELS.index("multipliers") not in code["model"]:
+        _fill_touch({name: values[name] for name in _TOUCH if name in others}, table, tables)
+        others -= set(_TOUCH)
     failed = request.raise_on_failure and not set(code["ending"]) <= _HELD
     if others or failed or REFUSED in code["ending"]:
         for place, found in enumerate(answers(request, scenes_of(table), tables)):
@@ -175,3 +180,22 @@ def _fill(
                     values[name][place, : motion.t.size] = getattr(motion, name)
             if isinstance(found, Exception):
                 yield place, found
+
+
+def _fill_touch(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
+    """Fill in what `Trajectory` finds at the contact, of motions that are not in coordinates."""
+    code = columns("codes", tables)
+    model, samples = code["model"], code["samples"]
+    here = np.arange(next(iter(values.values())).shape[-1]) < samples[:, None]
+    here &= (model == MODELS.index("contact"))[:, None]
+    for name, row in zip(_CONTACT, tables["contact"], strict=True):
+        if name in values:
+            values[name][here] = row
+    theta, omega, _ = tables["rolling"]
+    rolls = np.flatnonzero((model == MODELS.index("rolling")) & (samples > 0))
+    begin = 0
+    for place, scene in zip(rolls, scenes_of(table[rolls]), strict=True):
+        part = slice(begin, begin := begin + samples[place])
+        found = _core.rolling_contact(scene.core, theta[part], omega[part])
+        for name, filled in values.items():
+            filled[place, : samples[place]] = found[name]

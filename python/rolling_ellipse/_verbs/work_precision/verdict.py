@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _MARGIN = 1.2  # between times that count as equal
 _POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
-_HEAD = ("contender", "no answer at", "why")
+_HEAD = ("no answer of", "at setting", "why")
 Decades = Sequence[float]
 Table = dict[float, dict[str, float]]  # the least time by decade and name
 
