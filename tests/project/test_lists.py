@@ -70,11 +70,10 @@ KINDS = {
          "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
          "tests/oracles/golden.py", "tools/fuzz/calls.py", "tools/fuzz_core/fuzz_core.cpp"),
     ),
-    "a law of restitution": Kind(
-        ["Stronge", "Poisson", "Newton"],
-        ("src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
-         "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py"),
-    ),
+    "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
+        "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
+        "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py",
+    )),
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
 

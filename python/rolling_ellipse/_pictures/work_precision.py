@@ -98,6 +98,8 @@ def draw(
 
 def _chosen(argument: str, wanted: Any, runs: Sequence[Run]) -> set[str]:
     """Return the names of the contenders that names and tags mean."""
+    if not isinstance(wanted, Iterable):
+        raise TypeError(f"{argument} must be names or tags, got {shown(wanted)}")
     words = {wanted} if isinstance(wanted, str) else set(wanted)
     known = {word for run in runs for word in (*run.tags, run.name)}
     if not words or not words <= known:
