@@ -131,7 +131,9 @@ class SlideIntegration {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
         }
-        next.energy = next.energy + value(series.work, reach_) / square(unit);
+        const double work = value(series.work, reach_) / square(unit);
+        next.energy = next.energy + work;
+        worked_ += std::abs(work);
         next.slip = next.slip + value(series.slip, reach_) / unit;
         last_ = next;
         keep_energy();
@@ -142,7 +144,8 @@ class SlideIntegration {
     Geometry geometry_here() const { return geometry(slide_.body.axes, last_.angle); }
 
     // Takes omega from the energy where the body creeps over the tip. The series carry the
-    // roundings of the fast motion before; the energy, counted from the tip, has smaller ones.
+    // roundings of the fast motion before; the energy, counted from the tip, has smaller ones,
+    // unless friction has done much work: its roundings are in the energy.
     void keep_energy() {
         constexpr double slow = 0.02;       // kinetic energy below this share of its maximum
         constexpr double near = 10;         // g times height under the tip over kinetic energy
@@ -152,6 +155,7 @@ class SlideIntegration {
         const double kinetic = double(last_.energy + fallen);
         most_kinetic_ = std::max(most_kinetic_, kinetic);
         if (!(kinetic < slow * most_kinetic_ && fallen < near * kinetic)) return;
+        if (square(worked_) > 4 * kinetic * most_kinetic_) return;
         const double inertia = slide_.body.gyration2 + square(at.dh);
         const double omega = std::copysign(std::sqrt(2 * kinetic / inertia), last_.omega.high);
         const double change = (omega - last_.omega.high) - last_.omega.low;
@@ -277,6 +281,7 @@ class SlideIntegration {
     SlidePoint& last_;
     const SlideBounds& bounds_;
     double most_kinetic_ = 0.0;
+    double worked_ = 0.0;  // sum of the sizes of the work of friction [energy per mass]
     SlideClock clock_ = SlideClock::time;
     double reach_ = 0.0;
     std::optional<End> end_;

@@ -45,11 +45,10 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    "an event": Kind(
-        [kind.name for kind in EventKind],
-        ("src/contact/segments.cpp", "tests/border/test_stub.py", "tests/core/golden.cpp",
-         "tests/contact/test_contact_reference.py", "tests/core/test_core.py"),
-    ),
+    "an event": Kind([kind.name for kind in EventKind], (
+        "src/contact/segments.cpp", "tests/border/test_stub.py", "tests/core/golden.cpp",
+        "tests/contact/test_contact_reference.py", "tests/core/test_core.py",
+    )),
     "a method": Kind(
         ["dopri5"],  # the tableaus call it DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
@@ -62,14 +61,13 @@ KINDS = {
     "a verb": Kind(of_room("_verbs")),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
     "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),
-    "a field of Scene": Kind(
-        [field.name for field in fields(Scene)],
-        ("python/rolling_ellipse/_motion/export/files.py",
-         "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",
-         "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
-         "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
-         "tests/oracles/golden.py", "tools/fuzz/calls.py", "tools/fuzz_core/fuzz_core.cpp"),
-    ),
+    "a field of Scene": Kind([field.name for field in fields(Scene)], (
+        "python/rolling_ellipse/_motion/export/files.py",
+        "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",
+        "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
+        "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
+        "tests/oracles/golden.py", "tools/fuzz/calls.py", "tools/fuzz_core/fuzz_core.cpp",
+    )),
     "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
         "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
         "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py",

@@ -68,7 +68,7 @@ REFUSALS: list[Row] = [
     ("at", result(lambda found: found.best(-1.0))),
     ("tags", result(lambda found: found.plot(tags="x"))),
     ("highlight", result(lambda found: found.plot(highlight=[]))),
-    ("highlight", result(lambda found: found.plot(highlight=3))),
+    ("highlight", result(lambda found: found.plot(highlight=3))),  # type: ignore[arg-type]
     ("ax", result(lambda found: found.plot(by="library", ax=WRONG))),
     (KeyError, result(lambda found: found.runs[0].errors["x"])),
     # files
