@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
-_TOUCH = ("z", "x_dot", "z_dot", "normal_force", "friction_force")  # of a body on the ground
-_CONTACT = _core.COLUMNS["contact"]
+_STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers": DIRECT}
+_TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 _HELD = {code for code, each in STATUSES.items() if each in AT_AN_END}
 _LOST = max(STATUSES) + 1  # the ending of a scene whose worker was lost
@@ -163,14 +163,15 @@ def _fill(
     reached = np.arange(request.times.size) < code["samples"][:, None]
     q, q_dot = tables["q"], tables["q_dot"]
     stored: dict[str, Any] = {**tables, "multipliers": (q[:, 2], q_dot[:, 2], q[:, 0])}
-    for row, name in enumerate(DIRECT):
-        for model in ("rolling", "contact", "multipliers") if name in values else ():
-            here = reached & (code["model"] == MODELS.index(model))[:, None]
-            values[name][here] = stored[model][row]
+    for model, names in _STORED.items():
+        here = reached & (code["model"] == MODELS.index(model))[:, None]
+        for name, row in zip(names, stored[model], strict=True):
+            if name in values:
+                values[name][here] = row
     others = values.keys() - set(DIRECT)
-    if others & set(_TOUCH) and MODELS.index("multipliers") not in code["model"]:
-        _fill_touch({name: values[name] for name in _TOUCH if name in others}, table, tables)
-        others -= set(_TOUCH)
+    if others & _TOUCH and MODELS.index("multipliers") not in code["model"]:
+        _fill_rolling({name: values[name] for name in others & _TOUCH}, table, tables)
+        others -= _TOUCH
     failed = request.raise_on_failure and not set(code["ending"]) <= _HELD
     if others or failed or REFUSED in code["ending"]:
         for place, found in enumerate(answers(request, scenes_of(table), tables)):
@@ -182,19 +183,12 @@ def _fill(
                 yield place, found
 
 
-def _fill_touch(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
-    """Fill in what `Trajectory` finds at the contact, of motions that are not in coordinates."""
-    code = columns("codes", tables)
-    model, samples = code["model"], code["samples"]
-    here = np.arange(next(iter(values.values())).shape[-1]) < samples[:, None]
-    here &= (model == MODELS.index("contact"))[:, None]
-    for name, row in zip(_CONTACT, tables["contact"], strict=True):
-        if name in values:
-            values[name][here] = row
-    theta, omega, _ = tables["rolling"]
-    rolls = np.flatnonzero((model == MODELS.index("rolling")) & (samples > 0))
-    begin = 0
-    for place, scene in zip(rolls, scenes_of(table[rolls]), strict=True):
+def _fill_rolling(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
+    """Fill in what `Trajectory` finds at the contact of bodies that only roll."""
+    code, (theta, omega, _) = columns("codes", tables), tables["rolling"]
+    samples = np.where(code["model"] == MODELS.index("rolling"), code["samples"], 0)
+    places, begin = np.flatnonzero(samples), 0
+    for place, scene in zip(places, scenes_of(table[places]), strict=True):
         part = slice(begin, begin := begin + samples[place])
         found = _core.rolling_contact(scene.core, theta[part], omega[part])
         for name, filled in values.items():
