@@ -18,7 +18,7 @@ from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, 
 
 from .._ask.check import choice, shown
 from .._verbs.work_precision.run import ERRORS, OF_STATES, Run, require_quantity
-from .._verbs.work_precision.verdict import Gaps, gaps
+from .._verbs.work_precision.verdict import EQUAL, Gaps, gaps
 from .artists import Artists
 from .axes import axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
@@ -38,7 +38,6 @@ _NAMES = {
 }  # fmt: skip
 _SECONDS = ("time", "samples_time", "setup")
 _LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn there; larger ones are out of view
-_EQUAL = 1.2  # ratio of times that count as equal
 _TEXT = 8.0  # size of all text in the axes and below [points]
 _LETTER = 0.63  # width of a letter of the table, in sizes
 _ROWS, _COLUMNS = 9, 70  # most rows, and least letters in a line, of a table below the axes
@@ -244,7 +243,7 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
             low, high, color = best, mine, palette.orange
         ends = np.array([(decade, high), (decade, low)])
         texts, sides = ["equal"], BELOW_FIRST
-        if high > _EQUAL * low:
+        if high > EQUAL * low:
             ax.plot(
                 *ends.T, color=color, lw=1, marker=CARETDOWN, ms=6, mew=0, markevery=[1], zorder=2.7
             )

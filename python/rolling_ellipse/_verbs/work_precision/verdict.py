@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .results import WorkPrecision
 
-_MARGIN = 1.2  # between times that count as equal
+EQUAL = 1.2  # ratio of times that count as equal
 _POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
 Decades = Sequence[float]
@@ -79,7 +79,7 @@ def _leaders(runs: Sequence[Run], table: Table, is_open: dict[float, bool]) -> I
             if rival := second(same[0]):
                 factors = [table[decade][rival] / table[decade][name] for decade in same]
                 listed = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, same, strict=True))
-                equal = " (as good as equal)" if max(factors) <= _MARGIN else ""
+                equal = " (as good as equal)" if max(factors) <= EQUAL else ""
                 yield f"    {rival} takes {', '.join(listed)}{equal}"
             else:
                 yield f"    no other {'was seen' if more else 'gets'} there {_span(same)}"
