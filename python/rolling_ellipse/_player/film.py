@@ -42,12 +42,18 @@ def film_html(animation: RollingAnimation) -> str:
             "window": window,
             "track": track(motion, parts, _PIXEL * wide),
             "theta": source.scene.theta,
-            "turns": float(source.sol([min(last, source.t[-1])]).turns[0]),
+            "turns": turns,
             "events": events(motion, last),
             "valid": None if np.isinf(motion.valid_until) else motion.valid_until,
         }
-        for motion, source, label, share, window in zip(
-            motions, animation.sources, animation.labels, seen.heights, seen.windows, strict=True
+        for motion, source, turns, label, share, window in zip(
+            motions,
+            animation.sources,
+            animation.turns,
+            animation.labels,
+            seen.heights,
+            seen.windows,
+            strict=True,
         )
     ]
     data = {

@@ -87,6 +87,9 @@ class RollingAnimation(FuncAnimation):
         self.t, self.fps, self.speed, self.last = pace.t, pace.fps, pace.speed, pace.parts[-1][1]
         self.forces, self.blow, self.panel = forces, blow, panel
         self.motions = tuple(motion.sol(np.minimum(self.t, motion.t[-1])) for motion in motions)
+        self.turns = [
+            float(motion.sol([min(self.last, motion.t[-1])]).turns[0]) for motion in motions
+        ]
         shape, inches = None, width / dpi
         if not callable(place):
             shape = place.bbox.height / place.bbox.width * (0.55 if panel else 1)
@@ -95,7 +98,7 @@ class RollingAnimation(FuncAnimation):
         self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches, beside)
         self._undrawn: Any = place, width, dpi
         if drawn:
-            self.draw(0)
+            _ = self.strips  # draws the first frame
 
     if not TYPE_CHECKING:  # a __getattr__ would let type checkers accept every name
 
@@ -188,11 +191,11 @@ class RollingAnimation(FuncAnimation):
             raise ValueError(f"i must be a frame, from 0 to {self.t.size - 1}, got {shown(i)}")
         self.clock.set_text(self._clock(float(self.t[i])))
         for cursor, motion in zip(self._cursors, self.motions, strict=False):
-            place = [self.t[i]] * 2, [0, 1]
             if self.panel == "phase":
                 flat = flat_angle(self.motions[0].scene)
-                place = [folded(motion.theta[i], flat)], [motion.omega[i]]
-            cursor.set_data(*place)
+                cursor.set_data([folded(motion.theta[i], flat)], [motion.omega[i]])
+            else:
+                cursor.set_data([self.t[i]] * 2, [0, 1])
         strips = (artist for strip in self.strips for artist in strip.draw(i))
         return [self.clock, *self._cursors, *strips]
 
@@ -239,13 +242,18 @@ class RollingAnimation(FuncAnimation):
                 with _with_settings():
                     super().save(path, writer=_known(writer), **options)
                 return
-            samples = np.array([each.copy() for each in self._pixels((0, count // 2, count - 1))])
             frames = self._pixels(range(count), advance)
             with replacing(path) as new:
                 if suffix == ".gif":
-                    write_gif(new, frames, self.fps, np.concatenate(samples))
+                    some = [each.copy() for each in self._pixels((0, count // 2, count - 1))]
+                    write_gif(new, frames, self.fps, np.concatenate(some))
                 else:
-                    write_video(new, frames, self.fps, samples.shape[2:0:-1], path)
+                    write_video(new, frames, self.fps, self._size(), path)
+
+    def _size(self) -> tuple[int, int]:
+        """Return the width and height of a frame in pixels."""
+        box = _root(self.figure).bbox
+        return int(box.width), int(box.height)
 
     def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
         """Yield the pixels of frames, in one buffer: what stands still is drawn once."""
@@ -256,9 +264,7 @@ class RollingAnimation(FuncAnimation):
         root.savefig(still, format="rgba", dpi=root.dpi, bbox_inches=False)
         for artist in seen:
             artist.set_visible(True)
-        renderer: Any = RendererAgg(  # type: ignore[no-untyped-call]
-            int(root.bbox.width), int(root.bbox.height), root.dpi
-        )
+        renderer: Any = RendererAgg(*self._size(), root.dpi)  # type: ignore[no-untyped-call]
         pixels = np.asarray(renderer.buffer_rgba())
         background = np.frombuffer(still.getvalue(), np.uint8).reshape(pixels.shape)
         for i in frames:

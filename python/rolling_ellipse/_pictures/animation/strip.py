@@ -40,7 +40,7 @@ class Strip:
         self.ax, self.motion, self._source = ax, film.motions[k], film.sources[k]
         self._film, self._label, self._views = film, film.labels[k], film.cameras.views[k]
         self._stands, motion = film.cameras.follows == "nothing", self.motion
-        self._turns = self._source.sol([min(film.last, self._source.t[-1])]).turns[0]
+        self._turns = film.turns[k]
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
         self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
         self._captions = [self._caption(i) for i in range(film.t.size)]
@@ -99,7 +99,8 @@ class Strip:
         if motion.mode[i] == Mode.SLIDING:
             self.slip.set_marker(self._arrow(float(self._slip[i])))
         self.shadow.set_data(*self._shadow(i))
-        self._point(i)
+        if self._film.forces or self._film.blow:
+            self._point(i)
         self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
         self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
         self.centre_trace.set_data(motion.x[past], motion.z[past])
