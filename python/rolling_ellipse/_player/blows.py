@@ -86,6 +86,8 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
         "names": NAMES,
         "colours": [*(COLOURS[outcome] for outcome in Outcome), COLOURS[Outcome.LOSES_CONTACT]],
         "code": code(scene, t_end),
+        "cut": CUT,
+        "least": LEAST,
     }  # fmt: skip
 
 

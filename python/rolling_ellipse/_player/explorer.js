@@ -6,7 +6,6 @@ const STEPS = { // of place and strength, by a key on the map
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
-const [LOWEST, HIGHEST] = [-3, 5]; // range of the plot of forces [weights]
 const PARTS = 8; // lines between two samples of the forces
 
 export class Explorer extends Player {
@@ -154,7 +153,7 @@ export class Explorer extends Player {
     const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
     this.plot.setAttribute("aria-label", this.say("forces_spoken", { t: this.strip.motion.end,
       N_least: N.least, N_most: N.most, F_least: shear.least, F_most: shear.most }));
-    const cut = Math.max(N.most, shear.most) > HIGHEST || shear.least < LOWEST;
+    const cut = Math.max(N.most, shear.most) > table.cut[1] || shear.least < table.cut[0];
     this.plot.nextElementSibling.textContent = this.say("forces")
       + (cut ? this.say("forces_cut", { peak }) : "");
     this.host.dataset.blow = `${d} ${F}`;
@@ -236,11 +235,11 @@ export class Explorer extends Player {
   }
 
   paintPlot(ink) {
-    const { colours, curves } = this, { end } = this.film;
+    const { colours, curves } = this, { end, table: { cut, least: range } } = this.film;
     const [left, top] = [34, 18], across = this.plot.clientWidth - left - 14;
     const up = this.plot.clientHeight - top - 24;
-    const high = Math.min(HIGHEST, Math.max(1.5, ...curves.map(({ most }) => most)));
-    const low = Math.max(LOWEST, Math.min(-0.5, ...curves.map(({ least }) => least)));
+    const high = Math.min(cut[1], Math.max(range[1], ...curves.map(({ most }) => most)));
+    const low = Math.max(cut[0], Math.min(range[0], ...curves.map(({ least }) => least)));
     const x = (time) => left + (time / end) * across;
     const y = (part) => top + up * ((high - Math.min(high, Math.max(low, part))) / (high - low));
     for (let part = Math.ceil(low); part <= high; part++) {

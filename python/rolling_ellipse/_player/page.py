@@ -27,7 +27,8 @@ def fragment(
     """Return a `div` with pictures of the motions, whose script replaces them by the player.
 
     If scripts are not run, pictures and text stay. A page may have the same fragment several
-    times. Data without words get the English ones. `around` is HTML around the player.
+    times. Data without words get the English ones. `around` is HTML around the player. No key
+    leaves the `div`, and JupyterLab finds its mark there: a notebook would take keys as its own.
     """
     scripts = ["track", "strip", "player", *["explorer"] * (starts == "Explorer")]
     texts = data.get("words") or words("en")

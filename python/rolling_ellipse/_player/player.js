@@ -31,7 +31,6 @@ export class Player {
     Object.assign(this, { host, film, parts, forces, t: 0, rate: 1, playing: false });
     this.long = parts.reduce((sum, [begin, end]) => sum + end - begin, 0);
     host.dataset.ready = "";
-    host.dataset.lmSuppressShortcuts = ""; // JupyterLab looks for it outside of the shadow
     host.player = this;
     for (const strip of film.strips)
       if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.starts);
@@ -123,7 +122,6 @@ export class Player {
   key(event) {
     const { key, target } = event;
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    event.stopPropagation(); // a notebook would take them as its own
     if (target !== this.slider && target.matches("select, input")) return;
     if (key === " " && target.tagName === "BUTTON") return;
     if (key === " ") this.toggle.click();
