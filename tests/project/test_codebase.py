@@ -37,8 +37,8 @@ FOLDERS = (
 # import a later room that is slow to load.
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
-    "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "_pictures",
-    "_player", "_show", "", "__main__",
+    "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "benchmark",
+    "_pictures", "_player", "_show", "", "__main__",
 )  # fmt: skip
 SLOW = "_pictures"
 COMPLEX_PRODUCTS = """

@@ -1,0 +1,15 @@
+"""Known answers for other simulators, integrators and gradients.
+
+We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Eighteen
+problems of an ellipse on the ground have exact answers, found by two independent programs, each
+with its condition number. SI units and radians; ``x`` lies along the ground (downhill where it
+slopes), ``z`` points away from it, ``theta`` is the clockwise rotation. States are in the order x,
+z, theta, x_dot, z_dot, omega.
+
+>>> from rolling_ellipse import benchmark
+>>> benchmark.problem("slide.stick").question
+"""
+
+from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
+
+__all__ = ["Gradient", "KnownEvent", "Problem", "gradients", "problem", "problems"]

@@ -1,0 +1,219 @@
+"""The problems and their known answers, read from the files in `problems/`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, array, choice
+from .._ask.records import FieldsOnly, cached_property
+from .._ask.scene import Scene
+from .._core import EventKind
+from .._motion.trajectory import Trajectory
+from .._verbs.simulate import simulate
+
+FORMAT = "rolling_ellipse.benchmark/1"
+STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
+COLUMNS = ("t", *STATE, "normal_force", "friction_force")
+NEEDS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
+OUTPUT_RATE = 100  # states a second that a simulator is asked for
+_FOLDER = Path(__file__).with_name("problems")
+
+
+@dataclass(frozen=True)
+class KnownEvent:
+    """An event of a problem: its time and the two sides of the jump.
+
+    Attributes
+    ----------
+    kind : EventKind
+    t, condition : float
+        Time [s], and its condition number.
+    before, after : ndarray, shape (6,)
+        States.
+    normal_force, friction_force : ndarray, shape (2,)
+        Forces of the ground on the body before and after [N].
+    """
+
+    kind: EventKind
+    t: float
+    condition: float
+    before: FloatArray
+    after: FloatArray
+    normal_force: FloatArray
+    friction_force: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Problem(FieldsOnly):
+    """A problem with its known answer.
+
+    Attributes
+    ----------
+    id, title, question : str
+    needs : tuple of str
+        Abilities that a simulator needs: "flight", "non-round", "restitution", "slope", "spin",
+        "stiction".
+    scored : bool
+        False for a problem that is only shown.
+    scene : Scene
+        Body, ground and start.
+    t_end, horizon : float
+        End, and time before which states are scored [s]: from the horizon on an error of 0.1 % of
+        the inputs is an error of the state as large as the motion.
+    answer : dict
+        The answer in words: whether the body passes over its tip (``"over"``), its events in order
+        (``"events"``), or the laws of impact that it may follow (``"law"``).
+    scales : ndarray, shape (6,)
+        Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
+    times, condition, normal_force, friction_force : ndarray, shape (n,)
+        Given times [s]; their condition numbers, and the forces on the body [N].
+    states : ndarray, shape (n, 6)
+        States at the given times.
+    events : tuple of KnownEvent
+    laws : dict of ndarray, shape (n, 6)
+        States at the given times by other laws of restitution.
+    """
+
+    id: str
+    title: str
+    question: str
+    needs: tuple[str, ...]
+    scored: bool
+    scene: Scene
+    t_end: float
+    horizon: float
+    answer: dict[str, Any]
+    scales: FloatArray
+    times: FloatArray
+    states: FloatArray
+    normal_force: FloatArray
+    friction_force: FloatArray
+    condition: FloatArray
+    events: tuple[KnownEvent, ...]
+    laws: dict[str, FloatArray]
+
+    def __repr__(self) -> str:
+        return f"<Problem {self.id}: {self.question}>"
+
+    @property
+    def output_times(self) -> FloatArray:
+        """Times at which a simulator is asked for states [s]: every 0.01 s to the end."""
+        return np.arange(round(self.t_end * OUTPUT_RATE) + 1) / OUTPUT_RATE
+
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """The exact motion at the output times."""
+        return simulate(self.scene, self.output_times)
+
+    def exact(self, t: Any) -> FloatArray:
+        """Return the exact states at times.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (n,)
+            Times from 0 to `t_end` [s]. At the time of an event: just after it.
+
+        Returns
+        -------
+        ndarray, shape (6,) or (n, 6)
+        """
+        found = self.trajectory.sol(np.atleast_1d(array("t", t)))
+        states = np.stack([getattr(found, name) for name in STATE], axis=1)
+        return states if np.ndim(t) else states[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Gradient:
+    """The known derivative of a state with respect to one argument of the scene.
+
+    The other arguments stay as they are typed: on the ground, z, x_dot and z_dot follow rolling.
+
+    Attributes
+    ----------
+    problem, wrt : str
+        Id of the problem, and name of the argument.
+    t : float
+        Time of the state [s].
+    value : ndarray, shape (6,)
+        Derivatives of x, z, theta, x_dot, z_dot, omega.
+    """
+
+    problem: str
+    wrt: str
+    t: float
+    value: FloatArray
+
+
+@cache
+def _read() -> dict[str, dict[str, Any]]:
+    found = [
+        json.loads(path.read_text(encoding="utf-8")) for path in sorted(_FOLDER.glob("*.json"))
+    ]
+    return {one["id"]: one for one in found}
+
+
+@cache
+def _made(name: str) -> Problem:
+    data = _read()[name]
+    rows = np.array(data["states"])
+    given: dict[str, Any] = data["scene"]
+    laws = {law: np.array(states)[:, 1:7] for law, states in data.get("laws", {}).items()}
+    return Problem(
+        **{key: data[key] for key in ("id", "title", "question", "scored", "answer")},
+        needs=tuple(data["needs"]), scene=Scene(**given),
+        t_end=float(data["t_end"]), horizon=float(data["horizon"]),
+        scales=np.array(data["scales"], dtype=float), times=rows[:, 0], states=rows[:, 1:7],
+        normal_force=rows[:, 7], friction_force=rows[:, 8], condition=np.array(data["condition"]),
+        events=tuple(_event(one) for one in data["events"]), laws=laws,
+    )  # fmt: skip
+
+
+def _event(data: dict[str, Any]) -> KnownEvent:
+    sides = np.array([data["before"], data["after"]], dtype=float)
+    known = EventKind[data["kind"]], float(data["t"]), float(data["condition"])
+    return KnownEvent(*known, sides[0, :6], sides[1, :6], sides[:, 6], sides[:, 7])
+
+
+def problem(id: str) -> Problem:
+    """Return a problem by its id.
+
+    Raises
+    ------
+    ValueError
+        If there is no such problem; the message lists all.
+    """
+    return _made(choice("id", id, tuple(_read())))
+
+
+def problems(tags: Iterable[str] | None = None) -> list[Problem]:
+    """Return the scored problems.
+
+    Parameters
+    ----------
+    tags : iterable of str, optional
+        Abilities of a simulator; problems that need others are left out. Default: all.
+
+    Raises
+    ------
+    ValueError
+        If there is no such tag.
+    """
+    able = NEEDS if tags is None else [choice("tags", tag, NEEDS) for tag in tags]
+    found = [problem(name) for name in _read()]
+    return [one for one in found if one.scored and set(one.needs) <= set(able)]
+
+
+def gradients() -> list[Gradient]:
+    """Return the known derivatives."""
+    return [
+        Gradient(name, row["wrt"], float(row["t"]), np.array(row["value"], dtype=float))
+        for name, data in _read().items()
+        for row in data.get("gradients", [])
+    ]
