@@ -10,6 +10,12 @@ z, theta, x_dot, z_dot, omega.
 >>> benchmark.problem("slide.stick").question
 """
 
+from ._export import export
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
+from ._result import Result
+from ._score import Score, Scores, run, score
 
-__all__ = ["Gradient", "KnownEvent", "Problem", "gradients", "problem", "problems"]
+__all__ = [
+    "Gradient", "KnownEvent", "Problem", "Result", "Score", "Scores", "export", "gradients",
+    "problem", "problems", "run", "score",
+]  # fmt: skip

@@ -23,7 +23,7 @@ STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
 NEEDS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
 OUTPUT_RATE = 100  # states a second that a simulator is asked for
-_FOLDER = Path(__file__).with_name("problems")
+FOLDER = Path(__file__).with_name("problems")
 
 
 @dataclass(frozen=True)
@@ -153,9 +153,7 @@ class Gradient:
 
 @cache
 def _read() -> dict[str, dict[str, Any]]:
-    found = [
-        json.loads(path.read_text(encoding="utf-8")) for path in sorted(_FOLDER.glob("*.json"))
-    ]
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(FOLDER.glob("*.json"))]
     return {one["id"]: one for one in found}
 
 

@@ -1,0 +1,66 @@
+"""Events read off the states of a motion by one rule, for simulators that report none.
+
+With L = max(a, b), a row flies where the gap is above L/500, slips where it does not fly and the
+slip is above sqrt(g L)/100 in size, and rolls otherwise. Rows of one kind form a run; a push of the
+centre by more than sqrt(g L)/10 between two rows, while the gap turns from closing to opening,
+divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10 belong to the run before.
+Two runs are joined by an IMPACT where the first one flies: at the time at which the free flight
+from its last row touches the ground. All other events are at the first row of the second run:
+LIFT_OFF if it flies, STICK if it rolls, SLIP if the first one rolls, REVERSE if both slip.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from .._ask.check import FloatArray
+from ..geometry import support, support_slope
+from ._problem import Problem
+
+_LEAST_GAP, _LEAST_SLIP, _LEAST_PUSH, _SHORTEST = 0.002, 0.01, 0.1, 0.1
+_ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 slip
+
+
+def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[str, float]]:
+    """Return the kinds and times of the events in rows of states."""
+    scene, length, speed = problem.scene, float(problem.scales[0]), float(problem.scales[3])
+    _, z, theta, x_dot, z_dot, omega = states.T
+    height = support(theta, a=scene.a, b=scene.b)
+    slip = x_dot - height * omega
+    opening = z_dot - support_slope(theta, a=scene.a, b=scene.b) * omega
+    slips = np.where(np.abs(slip) > _LEAST_SLIP * speed, np.sign(slip), _ROLLS)
+    kinds = np.where(z - height > _LEAST_GAP * length, _FLIES, slips).astype(int)
+    pull = scene.gravity * math.cos(scene.slope)
+    pushed = np.diff(z_dot) + pull * np.diff(t) > _LEAST_PUSH * speed
+    divided = (np.diff(kinds) != 0) | (pushed & (opening[:-1] < 0) & (opening[1:] > 0))
+    starts = [*(np.nonzero(divided)[0] + 1), len(t)]
+    shortest = _SHORTEST * math.sqrt(length / scene.gravity)
+    found: list[tuple[str, float]] = []
+    before = kinds[0]
+    rebounds = False  # whether the body flies on after an impact and a run too short to count
+    for start, end in pairwise(starts):
+        kind = kinds[start]
+        if before == _FLIES and not rebounds:
+            found.append(("IMPACT", _touch(problem, t[start - 1], states[start - 1])))
+        if kind != _FLIES and end < len(t) and t[end] - t[start] < shortest:
+            rebounds = before == _FLIES
+            continue
+        if before != _FLIES and kind == _FLIES:
+            found.append(("LIFT_OFF", float(t[start])))
+        elif before != _FLIES and kind != before:
+            change = "STICK" if kind == _ROLLS else "SLIP" if before == _ROLLS else "REVERSE"
+            found.append((change, float(t[start])))
+        before, rebounds = kind, False
+    return found
+
+
+def _touch(problem: Problem, t: float, state: FloatArray) -> float:
+    """Return the time at which a free flight from a state close to the ground touches it."""
+    scene = problem.scene
+    since = np.linspace(0.0, _SHORTEST * math.sqrt(problem.scales[0] / scene.gravity), 2001)
+    height = state[1] + (state[4] - scene.gravity * math.cos(scene.slope) * since / 2) * since
+    gap = height - support(state[2] + state[5] * since, a=scene.a, b=scene.b)
+    return float(t + since[np.argmax(gap <= 0)])

@@ -1,0 +1,144 @@
+"""Results of a simulator: checked arrays, and files of numbers that any program can write."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, array, choice
+from .._core import EventKind
+from ._problem import COLUMNS, STATE, Problem
+
+SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}
+_KINDS = tuple(kind.name for kind in EventKind)
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A simulator's answer to a problem.
+
+    Attributes
+    ----------
+    states : array_like, shape (n, 6)
+        x, z, theta, x_dot, z_dot, omega. A row that is not finite counts as missing.
+    t : array_like, shape (n,), optional
+        Increasing times [s]; default: the times asked for.
+    events : iterable of (kind, t), optional
+        Events in order of time, kinds as names of `EventKind`.
+    normal_force, friction_force : array_like, shape (n,), optional
+        Forces of the ground on the body [N].
+    note : str
+        A word on the result, for tables.
+    """
+
+    states: Any
+    t: Any = None
+    events: Any = None
+    normal_force: Any = None
+    friction_force: Any = None
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """The rows of a result that can be scored, and what is wrong with the others."""
+
+    t: FloatArray
+    states: FloatArray
+    events: tuple[tuple[str, float], ...] | None
+    missing: str = ""
+    note: str = ""
+
+
+def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
+    """Return the usable rows of a result.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If its arrays are no numbers, have wrong shapes, times do not increase, or an event has no
+        such kind. The message names the problem and the argument.
+    """
+    result = found if isinstance(found, Result) else Result(found)
+    states = array(f"{problem.id}: states", result.states)
+    if states.ndim != 2 or states.shape[1] != len(STATE):
+        columns = ", ".join(STATE)
+        raise ValueError(
+            f"{problem.id}: states must have shape (n, 6) for {columns}, got {states.shape}"
+        )
+    t = times if result.t is None else array(f"{problem.id}: t", result.t)
+    if t.shape != states.shape[:1]:
+        if result.t is not None or len(states) > len(t):
+            raise ValueError(
+                f"{problem.id}: t must have one time a row of states, "
+                f"got shapes {t.shape} and {states.shape}"
+            )
+        t = t[: len(states)]  # a simulation that ended early
+    if not (np.diff(t) > 0).all():
+        raise ValueError(f"{problem.id}: t must increase from row to row")
+    usable = np.isfinite(states).all(axis=1) & np.isfinite(t)
+    given = np.isin(problem.times.round(9), t[usable].round(9))
+    missing = "" if given.all() else f"{(~given).sum()} of {given.size} given times are missing"
+    return Checked(t[usable], states[usable], _events(problem, result.events), missing, result.note)
+
+
+def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | None:
+    if events is None:
+        return None
+    found = [
+        (choice(f"{problem.id}: kind of an event", getattr(kind, "name", kind), _KINDS), float(t))
+        for kind, t in events
+    ]
+    return tuple(sorted(found, key=lambda event: event[1]))
+
+
+def read(problem: Problem, path: Path) -> Result:
+    """Read a result from a file of comma-separated columns, with their names in the first row.
+
+    Rows without a time are left out. Two rows at one time are the sides of a jump: the second is
+    kept. Columns beyond those known are left out, too.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing, or an entry is no number; the message names problem and column.
+    """
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        rows = [row for row in csv.reader(file) if any(entry.strip() for entry in row)]
+    names = [SYNONYMS.get(name.strip(), name.strip()) for name in (rows[0] if rows else [])]
+    for name in COLUMNS[:7]:
+        if name not in names:
+            raise ValueError(f"{problem.id}: the file must have a column {name}, got {names}")
+    columns = {
+        name: np.array([_entry(problem, name, row, names.index(name)) for row in rows[1:]])
+        for name in COLUMNS
+        if name in names
+    }
+    t = columns["t"]
+    kept = np.append(t[:-1] != t[1:], True) & np.isfinite(t) if t.size else np.zeros(0, bool)
+    forces = {name: columns[name][kept] for name in COLUMNS[7:] if name in columns}
+    states = np.stack([columns[name][kept] for name in STATE], axis=1)
+    return Result(states, t[kept], _read_events(problem, path), **forces)
+
+
+def _entry(problem: Problem, name: str, row: list[str], place: int) -> float:
+    text = row[place].strip() if place < len(row) else ""
+    try:
+        return float(text) if text else np.nan
+    except ValueError:
+        raise ValueError(f"{problem.id}: {name} must be a number, got {text!r}") from None
+
+
+def _read_events(problem: Problem, path: Path) -> Iterable[tuple[str, float]] | None:
+    """Read the events in `<id>.events.csv` with the columns kind, t, where there is such a file."""
+    beside = path.with_name(f"{problem.id}.events.csv")
+    if not beside.exists():
+        return None
+    with beside.open(newline="", encoding="utf-8-sig") as file:
+        rows = [row for row in csv.reader(file) if row][1:]
+    return [(row[0].strip().upper(), _entry(problem, "t", row, 1)) for row in rows]

@@ -1,0 +1,340 @@
+"""Scores of a simulator on the problems with known answers."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, file_name, positive
+from .._ask.printing import html_table, text_table
+from .._core import Mode
+from .._motion.events import energies
+from ..geometry import support
+from ._events import read_off
+from ._problem import STATE, Problem, problem
+from ._problem import problems as all_problems
+from ._result import Checked, checked, read
+
+TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
+RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
+_HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """The score of one problem at one setting.
+
+    Attributes
+    ----------
+    problem : str
+        Id.
+    setting : float or None
+        Setting of the ladder.
+    answer : str
+        "right", "wrong", "not supported" or "failed".
+    passed : bool
+        Whether the answer is right, no given time is missing and `over_condition` is at most the
+        tolerance.
+    reason : str
+        Why an answer is not right, or rows are missing.
+    errors : ndarray, shape (6,)
+        Largest error of each variable over its scale, at the given times before the horizon.
+    error, over_condition : float
+        Largest error, and largest error over condition number.
+    events : dict
+        ``"missed"`` and ``"invented"`` count events by kind; ``"times"`` has the largest error of
+        time by kind [s].
+    energy_gained, energy_lost : float
+        Largest excess and lack of energy against the exact motion, over m g L.
+    penetration, hop, slip : float
+        Deepest overlap with the ground; largest distance from it while the exact body touches it;
+        both over L. Largest slip while the exact body rolls, over sqrt(g L).
+    """
+
+    problem: str
+    setting: float | None
+    answer: str
+    passed: bool = False
+    reason: str = ""
+    errors: FloatArray = field(default_factory=lambda: np.full(6, math.nan))
+    over_condition: float = math.nan
+    events: dict[str, dict[str, Any]] = field(default_factory=dict)
+    energy_gained: float = math.nan
+    energy_lost: float = math.nan
+    penetration: float = math.nan
+    hop: float = math.nan
+    slip: float = math.nan
+
+    @property
+    def error(self) -> float:
+        return float(np.max(self.errors))
+
+    @property
+    def digits(self) -> float:
+        """Decimal digits that agree, 16 at most."""
+        return min(16.0, -math.log10(self.error)) if self.error > 0 else 16.0
+
+    def _row(self) -> tuple[str, ...]:
+        numbers = (f"{self.error:.1e}", f"{self.digits:.1f}", f"{self.over_condition:.1e}")
+        known = numbers if math.isfinite(self.error) else ("", "", "")
+        setting = "" if self.setting is None else f"{self.setting:g}"
+        passed = "yes" if self.passed else "no"
+        return (self.problem, setting, self.answer, *known, passed, self.reason)
+
+
+class Scores(tuple[Score, ...]):
+    """Scores in order; prints as a table."""
+
+    __slots__ = ()
+
+    @property
+    def wrong(self) -> list[str]:
+        """Ids of problems with a wrong answer or without any, at the last setting of each."""
+        last = {score.problem: score for score in self}
+        return [name for name, score in last.items() if score.answer in (WRONG, FAILED)]
+
+    def order(self, problem: str) -> tuple[float, str]:
+        """Return the fitted order of the error of a problem, and whether smaller settings help.
+
+        The order is the slope of log error over log setting, NaN for less than two settings. In
+        words: "yes", "plateau at <error>" or "worse".
+        """
+        rows = [s for s in self if s.problem == problem and s.setting and 0 < s.error < math.inf]
+        rows.sort(key=lambda score: -float(score.setting or 0))
+        if len(rows) < 2:
+            return math.nan, ""
+        errors = [score.error for score in rows]
+        slope = np.polyfit(np.log([float(s.setting or 1) for s in rows]), np.log(errors), 1)[0]
+        if errors[-1] > 1.1 * errors[0]:
+            return float(slope), "worse"
+        flat = errors[-1] > errors[-2] / 1.5
+        return float(slope), f"plateau at {errors[-1]:.1e}" if flat else "yes"
+
+    def verdict(self) -> str:
+        """Return three sentences: answers, accuracy, and the effect of the setting."""
+        last = list({score.problem: score for score in self}.values())
+        count = Counter(score.answer for score in last)
+        said = f"{count[RIGHT]} of {len(last)} answers are right"
+        if self.wrong:
+            said += f"; wrong: {', '.join(self.wrong)}"
+        if count[UNSUPPORTED]:
+            said += f"; not supported: {count[UNSUPPORTED]}"
+        known = [score for score in last if math.isfinite(score.error)]
+        if not known:
+            return f"{said}. No state can be compared."
+        worst = max(known, key=lambda score: score.over_condition)
+        passed = sum(score.passed for score in last)
+        exact = f"{passed} pass; the largest error over condition is {worst.over_condition:.1e}"
+        trends = Counter(self.order(score.problem)[1].split(" ")[0] for score in known)
+        trends.pop("", None)
+        words = {"yes": "better", "plateau": "no better", "worse": "worse"}
+        helped = ", ".join(f"{n} become {words[name]}" for name, n in trends.items())
+        ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
+        return f"{said}. {exact}, in {worst.problem}.{ladder}"
+
+    def to_dataframe(self) -> Any:
+        """Return the scores as a pandas DataFrame, a row each."""
+        import pandas
+
+        rows = []
+        for score in self:
+            row = {name: getattr(score, name) for name in Score.__dataclass_fields__}
+            errors, events = row.pop("errors"), row.pop("events")
+            row |= {f"error_{name}": float(e) for name, e in zip(STATE, errors, strict=True)}
+            row |= {"error": score.error, "digits": score.digits, **events}
+            rows.append(row)
+        return pandas.DataFrame(rows)
+
+    def __repr__(self) -> str:
+        return text_table([_HEAD, *(score._row() for score in self)]) + f"\n{self.verdict()}"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.verdict(), [score._row() for score in self], _HEAD)
+
+
+def run(
+    mine: Callable[[Problem, FloatArray, Any], Any],
+    *,
+    problems: Sequence[Problem] | None = None,
+    tags: Iterable[str] | None = None,
+    ladder: Iterable[float | None] = (None,),
+    tolerance: float = TOLERANCE,
+) -> Scores:
+    """Run a simulator on problems, and score it.
+
+    Parameters
+    ----------
+    mine : callable
+        ``mine(problem, times, setting)`` returns states of shape (n, 6) at the times, or a
+        `Result`. It raises NotImplementedError for a problem that it does not support.
+    problems : sequence of Problem, optional
+        Default: all that are scored.
+    tags : iterable of str, optional
+        Abilities of the simulator; problems that need others are "not supported".
+    ladder : iterable of float
+        Settings, such as steps [s], from coarse to fine.
+    tolerance : float
+        Largest error over condition number that passes.
+
+    Returns
+    -------
+    Scores
+
+    Raises
+    ------
+    ValueError
+        If a tag is unknown, or a result has a wrong shape; the message names the problem.
+    """
+    tolerance, settings = positive("tolerance", tolerance), list(ladder)
+    chosen = all_problems() if problems is None else list(problems)
+    able = {one.id for one in all_problems(tags)}
+    found = []
+    for one in chosen:
+        for setting in settings:
+            if tags is not None and one.id not in able:
+                found.append(Score(one.id, setting, UNSUPPORTED, reason="needs other abilities"))
+                continue
+            times = one.output_times
+            try:
+                result = mine(one, times, setting)
+            except NotImplementedError as error:
+                found.append(Score(one.id, setting, UNSUPPORTED, reason=str(error)))
+                continue
+            found.append(_scored(one, setting, checked(one, result, times), tolerance))
+    return Scores(found)
+
+
+def score(results: Mapping[str, Any] | Any, *, tolerance: float = TOLERANCE) -> Scores:
+    """Score results that are there already.
+
+    Parameters
+    ----------
+    results : mapping or path
+        Results by the ids of their problems, or the folder of their files ``<id>.csv``. A problem
+        without a result is "not supported".
+    tolerance : float
+        Largest error over condition number that passes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such problem or folder, or a result is not as it must be.
+    """
+    if not isinstance(results, Mapping):
+        folder = Path(file_name("results", results))
+        if not folder.is_dir():
+            raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
+        paths = {one: folder / f"{one.id}.csv" for one in all_problems()}
+        found = {one.id: read(one, path) for one, path in paths.items() if path.exists()}
+        # A table whose rows are all empty waits for its result
+        results = {name: one for name, one in found.items() if np.isfinite(one.states).any()}
+    known = {problem(name).id: result for name, result in results.items()}
+
+    def given(one: Problem, times: FloatArray, setting: Any) -> Any:
+        if one.id not in known:
+            raise NotImplementedError("no result")
+        return known[one.id]
+
+    return run(given, tolerance=tolerance)
+
+
+def _scored(one: Problem, setting: float | None, found: Checked, tolerance: float) -> Score:
+    if not found.t.size:
+        return Score(one.id, setting, FAILED, reason="no row is finite")
+    rows, places = np.nonzero(one.times[:, None].round(9) == found.t.round(9))
+    scored = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
+    rows, places = rows[scored], places[scored]
+    law, states = _nearest_law(one, rows, found.states[places])
+    difference = np.abs(found.states[places] - states) / one.scales
+    errors = difference.max(axis=0) if rows.size else np.full(6, math.nan)
+    over = (difference.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
+    right, why, events = _answer(one, found, law)
+    why = "; ".join(text for text in (why, found.missing, found.note) if text)
+    passed = right and not found.missing and bool(over <= tolerance)
+    answer = RIGHT if right else WRONG
+    kept = found.t <= one.t_end
+    return Score(
+        one.id, setting, answer, passed, why, errors, float(over), events,
+        **_losses(one, found.t[kept], found.states[kept]),
+    )  # fmt: skip
+
+
+def _nearest_law(one: Problem, rows: Any, states: FloatArray) -> tuple[str, FloatArray]:
+    """Return the law whose motion is nearest, with its factor, and its states."""
+    if not one.laws or not rows.size:
+        return "", one.states[rows]
+    motions = {"stronge": one.states, **one.laws}
+    away = {
+        law: float((np.abs(states - motion[rows]) / one.scales).max())
+        for law, motion in motions.items()
+    }
+    first, second = sorted(away, key=lambda law: away[law])[:2]
+    factor = away[second] / max(away[first], 1e-16)
+    return f"nearest to {first} by a factor of {factor:.3g}", motions[first][rows]
+
+
+def _answer(one: Problem, found: Checked, law: str) -> tuple[bool, str, dict[str, Any]]:
+    """Return whether the answer is right, why not, and the differences of the events."""
+    if "law" in one.answer:
+        return True, law, {}
+    if "over" in one.answer:
+        over = bool((np.abs(found.states[:, 2]) > math.pi / 2).any())
+        words = "passes over the tip" if over else "never passes over the tip"
+        return over == one.answer["over"], "" if over == one.answer["over"] else words, {}
+    expected = [(event.kind.name, event.t) for event in one.events]
+    mine = found.events
+    if mine is None:  # both motions are read by the same rule, whose error drops out
+        times = found.t[found.t <= one.t_end]
+        expected = read_off(one, times, one.exact(times))
+        mine = tuple(read_off(one, times, found.states[: times.size]))
+    kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in expected)
+    times_off: dict[str, float] = {}
+    for (kind, t), (other, exact) in zip(mine, expected, strict=False):
+        if kind == other:
+            times_off[kind] = max(times_off.get(kind, 0.0), abs(t - exact))
+    events: dict[str, dict[str, Any]] = {
+        "missed": dict(wanted - kinds), "invented": dict(kinds - wanted), "times": times_off,
+    }  # fmt: skip
+    right = [kind for kind, _ in mine] == [kind for kind, _ in expected]
+    why = [
+        f"{name} {', '.join(f'{n} {kind}' for kind, n in events[name].items())}"
+        for name in ("missed", "invented")
+        if events[name]
+    ]
+    return right, "" if right else "; ".join(why) or "events in another order", events
+
+
+def _losses(one: Problem, t: FloatArray, states: FloatArray) -> dict[str, float]:
+    """Return energies gained and lost, penetration, hop and slip of rows."""
+    scene, length = one.scene, float(one.scales[0])
+    exact = one.trajectory.sol(t)
+    mine = _Columns(**dict(zip(STATE, states.T, strict=True)))
+    change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / (
+        scene.mass * scene.gravity * length
+    )
+    height = support(states[:, 2], a=scene.a, b=scene.b)
+    gap, slip = (states[:, 1] - height) / length, np.abs(states[:, 3] - height * states[:, 5])
+    touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING
+    return {
+        "energy_gained": float(max(change.max(), 0.0)),
+        "energy_lost": float(max(-change.min(), 0.0)),
+        "penetration": float(max(-gap.min(), 0.0)),
+        "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
+        "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
+    }
+
+
+@dataclass(frozen=True)
+class _Columns:
+    x: FloatArray
+    z: FloatArray
+    theta: FloatArray
+    x_dot: FloatArray
+    z_dot: FloatArray
+    omega: FloatArray

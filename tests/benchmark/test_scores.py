@@ -1,0 +1,204 @@
+"""Scores of the exact motion, of broken simulators and of files, and refused results."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rolling_ellipse import benchmark, simulate
+from rolling_ellipse.benchmark._events import read_off
+from rolling_ellipse.benchmark._problem import STATE
+
+IDS = [one.id for one in benchmark.problems()]
+# A simulator fails if its error is above a millionth of the condition number. The changes below are
+# 1e-3 at least of one input, whose share of the condition number is above a thousandth.
+TOLERANCE = 1e-6
+WITH_SLIP = {
+    "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which", "leave.slip_then_lift",
+    "slide.reverse", "slide.slope", "slide.stick",
+}  # fmt: skip
+
+
+def motion(scene: Any, t: Any) -> Any:
+    found = simulate(scene, t)
+    return np.stack([getattr(found, name) for name in STATE], axis=1)
+
+
+def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
+    """A simulator that solves another scene, whose changes are functions of the scene."""
+
+    def mine(one: Any, t: Any, setting: Any) -> Any:
+        given = {name: change(one.scene) for name, change in changes.items()}
+        return motion(one.scene.replace(**given), t)
+
+    return mine
+
+
+def mirrored(one: Any, t: Any, setting: Any) -> Any:
+    return one.exact(t) * [1, 1, -1, 1, 1, -1]
+
+
+def late(one: Any, t: Any, setting: Any) -> Any:
+    return one.exact(np.maximum(t - 0.005, 0))
+
+
+def gaining(one: Any, t: Any, setting: Any) -> Any:
+    growth = 1 + 5e-4 * t[:, None]  # of speeds: 0.1 % of kinetic energy a second
+    return np.hstack([one.exact(t)[:, :3], one.exact(t)[:, 3:] * growth])
+
+
+BROKEN = {
+    "theta counted the other way": (mirrored, {*IDS} - {"rest.lie", "hit.bounce_flat"}),
+    "inertia of a ring": (
+        changed(inertia=lambda scene: 2 * scene.inertia),
+        {*IDS} - {"rest.lie", "hit.bounce_flat", "roll.circle"},
+    ),
+    "friction 1 % too large": (changed(friction=lambda scene: 1.01 * scene.friction), WITH_SLIP),
+    "restitution ignored": (
+        changed(restitution=lambda scene: 0.0),
+        {"hit.bounce", "hit.bounce_flat", "hit.drop_slip_e", "hit.settle", "law.which"},
+    ),
+    "g = 9.8": (changed(gravity=lambda scene: 9.8), {*IDS} - {"rest.lie", "roll.circle"}),
+    "states half a step late": (late, {*IDS} - {"rest.lie"}),
+    "energy grows by 0.1 % a second": (gaining, {*IDS} - {"rest.lie"}),
+}
+
+
+def exact(one: Any, t: Any, setting: Any = None) -> Any:
+    return one.exact(t)
+
+
+def test_the_exact_motion_is_perfect() -> None:
+    """Twelve digits at least; an error of 2.2e-16 of all inputs is the condition number times it.
+
+    Two such units are allowed for the rounding of the motion and of the known answer.
+    """
+    found = benchmark.run(exact)
+    assert [score.problem for score in found] == IDS and len(IDS) == 18
+    for score in found:
+        assert score.passed and score.answer == "right" and score.digits > 12, score.problem
+        assert score.over_condition < 4.4e-16, score.problem
+        assert max(score.energy_gained, score.energy_lost, score.penetration, score.hop) < 1e-12
+    assert found.wrong == [] and "18 of 18 answers are right. 18 pass" in found.verdict()
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
+    mine, expected = BROKEN[name]
+    found = benchmark.run(mine, tolerance=TOLERANCE)
+    assert {score.problem for score in found if not score.passed} == expected
+
+
+def test_events_are_read_off_the_states() -> None:
+    """Times to two rows; kinds that neither a short contact nor a slow start of slip blurs."""
+    for name in ("hit.bounce_flat", "hit.drop_slip", "hit.drop_stick", "leave.slip_then_lift"):
+        one = benchmark.problem(name)
+        read = read_off(one, one.output_times, one.exact(one.output_times))
+        assert [kind for kind, _ in read] == [event.kind.name for event in one.events], name
+        for (kind, t), event in zip(read, one.events, strict=True):
+            if kind == "IMPACT":
+                assert abs(t - event.t) < 0.02, name
+
+
+def test_own_events_are_compared_with_the_exact_ones() -> None:
+    one = benchmark.problem("leave.slip_then_lift")
+    events = [(event.kind, event.t + 1e-4) for event in one.events]
+
+    def scored(events: Any) -> benchmark.Score:
+        result = benchmark.Result(one.exact(one.output_times), events=events)
+        return benchmark.score({one.id: result})[IDS.index(one.id)]
+
+    assert scored(events).answer == "right"
+    assert scored(events).events["times"]["IMPACT"] == pytest.approx(1e-4)
+    lost = scored(events[:-1])
+    assert lost.answer == "wrong" and lost.events["missed"] == {"IMPACT": 1}
+    more = scored([*events, ("JAM", 1.4)])
+    assert more.answer == "wrong" and more.events["invented"] == {"JAM": 1}
+
+
+def test_a_ladder_has_an_order_and_a_trend() -> None:
+    def second_order(one: Any, t: Any, h: float) -> Any:
+        return one.exact(t) + h**2
+
+    def stuck(one: Any, t: Any, h: float) -> Any:
+        return one.exact(t) + 1e-3
+
+    chosen = [benchmark.problem("roll.rock")]
+    found = benchmark.run(second_order, problems=chosen, ladder=[1e-2, 5e-3, 1e-3])
+    order, trend = found.order("roll.rock")
+    assert order == pytest.approx(2, abs=1e-6) and trend == "yes"
+    assert "1 become better" in found.verdict()
+    found = benchmark.run(stuck, problems=chosen, ladder=[1e-2, 1e-3])
+    assert found.order("roll.rock")[1].startswith("plateau at")
+
+
+def test_what_is_not_supported_is_not_wrong() -> None:
+    def rolls_only(one: Any, t: Any, setting: Any) -> Any:
+        if "flight" in one.needs:
+            raise NotImplementedError("bodies stay on the ground")
+        return one.exact(t)
+
+    found = benchmark.run(rolls_only)
+    assert found.wrong == [] and not found[IDS.index("hit.bounce")].passed
+    assert "not supported: 8" in found.verdict()
+    tagged = benchmark.run(exact, tags=["non-round", "stiction"])
+    assert {s.problem for s in tagged if s.answer == "right"} == {
+        one.id for one in benchmark.problems(["stiction", "non-round"])
+    }
+
+
+def test_files_written_and_scored(tmp_path: Path) -> None:
+    """The exact answers are perfect, written with synonyms by 17 digits; missing ones are said."""
+    benchmark.export(tmp_path)
+    assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
+    for one in benchmark.problems():
+        t = one.output_times[: 51 if one.id == "roll.rock" else None]
+        rows = np.column_stack([t, one.exact(t)])
+        header = "t,x,z,theta,vx,vz,omega"
+        np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
+    benchmark.export(tmp_path)  # leaves the results
+    found = benchmark.score(tmp_path)
+    assert all(score.answer == "right" for score in found)
+    assert [score.problem for score in found if not score.passed] == ["roll.rock"]
+    assert found[IDS.index("roll.rock")].reason == "39 of 41 given times are missing"
+    assert len(found.to_dataframe()) == 18
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda s, t: s[:, :5], r"slide.stick: states must have shape \(n, 6\)"),
+        (lambda s, t: benchmark.Result(s, t=t[1:]), "slide.stick: t must have one time a row"),
+        (lambda s, t: benchmark.Result(s, t=t[::-1]), "slide.stick: t must increase"),
+        (lambda s, t: benchmark.Result(s, events=[("HOP", 1.0)]), "kind of an event must be one"),
+    ],
+)
+def test_results_of_wrong_shape_are_refused_by_name(change: Any, message: str) -> None:
+    one = benchmark.problem("slide.stick")
+    result = change(one.exact(one.output_times), one.output_times)
+    with pytest.raises(ValueError, match=message):
+        benchmark.score({one.id: result})
+
+
+def test_rows_that_are_not_finite_are_missing() -> None:
+    one = benchmark.problem("slide.stick")
+    states = one.exact(one.output_times)
+    states[100:] = math.nan
+    found = benchmark.score({one.id: states})[IDS.index(one.id)]
+    assert "given times are missing" in found.reason and not found.passed
+    nothing = benchmark.score({one.id: states * math.nan})[IDS.index(one.id)]
+    assert nothing.answer == "failed" and nothing.reason == "no row is finite"
+
+
+def test_unknown_names_list_the_valid_ones(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"id must be one of 'brink\.back'"):
+        benchmark.problem("slide")
+    with pytest.raises(ValueError, match="tags must be one of 'flight'"):
+        benchmark.problems(["gpu"])
+    with pytest.raises(ValueError, match="results must be an existing folder"):
+        benchmark.score(tmp_path / "nowhere")
+    (tmp_path / "roll.rock.csv").write_text("t,x\n0,0\n")
+    with pytest.raises(ValueError, match=r"roll\.rock: the file must have a column z"):
+        benchmark.score(tmp_path)
