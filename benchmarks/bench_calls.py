@@ -1,30 +1,36 @@
-"""Cost of single calls: the least of many interleaved rounds, and its ratio to the first line.
+"""Cost of calls, of exact rolling and of steps of integration, in tables of ratios.
 
-    python benchmarks/bench_calls.py [--rounds 50]
+    python benchmarks/bench_calls.py [--rounds 20] [--only flow]
 
-The core's share has its own line; the difference to the whole call is Python's share. Imports of
-the package and of NumPy are timed in new interpreters.
+Each case is timed once in each of many rounds, one after the other, and the least time is kept.
+Machines and their load differ: compare ratios (to the first line of a table) of one run. The core's
+share of a call has its own line; the difference to the whole call is Python's share. Imports of the
+package and of NumPy are timed in new interpreters. bench_peers.py measures the cost of accuracy.
 """
 
 import subprocess
 import sys
+from functools import partial
+from typing import Any
 
 import numpy as np
-from common import Case, print_tables, rounds_asked, seconds
-from rolling_ellipse import Scene, _core, certify, simulate, thresholds
+from common import Case, end_time, options, print_machine, print_tables, seconds
+from rolling_ellipse import Scene, _core, certify, flow, simulate, thresholds
 from rolling_ellipse._ask.settings import DEFAULTS
 
 IMPORTS = ("numpy", "rolling_ellipse")
 IMPORT_ROUNDS = 10
-EVENTS = 10
 
+# ---------------------------------------------------------------------------- single calls
+
+EVENTS = 10
 ROLLING = Scene(2.0, 1.0, omega=3.2)
 BOUNCING = Scene(2.0, 1.0, theta=0.5, z=3.0, friction=0.3, restitution=0.7)
 DOWNHILL = BOUNCING.replace(slope=0.1)
 END = 5.0
 
 
-def cases() -> dict[str, Case]:
+def calls() -> dict[str, Case]:
     found = {
         "Scene": Case(lambda: Scene(2.0, 1.0, omega=3.2)),
         "certify": Case(lambda: certify(ROLLING)),
@@ -43,15 +49,120 @@ def cases() -> dict[str, Case]:
         solution = _core.simulate(core, settings, end)
         sample = solution.sample_rolling if scene is ROLLING else solution.sample_contact
         found |= {
-            f"simulate, {kind}, 1 sample": Case(lambda s=scene, t=[end]: simulate(s, t)),
-            f"simulate, {kind}, 1000 samples": Case(lambda s=scene, t=many: simulate(s, t)),
-            f"simulate, {kind}, the core": Case(
-                lambda c=core, t=end: _core.simulate(c, settings, t)
-            ),
-            f"1 sample, {kind}, the core": Case(lambda f=sample, t=one: f(t)),
-            f"1000 samples, {kind}, the core": Case(lambda f=sample, t=many: f(t)),
+            f"simulate, {kind}, 1 sample": Case(partial(simulate, scene, [end])),
+            f"simulate, {kind}, 1000 samples": Case(partial(simulate, scene, many)),
+            f"simulate, {kind}, the core": Case(partial(_core.simulate, core, settings, end)),
+            f"1 sample, {kind}, the core": Case(partial(sample, one)),
+            f"1000 samples, {kind}, the core": Case(partial(sample, many)),
         }
     return found
+
+
+# ---------------------------------------------------------------------------- exact rolling
+
+STATES = 2000  # motions in one timing of a set-up through arrays
+SAMPLES = 1_000_000
+HALF_TURNS = 1.37
+R = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
+
+
+def starts() -> dict[str, dict[str, Any]]:
+    """The start of every case."""
+    speed = thresholds(2.0, 1.0).roll_over_speed
+    return {
+        "R: ordinary rotation": R,
+        "L: ordinary libration": R | {"omega": 1.0},
+        "circle": R | {"b": 2.0},
+        "thin, b/a = 1e-3": R | {"b": 2e-3},
+        "separatrix + 1e-12": R | {"theta": 0.0, "omega": speed * (1 + 1e-12)},
+        "separatrix - 1e-12": R | {"theta": 0.0, "omega": speed * (1 - 1e-12)},
+        "R after 1e9 half turns": R,
+    }
+
+
+def among_many(start: dict[str, Any], t: float) -> Case:
+    """End states of motions whose omega differs in the last digits, so that each is set up anew."""
+    omega = start["omega"] * (1 + np.arange(STATES) * 2.0**-50)
+    columns = {name: np.full(STATES, value) for name, value in start.items()} | {"omega": omega}
+    return Case(partial(flow, np.full(STATES, t), **columns), STATES)
+
+
+def samples(half_turns: float) -> Case:
+    """A million samples of one motion."""
+    times = np.linspace(0, end_time(Scene(**R), half_turns), SAMPLES)
+    return Case(partial(flow, times, **R), SAMPLES)
+
+
+def flows() -> dict[str, dict[str, Case]]:
+    one, many = {}, {}
+    for name, start in starts().items():
+        turns = HALF_TURNS + 1e9 * ("1e9" in name)
+        t = end_time(Scene(**start), turns)
+        one[name] = Case(partial(flow, t, **start))
+        # near a singular start a relative change of omega by 1e-12 is no longer small
+        if "separatrix" not in name:
+            many[name] = among_many(start, t)
+    source, target = np.ones((3, SAMPLES)), np.zeros((3, SAMPLES))
+    of_many = {
+        "R: 1e6 samples of 100 half turns": samples(100),
+        "R: 1e6 samples of 1 half turn": samples(1),
+        # lower bound for every method
+        "np.copyto of 3 doubles": Case(partial(np.copyto, target, source), SAMPLES),
+    }
+    return {
+        f"flow: end state by a scalar call (set-up and one sample), {HALF_TURNS} half turns": one,
+        f"flow: end state among {STATES} motions (set-up and one sample each)": many,
+        "flow: one sample of many": of_many,
+    }
+
+
+# ---------------------------------------------------------------------------- steps
+
+ROCKING = Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=1.0)
+TURNING = Scene(2.0, 1.0, theta=0.2, omega=3.2)
+HALF_SWINGS = 400.37  # span so long that the start of a call costs next to nothing
+STEPS = 4000  # a call takes milliseconds: its start and its one sample cost a hundredth of it
+STEP = 2.0**-8  # fixed step [s]; 422 steps in half a turn
+EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
+METHODS = {"rk4": EXPLICIT, "dopri5": EXPLICIT, "dop853": EXPLICIT, "radau": ("ggl",)}
+PAIR = {"rtol": 1e-8, "atol": 1e-10}
+HOW: dict[str, dict[str, Any]] = {
+    "dop853": {"method": "dop853", **PAIR},
+    "dop853, fixed step": {"method": "dop853", "step": 1 / 16},
+    "dopri5": {"method": "dopri5", **PAIR},
+    "rk4": {"method": "rk4", "step": 1 / 64},
+    "radau": {"method": "radau", "step": 1 / 64},
+    **{f"gauss, {s} stages": {"method": "gauss", "step": 1 / 32, "stages": s} for s in (2, 3, 4)},
+}
+
+
+def steps() -> dict[str, dict[str, Case]]:
+    """A table for each cost of rolling, and one for each method in five coordinates."""
+    theta, omega = np.random.default_rng(0).uniform(-1, 1, (2, SAMPLES))
+    equation = partial(_core.rolling_equation, ROCKING.core, theta, omega)
+    evaluation, step = {"equation and Jacobian, 1e6 states": Case(equation, SAMPLES)}, {}
+    for name, how in HOW.items():
+        call = partial(simulate, ROCKING, [end_time(ROCKING, HALF_SWINGS)], model="rolling", **how)
+        stats = call().stats
+        evaluation[name] = Case(call, stats["evaluations"])
+        step[name] = Case(call, stats["steps"])
+    tables = {"steps: one evaluation, model 'rolling'": evaluation,
+              "steps: one step, model 'rolling'": step}  # fmt: skip
+    for method, stabilizations in METHODS.items():
+        ways = {"rolling": {"model": "rolling"}} | {
+            f"multipliers, {name}": {"model": "multipliers", "stabilization": name}
+            for name in stabilizations
+        }
+        tables[f"steps: one step of {method!r}"] = {
+            name: Case(
+                partial(simulate, TURNING, [STEPS * STEP], method=method, step=STEP, **how), STEPS
+            )
+            for name, how in ways.items()
+        }
+    return tables
+
+
+# ---------------------------------------------------------------------------- the run
 
 
 def import_seconds(module: str) -> float:
@@ -60,7 +171,12 @@ def import_seconds(module: str) -> float:
 
 
 def main() -> None:
-    print_tables({"Single calls": cases()}, rounds_asked(__doc__, 50))
+    asked = options(__doc__)
+    asked.add_argument("--only", default="", help="tables with this word in their titles")
+    chosen = asked.parse_args()
+    print_machine(chosen.rounds)
+    tables = {"calls: single": calls(), **flows(), **steps()}
+    print_tables({t: cases for t, cases in tables.items() if chosen.only in t}, chosen.rounds)
     imports = {name: min(map(import_seconds, [name] * IMPORT_ROUNDS)) for name in IMPORTS}
     print()
     for name, found in imports.items():

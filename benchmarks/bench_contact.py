@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
-from common import interleaved, rounds_asked
+from common import interleaved, options, print_machine
 from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -270,7 +270,8 @@ def compare(scene: Scene, t_end: float, rounds: int) -> None:
 
 
 def main() -> None:
-    rounds = rounds_asked(__doc__)
+    rounds = options(__doc__).parse_args().rounds
+    print_machine(rounds)
     for title, (scene, t_end) in SCENES.items():
         print(f"\n{title}; {len(simulate(scene, t_end).events)} events in {t_end} s")
         print(f"{'[us]':44}call    median     ratio   steps  evaluations   event times   end state")

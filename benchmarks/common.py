@@ -41,17 +41,20 @@ def machine() -> dict[str, str]:
     }
 
 
-def rounds_asked(about: str | None, default: int = 20) -> int:
-    """Read the number of rounds from the command line, and print the facts of the machine."""
-    options = argparse.ArgumentParser(description=about)
+def options(about: str | None, default: int = 20) -> argparse.ArgumentParser:
+    """The command line of a benchmark, with its number of rounds."""
+    found = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     least = f"at least {default} for figures to keep"
-    options.add_argument("--rounds", type=int, default=default, help=least)
-    rounds: int = options.parse_args().rounds
+    found.add_argument("--rounds", type=int, default=default, help=least)
+    return found
+
+
+def print_machine(rounds: int) -> None:
+    """Print the facts of the machine."""
     facts = machine()
     print(f"{facts['processor']}, {facts['cores']} cores, {facts['system']}")
     versions = ", ".join(f"{name} {facts[name]}" for name in ("rolling_ellipse", "numpy", "python"))
     print(f"{versions}; {rounds} rounds")
-    return rounds
 
 
 def end_time(scene: Scene, half_turns: float) -> float:

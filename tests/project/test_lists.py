@@ -54,7 +54,7 @@ KINDS = {
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
          "src/integrator/runge_kutta.hpp", "tests/integrator/test_tableaus.py",
          "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
-         "benchmarks/bench_integrators.py"),
+         "benchmarks/bench_calls.py"),
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",)),
