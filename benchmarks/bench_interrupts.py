@@ -6,7 +6,9 @@ Each kind of work is started and interrupted many times, at moments spread over 
 table has the median, the 95th percentile and the longest time from the signal to the
 KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if the
 bits differ, or if a 95th percentile is more than 200 ms. With --company a Python thread holds the
-GIL as long as Python allows. In the notebook the traceback is one line: Jupyter takes longer to
+GIL as long as Python allows; then a table has the slowdown of four calls by such a thread, which
+is 2 at least on one core: a call asks Python for signals every 50 ms, and waits 5 ms until the
+thread releases the GIL. In the notebook the traceback is one line: Jupyter takes longer to
 draw the source. The last line has the time with the source and is not judged. The times need a
 machine without other load.
 """
@@ -14,13 +16,14 @@ machine without other load.
 import argparse
 import signal
 import sys
+import threading
 import time
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import numpy as np
-from bench_company import company
+from common import seconds
 from jupyter_client.manager import start_new_kernel
 from rolling_ellipse import (
     Impulse,
@@ -98,6 +101,49 @@ IN_NOTEBOOK = {  # the first line measures Jupyter's own time
     "model='rolling', method='rk4', step=1e-4, max_steps=2**31 - 1, workers=2)",
 }
 CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
+
+
+SLOWED: dict[str, Callable[[], Any]] = {
+    "flow, 20 million times": lambda: flow(FORCES, a=2.0, b=1.0, theta=0.1, omega=3.2),
+    "flow, 200 000 motions": lambda: flow(5.0, a=2.0, b=1.0, theta=ANGLES, omega=3.2),
+    "rk4, a million steps": lambda: simulate(
+        scenes.rolling, [1e3], method="rk4", step=1e-3, **ROLLING
+    ),
+    "dop853, 600 000 steps": lambda: simulate(
+        scenes.rolling, [6e4], method="dop853", rtol=1e-13, **ROLLING
+    ),
+}
+ROUNDS = 5  # rounds of each call of SLOWED
+
+
+@contextmanager
+def company() -> Iterator[None]:
+    """A thread that holds the GIL as long as Python allows."""
+    over = threading.Event()
+
+    def busy() -> None:
+        while not over.is_set():
+            sum(range(1000))
+
+    thread = threading.Thread(target=busy)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
+
+
+def print_slowdown() -> None:
+    """Print the least times of calls alone, and their ratios beside a busy thread."""
+    print(f"{'beside a busy thread':36}  alone     ratio, least of {ROUNDS} rounds")
+    for name, call in SLOWED.items():
+        alone, together = [], []
+        for _ in range(ROUNDS):
+            alone.append(seconds(call))
+            with company():
+                together.append(seconds(call))
+        print(f"{name:36} {min(alone):6.2f} s {min(together) / min(alone):8.2f}")
 
 
 def delay(call: Callable[[], Any], after: float) -> float:
@@ -195,6 +241,8 @@ def main() -> int:
             print_delays(f"{name}, stack drawn", delays)
         finally:
             notebook.close()
+    if options.company:
+        print_slowdown()
     print("usable afterwards, within 200 ms" if good else "NOT GOOD")
     return 0 if good else 1
 
