@@ -15,9 +15,10 @@ package's, which come from a table of times, from single times, and from `sol` i
 
 Units. The unit of a value is a sum: the effect of 2.2e-16 of each input, each in its own run, two
 ulp of the value and, at events, the effect of two ulp of the time. theta0 is changed by 2.2e-16
-rad. After many turns z, x_dot and z_dot belong to the reported angle, and the effect of half an ulp
-of this angle is added. The strict unit changes theta0 by 2.2e-16 of its distance from the nearest
-quarter turn and has no ulp of times: there a double resolves more than an ulp of the angle.
+rad. The strict unit changes theta0 by 2.2e-16 of its distance from the nearest quarter turn and has
+no ulp of times: there a double resolves more than an ulp of the angle.
+
+Rolling that never ends has the bits of the model "rolling", which other tables judge over any time.
 
 Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged from there on.
 Where the package finds other events, the inputs are changed at random by up to 64 times 2.2e-16:
@@ -34,7 +35,6 @@ import signal
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -73,7 +73,7 @@ MOST_STEPS = 260  # most steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # slightly changed scenes that distinguish a limit from a fault
-ROUTES = ("event", "table", "alone", "sol", "long")
+ROUTES = ("event", "table", "alone", "sol")
 
 
 class Blow(NamedTuple):
@@ -93,7 +93,6 @@ class Case(NamedTuple):
     blow: Blow | None = None
     longest: float = 1.0  # longest time span [s]
     most_events: int = 8
-    long_turns: float = 0.0  # swings or half turns up to a late sample; 0: no late sample
 
 
 # ---------------------------------------------------------------- the reference
@@ -193,54 +192,6 @@ class Judge(Follower):
         return reach / growth if growth > 0 else mpfr("inf")
 
 
-class Turning(Judge):
-    """Rolling until it has swung back and forth, or made half a turn: one period."""
-
-    def __init__(self, case: Case, road: Road) -> None:
-        super().__init__(case, road)
-        self.turns: list[Any] = []
-        self.start = self.state
-        self.fresh = self.state.omega == 0
-
-    def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Margins of rolling, with the sign of omega and the end of half a turn."""
-        omega = found.omega[1:] if self.fresh else found.omega
-        side = 1 if omega[0] > 0 else -1
-        self.fresh = False
-        left = [side * one for one in found.theta]
-        way = -side * self.start.theta - gmpy2.const_pi()
-        rest = [-one for one in left]
-        rest[0] -= way
-        watched = [("turn", [side * one for one in omega])]
-        if rest[0] > 0:
-            watched.append(("half turn", rest))
-        return [*super().watched(found, arc), *watched]
-
-    def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
-        """Record turning points; the period is twice the time between two of them."""
-        if what == "turn":
-            self.state = self.state._replace(omega=mpfr(0))
-            self.fresh = True
-            self.turns.append(self.t)
-        elif what == "half turn":
-            self.turns = [mpfr(0), self.t / 2, self.t]
-        else:
-            raise Undecided("not rolling for ever")
-
-    def period(self) -> tuple[Any, Any, Any]:
-        """Time of a swing or half turn, and its increments of theta and x."""
-        starts_at_rest = self.fresh
-        while len(self.turns) < (2 if starts_at_rest else 3):
-            if self.steps > self.most_steps:
-                raise Undecided("too many steps")
-            self.step(mpfr("inf"))
-        if len(self.turns) == 3 and self.turns[0] == 0:
-            s = self.start
-            return self.t, self.state.theta - s.theta, self.state.x - s.x
-        span = self.turns[-1] - (0 if starts_at_rest else self.turns[0])
-        return span, mpfr(0), mpfr(0)
-
-
 class Sample(NamedTuple):
     """A state, and the kinds of events before it."""
 
@@ -281,23 +232,6 @@ def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int =
         if follower.lost is not None:
             stopped, why = follower.lost, "bounces too low"
         return Answer(follower.rows, samples, follower.rates, stopped, why)
-
-
-def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
-    """States after many swings or half turns, reduced by the period of a motion that only rolls."""
-    with road.context():
-        span, turn, way = Turning(case, road).period()
-        rows = []
-        for time_ in times:
-            whole = gmpy2.floor(mpfr(time_) / span)
-            follower = Judge(case, road)
-            follower.follow(mpfr(time_) - whole * span, 1)
-            row = follower.now("state")
-            if follower.rows:
-                raise Undecided("not rolling for ever")
-            theta, x = row.theta + whole * turn, row.x + whole * way
-            rows.append(row._replace(t=mpfr(time_), theta=theta, x=x))
-        return rows
 
 
 # ---------------------------------------------------------------- units
@@ -377,11 +311,10 @@ def sizes(scene: Scene) -> list[float]:
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
-def rows_of(found: Answer, far: list[Row]) -> dict[str, Row]:
-    """All rows of an answer and of late samples, by the name of the row."""
+def rows_of(found: Answer) -> dict[str, Row]:
+    """All rows of an answer, by the name of the row."""
     rows = {f"event {i}": row for i, row in enumerate(found.events)}
-    rows |= {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
-    return rows | {f"long {i}": row for i, row in enumerate(far)}
+    return rows | {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
 
 
 def alike(what: str, *found: Answer) -> bool:
@@ -390,8 +323,8 @@ def alike(what: str, *found: Answer) -> bool:
     i = int(number)
     if kind == "event":
         return len({tuple(row.kind for row in one.events[: i + 1]) for one in found}) == 1
-    samples = [one.samples[i] if kind == "sample" else None for one in found]
-    return kind == "long" or len({tuple(one.before) if one else None for one in samples}) == 1
+    samples = [one.samples[i] for one in found]
+    return len({tuple(one.before) if one else None for one in samples}) == 1
 
 
 def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
@@ -408,32 +341,18 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
     return max(shares, default=0.0)
 
 
-def reference(
-    case: Case, times: list[float], end: float, long_times: list[float], check: bool, level: int = 0
-) -> Reference:
+def reference(case: Case, times: list[float], end: float, check: bool, level: int = 0) -> Reference:
     """Events, samples and their units, in a finer precision where this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
-    long_rows: list[Row] = []
-    long_base: list[Row] = []
-    if long_times:
-        try:
-            long_rows = long_answer(case, finer, long_times)
-            long_base = long_answer(case, road, long_times)
-        except Undecided:
-            long_times = []
-    rows, bases = rows_of(exact, long_rows), rows_of(base, long_base)
+    rows, bases = rows_of(exact), rows_of(base)
     loose = {key: [0.0] * len(VALUES) for key in rows}
     strict = {key: [0.0] * len(VALUES) for key in rows}
     at_limit = ""
     for name, count, changed in changed_cases(case):
         again = answer(changed, road, times, end)
-        far: list[Row] = []
-        if long_times:
-            with suppress(Undecided):
-                far = long_answer(changed, road, long_times)
-        others = rows_of(again, far)
+        others = rows_of(again)
         for key, row in rows.items():
             effect = [math.inf] * len(VALUES)
             if key in others and key in bases and alike(key, exact, base, again):
@@ -461,12 +380,12 @@ def reference(
             judged.append(Judged(key, row, loose[key], strict[key]))
     apart = distance(judged, case, bases)
     if apart > FARTHEST and level + 3 < len(ROADS):
-        return reference(case, times, end, long_times, check, level + 1)
+        return reference(case, times, end, check, level + 1)
     # rows that still differ are left out
     judged = [one for one in judged if distance([one], case, bases) <= FARTHEST]
     if check:
         finest = answer(case, ROADS[level + 2], times, end)
-        apart = distance(judged, case, rows_of(finest, []))
+        apart = distance(judged, case, rows_of(finest))
     else:
         apart = min(apart, FARTHEST)
     kinds: list[str] = []
@@ -501,9 +420,7 @@ def states(motion: rl.Trajectory, count: int) -> list[list[float]]:
     return [[float(getattr(motion, name)[i]) for name in VALUES] for i in range(count)]
 
 
-def found_by_package(
-    case: Case, times: list[float], end: float, long_times: list[float], rng: random.Random
-) -> Found:
+def found_by_package(case: Case, times: list[float], end: float, rng: random.Random) -> Found:
     """The package's events, and its samples by every route."""
     scene = in_words(case)
     asked = sorted({*times, end})
@@ -529,10 +446,6 @@ def found_by_package(
             alone = rl.simulate(scene, [times[i]], model="contact", raise_on_failure=False)
             if len(alone.t):
                 values[f"sample {i}", "alone"] = states(alone, 1)[0]
-    for i, one in enumerate(long_times):
-        far = rl.simulate(scene, [one], model="contact", raise_on_failure=False)
-        if len(far.t):
-            values[f"long {i}", "long"] = states(far, 1)[0]
     return Found(kinds, values, motion.status.name)
 
 
@@ -631,25 +544,13 @@ def first_wrong(known: Reference, found: Found, end: float) -> int | None:
     return None
 
 
-def of_the_angle(case: Case, values: list[float], name: str) -> float:
-    """Effect of half an ulp of the angle on a component of a rolling body at that angle."""
-    row = dict(zip(VALUES, values, strict=True))
-    _, slope, bend = support(case.scene.a, case.scene.b, row["theta"])
-    rates = {"z": slope, "x_dot": slope * row["omega"], "z_dot": bend * row["omega"]}
-    return abs(rates.get(name, 0.0)) * math.ulp(row["theta"]) / 2
-
-
 def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
     """The verdict on a case, with the errors in units."""
     words = in_words(case)  # the package refuses an invalid scene here
     record: dict[str, Any] = {"scene": repr(words)}
     times, end, why = plan(case, rng)
-    long_times = []
-    if case.long_turns:
-        tau = natural(case.scene)[1]
-        long_times = [tau * case.long_turns, tau * case.long_turns * rng.uniform(0.5, 1.5)]
-    known = reference(case, times, end, long_times, check)
-    found = found_by_package(case, times, end, long_times, rng)
+    known = reference(case, times, end, check)
+    found = found_by_package(case, times, end, rng)
     record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
     record |= {"status": found.status, "apart": known.apart}
     if not known.judged and not known.kinds:
@@ -683,9 +584,8 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
                     continue
                 key = f"{route} {name}"
                 least = LEAST_UNIT * scale[i]
-                told = of_the_angle(case, values, name) if route == "long" else 0.0
-                units = errors[i] / max(one.unit[i] + told, least)
-                fine = errors[i] / max(one.strict[i] + told, least)
+                units = errors[i] / max(one.unit[i], least)
+                fine = errors[i] / max(one.strict[i], least)
                 loose[key] = max(loose.get(key, 0.0), units)
                 strict[key] = max(strict.get(key, 0.0), fine)
                 if units > 4 or fine > 4 or tell:
@@ -1030,13 +930,8 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
     family.draw(rng, v)
     struck = drawn_blow(rng, v) if name == "blow" else None
     scene = Scene(**v)
-    long_turns = 0.0
-    # 42 digits resolve on which side of the tip's energy this start is
-    known = v["omega"] == 0 or abs(v["omega"]) > 1e-15 * rate(v)
-    if name in ("well", "lying", "tip", "beside tip") and scene.friction != 0 and known:
-        long_turns = power(rng, 1, 7)
     longest = natural(scene)[1] * log_uniform(rng, *family.spans)
-    return Case(name, scene, struck, longest, family.most_events, long_turns)
+    return Case(name, scene, struck, longest, family.most_events)
 
 
 # ---------------------------------------------------------------- the run
