@@ -4,15 +4,13 @@ Public functions return them, and computed motions confirm them.
 """
 
 import math
-from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.geometry import support
 from oracles.numbers import EPS, known
-from rolling_ellipse import Impulse, Mode, Scene, Validity, certify, flow, period, thresholds
+from rolling_ellipse import Mode, Scene, Validity, certify, flow, period, thresholds
 
 A, B, GRAVITY, GYRATION2 = 2.0, 1.0, 9.81, 1.25
 TWO_TO_ONE = thresholds(A, B)
@@ -188,40 +186,3 @@ def test_reactions_of_the_report_scene() -> None:
     start = rl.scenes.report.initial_state
     assert start.reaction_x == pytest.approx(10 * 1.0 * 3.2, rel=4 * EPS)
     assert start.reaction_z == pytest.approx(48, rel=4 * EPS)
-
-
-@pytest.mark.parametrize("theta", [0.0, 0.4, -0.2])
-@pytest.mark.parametrize("omega", [0.0, 1.1])
-def test_the_impulse_law_of_sticking(theta: float, omega: float) -> None:
-    """m D omega+ = m D omega- + Jx (h + dz) + Jz (h' - dx)."""
-    blow = Impulse(1.0, -20.0, dx=0.9, dz=0.2)
-    scene = Scene(A, B, mass=2.0, theta=theta, omega=omega, impulse=blow)
-    h, slope, _ = support(theta, A, B)
-    moment = 1.0 * (h + 0.2) - 20.0 * (slope - 0.9)
-    after = omega + moment / (2.0 * (GYRATION2 + h * h + slope * slope))
-    assert scene.initial_state.omega == pytest.approx(after, rel=32 * EPS)
-    assert scene.initial_state.mode is Mode.ROLLING
-
-
-def test_it_sticks_from_two_thirds_on() -> None:
-    """A press at d on a flat body sticks if mu >= b d/(k^2 + b^2) = 2/3, at any force."""
-    for force in (1e-3, 48.0, 1e5):
-        for change, mode in ((1e-9, Mode.ROLLING), (-1e-9, Mode.SLIDING)):
-            blow = replace(
-                rl.scenes.report, friction=2 / 3 + change, impulse=Impulse.press(force, 1.5)
-            )
-            assert blow.initial_state.mode is mode
-
-
-def test_little_friction_reverses_the_slip() -> None:
-    """theta = 0.5, mu = 0.2, J = (-1, -4) at dx = 0.6 give -0.8618 rad/s with slip and -0.7171
-    rad/s with a sticking contact."""
-    scene = Scene(A, B, theta=0.5, friction=0.2, impulse=Impulse(-1.0, -4.0, dx=0.6))
-    assert round(scene.initial_state.omega, 4) == -0.8618
-    assert round(replace(scene, friction=math.inf).initial_state.omega, 4) == -0.7171
-
-
-def test_without_friction_eq_48_is_exact() -> None:
-    scene = replace(rl.scenes.report, friction=0.0)
-    assert scene.initial_state.omega == pytest.approx(5.76, rel=2 * EPS)
-    assert scene.initial_state.x_dot == 0

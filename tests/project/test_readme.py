@@ -9,6 +9,7 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
+from oracles import table
 from oracles.paths import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -25,6 +26,14 @@ def test_the_lines_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyP
     plt.close("all")
     made = {path.name for path in tmp_path.iterdir()}
     assert made == {"roll.gif", "friction.gif", "strike.html", "motions"}
+
+
+def test_the_tables_of_reference_have_as_many_motions_as_it_says() -> None:
+    """A motion has three lines in the table of slopes, and one for each event in the last table."""
+    said = dict(re.findall(r"\[`(\w+)_reference\.csv`\]\S+ \((\d+) ", README))
+    level, slope, contact = (table.rows(f"{name}_reference") for name in said)
+    names = {row["name"] for row in contact}
+    assert [*map(int, said.values())] == [len(level), len(slope) / 3, len(names)]
 
 
 def test_its_pictures_are_there() -> None:

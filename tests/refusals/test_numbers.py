@@ -167,16 +167,6 @@ def test_more_axes_than_numpy_broadcasts(name: str, door: Door) -> None:
         refused(ValueError, name, "at most 32 axes, got [[[[", door, value)
 
 
-def test_masked_columns_of_a_series() -> None:
-    column = np.ma.array([-1.0, -1.0], mask=[False, True])
-    before: list[Any] = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]]
-    after: Any = np.zeros((3, 2))
-    with pytest.raises(TypeError, match="before must be plain numbers"):
-        impacts.fit(before, after, **AXES)
-    with pytest.raises(TypeError, match="q must be plain numbers"):
-        rl.constraints(np.ma.array(Q, mask=[False, False, True, False, False]), Q_DOT, **AXES)
-
-
 def test_numbers_of_every_kind() -> None:
     """Numbers of any type count as their doubles, alone and in arrays."""
     numbers: list[Any] = [

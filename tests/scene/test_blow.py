@@ -135,17 +135,6 @@ def test_the_random_impulses_meet_every_outcome() -> None:
 # ----------------------------------------------------------------------------- known numbers
 
 
-def test_the_report_scene_rolls_off_with_3_2_not_5_76() -> None:
-    """omega = F d/(m (k^2 + b^2)) = 48 * 1.5 / (10 * 2.25); eq 48 has k^2 alone: frictionless."""
-    found = Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)).initial_state
-    assert found.omega == pytest.approx(3.2, rel=4 * EPS)
-    assert found.free_omega == pytest.approx(5.76, rel=4 * EPS)
-    assert found.mode == Mode.ROLLING
-    assert found.x_dot == pytest.approx(3.2, rel=4 * EPS) and found.z_dot == 0
-    assert found.reaction_x == pytest.approx(10 * 1 * 3.2, rel=8 * EPS)  # m h d_omega - Jx
-    assert found.reaction_z == pytest.approx(48.0, rel=4 * EPS)  # m h' d_omega - Jz
-
-
 @pytest.mark.parametrize("push", [2.0, -2.0])
 def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
     """The product inf * 0 of mu = inf and Lambda_z = 0 is not formed. For a push at G, lying flat:

@@ -122,7 +122,7 @@ def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
     seen = {True: 0, False: 0}
     for seed in range(70):
         run = losses.drawn(seed)
-        motion, said = losses.told(run)
+        motion, said = advice(run.scene, [0.0, run.t_end], raise_on_failure=False, **run.how)
         stopped = motion.status not in (rl.Status.COMPLETED, rl.Status.VALIDITY_LOST)
         gains = any("does not bear the gains" in text for text in said)  # will be lost
         if stopped or gains or not 0 < motion.stats["steps"] <= 3000:
