@@ -33,23 +33,32 @@ def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
     return lambda _: ask(race()(Path()))
 
 
-def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
-    """Load a file of a race that was changed."""
+def damaged(road: str, value: Any) -> Callable[[Path], Any]:
+    """Load a file of a race with another value at a place of its text."""
 
     def call(folder: Path) -> Any:
         path = folder / "race.json"
         race()(folder).save(path)
-        known = json.loads(path.read_text())
-        change(known)
+        known = part = json.loads(path.read_text())
+        *steps, last = (int(step) if step.isdigit() else step for step in road.split("."))
+        for step in steps:
+            part = part[step]
+        part[last] = value
         path.write_text(json.dumps(known))
         return WorkPrecision.load(path)
 
     return call
 
 
-def of_run(**facts: Any) -> Callable[[Path], Any]:
-    return raced(lambda known: known["runs"][0].update(facts))
-
+DAMAGED: list[tuple[str, Any]] = [
+    ("schema", 1), ("schema", 99), ("runs", []), ("runs", {}), ("references", []),
+    ("references.0.floor", -1.0), *(("runs.0.time", wrong) for wrong in ("soon", 1, "1.0")),
+    ("runs.0.steps", -1), ("runs.0.steps", 1.5), ("runs.0.name", 3), ("runs.0.tags", "own"),
+    ("runs.0.status", 1), ("runs.0.errors", None), ("runs.0.errors.median", 1.0),
+    ("runs.0.colour", "red"), ("runs.0.t_end", 3.0), ("scene", None),
+    *(("scene.a", wrong) for wrong in (-1.0, "2.0", 2)), ("machine", []), ("machine", 1),
+    ("machine.rounds", 20), ("more", 1),
+]  # fmt: skip
 
 REFUSALS: list[Row] = [
     # requests
@@ -71,12 +80,5 @@ REFUSALS: list[Row] = [
     ("highlight", result(lambda found: found.plot(highlight=3))),  # type: ignore[arg-type]
     ("ax", result(lambda found: found.plot(by="library", ax=WRONG))),
     (KeyError, result(lambda found: found.runs[0].errors["x"])),
-    # files
-    ("path", raced(lambda known: known.update(schema=99))),
-    ("path", raced(lambda known: known.update(runs=[]))),
-    ("path", raced(lambda known: known.update(machine=1))),
-    ("path", raced(lambda known: known["scene"].update(a=2))),
-    ("path", raced(lambda known: known["references"][0].update(floor=-1.0))),
-    *(("path", of_run(**{name: value})) for name, value in {
-        "t_end": 9.0, "tags": 1, "time": "x", "steps": -1, "status": 1}.items()),
+    *(("path", damaged(*each)) for each in DAMAGED),
 ]  # fmt: skip

@@ -179,31 +179,6 @@ def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
     json.loads(path.read_text(encoding="utf-8"), parse_constant=none)  # plain JSON has no NaN
 
 
-# Damage to the text of a file: paths to a value, and other values in its place.
-DAMAGED: list[tuple[str, Any]] = [
-    ("schema", 1), ("runs", []), ("runs", {}), ("references", []), ("references.0.floor", -1.0),
-    *(("runs.0.time", wrong) for wrong in ("soon", 1, "1.0")), ("runs.0.steps", -1),
-    ("runs.0.steps", 1.5), ("runs.0.name", 3), ("runs.0.tags", "own"), ("runs.0.errors", None),
-    ("runs.0.errors.median", 1.0), ("runs.0.colour", "red"), ("runs.0.t_end", 3.0),
-    ("scene", None), *(("scene.a", wrong) for wrong in (-1.0, "2.0", 2)), ("machine", []),
-    ("machine.rounds", 20), ("more", 1),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("road", "value"), DAMAGED)
-def test_a_damaged_file_is_refused_by_name(road: str, value: Any, tmp_path: Path) -> None:
-    path = tmp_path / "race.json"
-    FOUND.save(path)
-    about = part = json.loads(path.read_text(encoding="utf-8"))
-    *steps, last = (int(step) if step.isdigit() else step for step in road.split("."))
-    for step in steps:
-        part = part[step]
-    part[last] = value
-    path.write_text(json.dumps(about), encoding="utf-8")
-    with pytest.raises(ValueError, match=r"path must name a file written by save.*race\.json"):
-        WorkPrecision.load(path)
-
-
 @pytest.mark.parametrize("text", ["", "{", "[]", "3", '"race"', "{}", "\ufeff{}", '{"a":1,"a":2}'])
 def test_what_is_no_race_is_refused(text: str, tmp_path: Path) -> None:
     path = tmp_path / "race.json"

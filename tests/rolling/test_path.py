@@ -1,4 +1,4 @@
-"""The path of the centre in motions that begin nearly at rest on the tip or beside it.
+"""The path of the centre: motions that begin nearly at rest on the tip or beside it, and steps.
 
 The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
 alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.
@@ -7,15 +7,17 @@ alone, here by Legendre's elliptic integral in 30 digits, for any motion between
 import math
 import random
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import mpmath as mp
 import numpy as np
 import pytest
 from oracles.flow import LARGEST_ERROR
 from oracles.margins import told
+from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, simulate
 
+pytestmark = pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 Start = tuple[float, float, float, float]
 State = tuple[float, ...]  # theta, omega, x
 
@@ -68,7 +70,6 @@ def times_past_a_tip(start: Start, rng: random.Random) -> list[float]:
     return sorted(fall * rng.uniform(1.0, 3.0) for _ in range(3))
 
 
-@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_x_is_the_path_to_the_angle() -> None:
     rng = random.Random(31)
     worst = {name: 0.0 for name in ("one", "few", "many", "bodies", "rolling", "contact")}
@@ -96,3 +97,33 @@ def test_x_is_the_path_to_the_angle() -> None:
                     judge(model, t, *state)
     told(worst)
     assert max(worst.values()) <= LARGEST_ERROR, worst
+
+
+# bodies flat, upright, round and of the thinnest shape; both directions, several half turns
+SCENES = {
+    "flat": Scene(2.0, 1.0, theta=0.2, omega=3.2, x=0.3),
+    "upright": Scene(0.7, 1.9, theta=1.2, omega=-4.0),
+    "rocking": Scene(2.0, 1.0, theta=0.5),
+    "circle": Scene(1.0, 1.0, omega=-2.0),
+    "nearly a circle": Scene(1.0, 1.0 - 1e-8, omega=2.0),
+    "many turns on": Scene(2.0, 1.0, theta=3e5, omega=3.2),  # an angle beyond the stored series
+    "many turns back": Scene(0.7, 1.9, theta=-3e5, omega=-4.0),
+    "thinnest": Scene(1.0, 1e-3, theta=0.3),
+    "thinnest, upright": Scene(1e-3, 1.0, theta=0.1, omega=9.0),
+}
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("method", ["dop853", "dopri5"])
+def test_x_is_the_path_of_the_angle_in_steps(
+    scene: Scene, method: Literal["dop853", "dopri5"]
+) -> None:
+    """x errs by a few roundings of the path, whose reference points are up to half a radian away,
+    and of the angle, which is rounded to half an ulp."""
+    motion = simulate(scene, np.linspace(0.0, 6.0, 97), model="rolling", method=method, rtol=1e-6)
+    start = path(scene.theta, scene.a, scene.b)
+    height = max(scene.a, scene.b)
+    for theta, x in zip(motion.theta, motion.x, strict=True):
+        exact = scene.x + path(theta, scene.a, scene.b) - start
+        size = abs(scene.x) + height * (0.5 + abs(theta) + abs(scene.theta))
+        assert abs(x - exact) <= 4 * EPS * size
