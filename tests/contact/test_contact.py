@@ -575,18 +575,6 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 # ----------------------------------------------------------------------------- the start
 
 
-def test_the_start_says_what_the_body_does() -> None:
-    """`initial_state` has the contact model's mode on every ground and in every state."""
-    met = {mode: 0 for mode in Mode}
-    for scene, motion in random_motions(2000, 71, [0.0]):
-        mode = scene.initial_state.mode
-        assert motion.mode.tolist() == [mode], scene
-        does = {"ROLLING": "rolls", "SLIDING": "slides", "FLIGHT": "flies", "REST": "rests"}
-        assert does[mode.name] in scene.initial_state.reason
-        met[mode] += 1
-    assert min(met[mode] for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT)) > 50
-
-
 IN_BALANCE = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
 STARTS = [
     (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),

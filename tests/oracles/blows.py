@@ -15,6 +15,19 @@ AT_ONCE = {
 ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES_CONTACT}
 
 
+def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
+    """A blow of a size at any point of the body, mostly a press, half of them straight."""
+    push = rng.choice([0.0, rng.normal()])
+    share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
+    along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
+    return Impulse(
+        size * push,
+        size * rng.choice([-1.0, -1.0, 1.0]),
+        dx=along * math.cos(theta) + across * math.sin(theta),
+        dz=across * math.cos(theta) - along * math.sin(theta),
+    )
+
+
 def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
     """A scene of any shape up to 30:1, at rest or rolling, with a blow about strong enough to roll
     it over, mostly a press."""
@@ -23,10 +36,7 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
     mass, gravity = 10 ** rng.uniform(-1, 1, 2)
     speed = math.sqrt(gravity * max(a, b))
     strength = mass * speed * 10 ** rng.uniform(-1.5, 0.7)
-    push = rng.choice([0.0, rng.normal()])
     theta = rng.choice([0.0, rng.uniform(-4, 4)])
-    share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
-    along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
     return Scene(
         a,
         b,
@@ -36,12 +46,7 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
         slope=rng.uniform(-0.7, 0.7) if slope else 0.0,
         theta=theta,
         omega=rng.choice([0.0, speed / max(a, b) * rng.normal()]),
-        impulse=Impulse(
-            strength * push,
-            strength * rng.choice([-1.0, -1.0, 1.0]),
-            dx=along * math.cos(theta) + across * math.sin(theta),
-            dz=across * math.cos(theta) - along * math.sin(theta),
-        ),
+        impulse=random_blow(rng, a, b, theta, strength),
     )
 
 

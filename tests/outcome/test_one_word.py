@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
-from oracles.blows import met_first
+from oracles.blows import met_first, random_blow
 from rolling_ellipse import (
     Impulse,
     InitialState,
@@ -59,15 +59,7 @@ def drawn_scene(rng: np.random.Generator) -> Scene:
         values |= {"x_dot": 3 * rng.normal()}
     if rng.random() < 0.25:
         strength = math.sqrt(GRAVITY * max(a, b)) * 10 ** rng.uniform(-1.5, 0.7)
-        push = rng.choice([0.0, rng.normal()])
-        share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
-        along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
-        values["impulse"] = Impulse(
-            strength * push,
-            strength * rng.choice([-1.0, -1.0, 1.0]),
-            dx=along * math.cos(theta) + across * math.sin(theta),
-            dz=across * math.cos(theta) - along * math.sin(theta),
-        )
+        values["impulse"] = random_blow(rng, a, b, theta, strength)
     return Scene(a, b, inertia=inertia, **values)
 
 

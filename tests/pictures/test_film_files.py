@@ -70,7 +70,9 @@ def test_a_motion_of_next_to_no_time(units: int) -> None:
     assert rl.animate(motion)._repr_html_() and motion._repr_html_()
 
 
-@pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "ä.html"])
+@pytest.mark.parametrize(
+    "name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "file:ß.gif", "ä.html"]
+)
 def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
     rl.animate(MOTION, name, **SMALL)

@@ -379,14 +379,6 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
     assert set(found) == KEYS and found["status"] == "MAX_EVENTS"
 
 
-@pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "file:roll.gif", "größe %03d.html"])
-def test_files_of_any_name(tmp_path: Path, name: str) -> None:
-    code, _, err = typed(tmp_path, "--time", "0.1", f"--save={name}")
-    assert (code, err) == (0, "")
-    assert [file.name for file in tmp_path.iterdir()] == [name]
-    assert (tmp_path / name).stat().st_size > 1000
-
-
 @pytest.mark.parametrize("option", ["--save", "--plot"])
 @pytest.mark.parametrize("name", ["", ".", "folder.gif"])
 def test_what_is_no_file_is_refused_before_any_work(

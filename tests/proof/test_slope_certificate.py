@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from numpy.typing import NDArray
+from oracles.geometry import support
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, Validity, certify
 
@@ -26,13 +27,6 @@ class Scan(NamedTuple):
     ends: str  # "broken", "turned back" for good, or "open" after many half turns
     between: tuple[float, float]  # last angle before the law breaks, and first angle after
     least: float
-
-
-def outline(angle: Floats, a: float, b: float) -> tuple[Floats, Floats, Floats]:
-    """h, h' and the radius of curvature at an angle."""
-    s, c = np.sin(angle), np.cos(angle)
-    h = np.hypot(a * s, b * c)
-    return h, (a - b) * (a + b) * s * c / h, (a * b) ** 2 / h**3
 
 
 def half_turn(start: float, direction: float, thinness: float) -> Floats:
@@ -51,25 +45,25 @@ def scan(scene: Scene, most: int = 30) -> Scan:
     a, b, k2, mu = scene.a, scene.b, scene.gyration2, scene.friction
     into, along = GRAVITY * math.cos(scene.slope), GRAVITY * math.sin(scene.slope)
     angle, least = scene.theta, math.inf
-    h, dh, rho = outline(np.array(angle), a, b)
+    h, dh, bend = support(np.array(angle), a, b)
     w = float((k2 + h**2 + dh**2) * scene.omega**2 / 2)
-    fall = h * along - dh * (into + rho * scene.omega**2)
+    fall = h * along - dh * (into + (h + bend) * scene.omega**2)
     direction = math.copysign(1, scene.omega or float(fall))
     turns = int(scene.omega == 0)
     for _ in range(most):
         places = half_turn(angle, direction, min(a, b) / max(a, b))
         step = np.diff(places)
         inside = (places[1:] + places[:-1])[:, None] / 2 + step[:, None] / 2 * NODES
-        path = np.concatenate([[0.0], np.cumsum(outline(inside, a, b)[0] @ WEIGHTS * step / 2)])
-        h, dh, rho = outline(places, a, b)
+        path = np.concatenate([[0.0], np.cumsum(support(inside, a, b).h @ WEIGHTS * step / 2)])
+        h, dh, bend = support(places, a, b)
         energy = w + along * path - into * (h - h[0])
         beyond = np.flatnonzero(energy[1:] < 0) + 1
         until = int(beyond[0]) if beyond.size else places.size
-        h, dh, rho, energy = h[:until], dh[:until], rho[:until], np.maximum(energy[:until], 0)
+        h, dh, bend, energy = h[:until], dh[:until], bend[:until], np.maximum(energy[:until], 0)
         inertia = k2 + h**2 + dh**2
         omega2 = 2 * energy / inertia
-        turning = (h * along - dh * (into + rho * omega2)) / inertia
-        normal = into + dh * turning + (rho - h) * omega2
+        turning = (h * along - dh * (into + (h + bend) * omega2)) / inertia
+        normal = into + dh * turning + bend * omega2
         friction = h * turning + dh * omega2 - along
         left = normal if math.isinf(mu) else (mu * normal - np.abs(friction)) / max(mu, 1)
         left = left / (into + abs(along) + np.abs(normal) + np.abs(friction))
@@ -144,16 +138,16 @@ def test_a_nearly_round_body_rolls_far(direction: int) -> None:
     a, b, k2 = scene.a, scene.b, scene.gyration2
     into, along = GRAVITY * math.cos(0.05), GRAVITY * math.sin(0.05)
     angle = np.linspace(0, math.pi, 20001)
-    h, dh, rho = outline(angle, a, b)
+    h, dh, bend = support(angle, a, b)
     inertia = k2 + h**2 + dh**2
     path = rl.geometry.centre_path(angle, a=a, b=b)
     w = (k2 + h[0] ** 2) * 4.5 + along * path - into * (h - h[0])
     rest = (h * along - dh * into) / inertia  # theta'' at omega = 0, and its coefficient of omega^2
-    more = -dh * rho / inertia
+    more = -dh * (h + bend) / inertia
     limits = []
     for side in (1, -1):
         here = 0.5 * (into + dh * rest) - side * (h * rest - along)
-        rate = 0.5 * (dh * more + rho - h) - side * (h * more + dh)
+        rate = 0.5 * (dh * more + bend) - side * (h * more + dh)
         limit = np.where(rate < 0, -here / np.where(rate < 0, rate, -1.0), np.inf)
         limits.append(limit * inertia / 2)
     half_turns = (np.minimum(*limits) - w) / (along * path[-1])
