@@ -1,8 +1,8 @@
 // The core with arbitrary numbers, for libFuzzer: tools/fuzz_core.sh builds and runs it.
 //
 // Every input must satisfy: wrong numbers are refused by a std::invalid_argument that names the
-// argument, and nothing else is thrown; every answer is finite, has a status that fits, and gains
-// no energy.
+// argument, and nothing else is thrown; every answer is finite, and has a status that fits. Whether
+// it is right is for tests/properties and tools/fuzz/promises.py to say.
 
 #include <algorithm>
 #include <cstdio>
@@ -127,44 +127,13 @@ Settings settings_from(Bytes& bytes, double t_end) {
     return settings;
 }
 
-// Energy per mass and its error: rounded sums, and an angle known to one ulp.
-struct Energy {
-    double value;
-    double unsure;
-};
-
-Energy energy(const Scene& scene, const State& state) {
-    const GroundGravity gravity = scene.ground_gravity();
-    const double kinetic = 0.5 * (square(state.x_dot) + square(state.z_dot) +
-                                  scene.inertia / scene.mass * square(state.omega));
-    const double size =
-        kinetic + std::abs(gravity.into * state.z) + std::abs(gravity.along * state.x);
-    const double thin = std::max(scene.a / scene.b, scene.b / scene.a);
-    const double blur = thin * epsilon * (1 + std::abs(state.theta));
-    return {kinetic + gravity.into * state.z - gravity.along * state.x, (1e-7 + blur) * size};
-}
-
-void check_no_gain(const Scene& scene, const State& before, const State& after) {
-    const Energy first = energy(scene, before);
-    const Energy then = energy(scene, after);
-    if (!std::isfinite(first.unsure + then.unsure)) return;
-    CHECK(then.value - first.value <= first.unsure + then.unsure);
-}
-
 void check_start(const Scene& scene) {
     const State before = state_before_impulse(scene, geometry(scene.axes(), scene.theta));
     const InitialState start = initial_state(scene);
     CHECK(is_finite(before) && is_finite(start.state));
-    CHECK(std::isfinite(start.reaction_x) && std::isfinite(start.reaction_z));
-    CHECK(start.reaction_z >= 0);
-    const double least = sticking_friction(scene);
-    CHECK(least >= 0);
-    CHECK(before.theta == start.state.theta && before.z == start.state.z);
-    if (!scene.impulse && rolls(before)) {
-        CHECK(start.reaction_x == 0 && before.omega == start.state.omega);
-    }
-    const Continuation next = first_continuation(scene, start.state);
-    CHECK(std::abs(next.side) <= 1);
+    CHECK(std::isfinite(start.reaction_x) && start.reaction_z >= 0);
+    CHECK(sticking_friction(scene) >= 0);
+    CHECK(std::abs(first_continuation(scene, start.state).side) <= 1);
 }
 
 // Checks collisions of a body with the ground at any speed and slip.
@@ -175,33 +144,22 @@ void check_collision(const Scene& scene, Bytes& bytes) {
     before.x_dot = speed * bytes.between(-5, 5);
     before.z_dot = at.dh * before.omega - speed * bytes.power(-6, 1);
     if (!(before.z_dot < at.dh * before.omega)) return;
-    const State after = collision(scene, at, before, gap_rate(before, at)).after;
-    CHECK(is_finite(after));
-    CHECK(after.theta == before.theta && after.x == before.x);
-    check_no_gain(scene, before, after);
+    const double largest = std::max(std::abs(before.x_dot), std::abs(before.z_dot));
+    if (!(largest <= largest_number)) return;  // no motion comes to such speeds
+    CHECK(is_finite(collision(scene, at, before, gap_rate(before, at)).after));
 }
 
-void check_certificate(const Scene& scene, bool rougher_too) {
+void check_certificate(const Scene& scene) {
     const auto [found, reason] = certify(scene);
     CHECK(!reason.empty());
     const Validity validity = found.end.validity;
     CHECK(found.end.angle.has_value() || validity == Validity::valid ||
           validity == Validity::no_proof);
     if (found.smallest_normal_force) CHECK(!std::isnan(*found.smallest_normal_force));
-    if (!found.largest_friction_needed) return;
-    const double needed = *found.largest_friction_needed;
-    CHECK(needed >= 0);
-    // On a slope a motion that holds for 1e15 half turns is valid, though more would need more
-    // friction.
-    const bool holds = validity == Validity::valid;
-    if (holds && std::isfinite(needed)) CHECK(needed <= scene.friction * (1 + 1e-6));
-    if (!rougher_too || !holds) return;
-    Scene rougher = scene;
-    rougher.friction = 2 * scene.friction;
-    CHECK(certify(rougher).certificate.end.validity == validity);
+    if (found.largest_friction_needed) CHECK(*found.largest_friction_needed >= 0);
 }
 
-void check_samples(const Scene& scene, const Solution& solution, double t_end, bool of_contact) {
+void check_samples(const Solution& solution, double t_end) {
     if (solution.motion.segments.empty()) return;
     constexpr int count = 8;
     const double last = std::min(t_end, solution.followed_until);
@@ -210,10 +168,9 @@ void check_samples(const Scene& scene, const Solution& solution, double t_end, b
     const Sampler look(solution.motion, count);
     std::vector<ContactSample> samples(count);
     look(times.data(), count, samples.data());
-    for (int i = 0; i < count; ++i) {
-        CHECK(is_finite(samples[i].state));
-        CHECK(std::isfinite(samples[i].force.normal) && std::isfinite(samples[i].force.friction));
-        if (of_contact && i > 0) check_no_gain(scene, samples[i - 1].state, samples[i].state);
+    for (const ContactSample& each : samples) {
+        CHECK(is_finite(each.state));
+        CHECK(std::isfinite(each.force.normal) && std::isfinite(each.force.friction));
     }
     std::vector<CoordinateState> coordinates(count);
     look(times.data(), count, coordinates.data());
@@ -222,7 +179,7 @@ void check_samples(const Scene& scene, const Solution& solution, double t_end, b
     }
 }
 
-void check_solution(const Scene& scene, const Solution& solution, double t_end) {
+void check_solution(const Solution& solution, double t_end) {
     CHECK(solution.followed_until >= 0 && solution.followed_until <= t_end);
     const bool ran_through =
         solution.ending == Ending::completed || solution.ending == Ending::validity_lost;
@@ -231,26 +188,19 @@ void check_solution(const Scene& scene, const Solution& solution, double t_end) 
     if (solution.ending == Ending::validity_lost) CHECK(solution.valid_until < t_end);
     if (solution.ending != Ending::completed) CHECK(!solution.message.empty());
     double last = 0.0;
-    const bool contact = solution.model == Model::contact;
     for (const Event& event : solution.motion.events) {
         CHECK(event.t >= last && event.t <= t_end);
         CHECK(is_finite(event.before) && is_finite(event.after));
-        if (contact) check_no_gain(scene, event.before, event.after);
         last = event.t;
     }
-    check_samples(scene, solution, t_end, contact);
-    if (!solution.motion.segments.empty()) {
-        const double last = solution.followed_until;
-        for (const Quantity quantity :
-             {Quantity::theta, Quantity::x, Quantity::z, Quantity::omega, Quantity::contact_x}) {
-            const Checkpoint checkpoint = patience(1000);
-            const Observable of = observable(solution.motion, quantity, checkpoint);
-            const auto found = passages(solution.motion, last, of, {0.0, 1.0}, 0, checkpoint);
-            for (const std::vector<double>& times : found.times) {
-                CHECK(std::is_sorted(times.begin(), times.end()));
-                CHECK(times.empty() || (times.front() >= 0 && times.back() <= last));
-            }
-        }
+    check_samples(solution, t_end);
+    if (solution.motion.segments.empty()) return;
+    for (const Quantity quantity :
+         {Quantity::theta, Quantity::x, Quantity::z, Quantity::omega, Quantity::contact_x}) {
+        const Checkpoint checkpoint = patience(1000);
+        const Observable of = observable(solution.motion, quantity, checkpoint);
+        const double until = solution.followed_until;
+        passages(solution.motion, until, of, {0.0, 1.0}, 0, checkpoint);
     }
 }
 
@@ -261,7 +211,7 @@ void check_simulation(const Scene& scene, Bytes& bytes) {
     const Settings settings = settings_from(bytes, t_end);
     if (!(t_end >= 0 && std::isfinite(t_end))) return;  // Python refuses it
     const Solution solution = simulate(scene, settings, t_end, patience(20));
-    check_solution(scene, solution, t_end);
+    check_solution(solution, t_end);
     if (bytes.chance(16)) CHECK(!reason(scene, solution).empty());
 }
 
@@ -282,7 +232,7 @@ void check_coordinates(const Scene& scene, Bytes& bytes) {
     if (!(t_end > 0 && std::isfinite(t_end))) return;
     const Solution solution = simulate(scene, start, settings, t_end, patience(20));
     CHECK(solution.followed_until >= 0 && solution.followed_until <= t_end);
-    check_samples(scene, solution, t_end, false);
+    check_samples(solution, t_end);
 }
 
 // Checks rolling at any time: one state, the same state in lanes, and a table of many times.
@@ -293,17 +243,8 @@ void check_flow(const Scene& scene, Bytes& bytes) {
     const RollingStart start = rolling_start(body, scene.theta, scene.omega);
     const RollingFlow flow = rolling_flow(start, scene.x);
     validate_time(t, longest_time(flow));
-    const auto energy_at = [&](const FlowSample& sample) {
-        const Geometry at = geometry(scene.axes(), sample.theta);
-        return 0.5 * inertia_about_contact(body.gyration2, at) * square(sample.omega) +
-               body.gravity * at.h;
-    };
-    const double whole = energy_at({scene.theta, scene.omega, 0.0});
-    const double thin = std::max(scene.a / scene.b, scene.b / scene.a);
-    const auto check_state = [&](const FlowSample& found) {
+    const auto check_state = [](const FlowSample& found) {
         CHECK(std::isfinite(found.theta) && std::isfinite(found.omega) && std::isfinite(found.x));
-        const double blur = square(thin) * epsilon * (1 + std::abs(found.theta));
-        if (whole < 1e90) CHECK(std::abs(energy_at(found) - whole) <= (1e-9 + 8 * blur) * whole);
     };
     check_state(sample(flow, t));
     constexpr int count = 8;
@@ -314,10 +255,7 @@ void check_flow(const Scene& scene, Bytes& bytes) {
     std::for_each(samples, samples + count, check_state);
     const std::vector<RollingStart> starts(count, start);
     sample(kernel(), starts.data(), times, count, samples);
-    for (int i = 0; i < count; ++i) {
-        const FlowSample alone = sample(flow, times[i]);
-        CHECK(samples[i].theta == alone.theta && samples[i].omega == alone.omega);
-    }
+    std::for_each(samples, samples + count, check_state);
     CHECK(period(flow) > 0);
 }
 
@@ -337,7 +275,6 @@ void check_body(const Scene& scene, bool thresholds_too) {
     if (!thresholds_too) return;
     const Thresholds found = thresholds(scene.body(), scene.friction);
     CHECK(found.roll_over_speed >= 0 && found.contact_loss_speed >= 0 && found.slip_speed >= 0);
-    CHECK(found.slip_speed <= found.contact_loss_speed * (1 + 1e-9));
     CHECK(found.friction_to_roll_over >= 0 && found.painleve_friction >= 0);
 }
 
@@ -351,7 +288,7 @@ void run(Bytes& bytes) {
         case 1:
             return check_collision(scene, bytes);
         case 2:
-            return check_certificate(scene, bytes.chance(64));
+            return check_certificate(scene);
         case 3:
             return check_coordinates(scene, bytes);
         case 4:
