@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import logging
-import math
 import os
 import sys
+import tempfile
 import warnings
+import webbrowser
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,8 +18,7 @@ from matplotlib import rcParams
 from . import StabilityWarning, Status, Trajectory, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
-from ._player import animate
-from ._show.command.explore import explore
+from ._player import animate, explore
 from ._show.command.options import (
     PROGRAM,
     chosen_scene,
@@ -31,6 +31,8 @@ from ._show.command.summary import lines, summary
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
+# Options for arguments of `simulate` and `explore` that messages begin with
+_OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
 
@@ -51,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")  # the summary says until when the model is valid
             warnings.simplefilter("always", StabilityWarning)
-            code, message = (0, explore(options)) if exploring else _motion(options)
+            code, message = (0, _page(options)) if exploring else _motion(options)
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
@@ -63,7 +65,11 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _motion(options: argparse.Namespace) -> tuple[int, str]:
     """Simulate, write the files, and return the exit code and the summary."""
-    _check_options(options)
+    for name in ("save", "plot"):
+        if (path := getattr(options, name)) is not None:
+            require_file(f"--{name}", path)
+    if options.save is not None:
+        film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
     trajectory = simulate(
         chosen_scene(options),
         options.time,
@@ -83,16 +89,6 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
     return 0 if trajectory.status in _FOLLOWED else 1, text
 
 
-def _check_options(options: argparse.Namespace) -> None:
-    if not 0 <= options.time < math.inf:
-        raise ValueError(f"--time must be a finite time >= 0 [s], got {options.time!r}")
-    for name in ("save", "plot"):
-        if (path := getattr(options, name)) is not None:
-            require_file(f"--{name}", path)
-    if options.save is not None:
-        film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
-
-
 def _write_figure(trajectory: Trajectory, path: str) -> str:
     """Write the overview, and return its path."""
     if not Path(path).suffix:
@@ -102,11 +98,25 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
     return path
 
 
+def _page(options: argparse.Namespace) -> str:
+    """Write the page of `explore`, open it unless `--no-open` is given, and return a message."""
+    explorer = explore(chosen_scene(options), t_end=options.time, language=options.language)
+    path = options.save
+    if path is None:
+        handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
+        os.close(handle)
+    require_file("--save", path)
+    explorer.save(path)
+    message = f"written           {path}"
+    if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
+        message += "\nno browser was found: open the file in one"
+    return message
+
+
 def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
-        said = " ".join(str(error).split())
-        option = "--" if said.startswith("step ") else ""  # an argument of `simulate`
-        print(f"{PROGRAM}: {option}{said}", file=sys.stderr)
+        argument, *said = str(error).split() or [""]
+        print(f"{PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
 
 
 def run() -> int:

@@ -54,10 +54,9 @@ def test_classes_have_the_members_of_the_extension() -> None:
             }
             assert values == {member.name: member.value for member in kind}, name
             continue
-        methods = {
-            each.name: each for each in declaration.body if isinstance(each, ast.FunctionDef)
-        }
-        assert public(kind) == methods.keys() - {"__init__"}, name
+        body = declaration.body
+        attributes = {ast.unparse(each.target) for each in body if isinstance(each, ast.AnnAssign)}
+        methods = {each.name: each for each in body if isinstance(each, ast.FunctionDef)}
+        assert public(kind) == attributes | methods.keys() - {"__init__"}, name
         for method, function in methods.items():
-            if not function.decorator_list:
-                assert bound(getattr(kind, method)) == declared(function), f"{name}.{method}"
+            assert bound(getattr(kind, method)) == declared(function), f"{name}.{method}"

@@ -16,7 +16,6 @@ def told(*arguments: str) -> Callable[[Path], Any]:
 
 
 REFUSALS: list[Row] = [
-    ("--time", told("--time=nan")),
     ("--plot", told("--plot=no/such/folder.png")),
     ("--press", told("--press", "-1", "1")),
     ("impulse", told("--a=1e-2", "--b=1e-2")),

@@ -1,1 +1,1 @@
-"""Parts of the command line: options, summary of a motion, page of `explore`."""
+"""Parts of the command line: its options, and the summary of a motion."""
