@@ -16,7 +16,7 @@ import numpy as np
 
 from . import _core
 from ._ask.check import FloatArray, broadcast, require, shaped
-from ._ask.words import understood
+from ._ask.habits import understood
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",

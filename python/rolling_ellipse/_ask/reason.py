@@ -1,12 +1,14 @@
-"""The reason of an initial state in words: effect of the blow, and motion after it."""
+"""The reason of an initial state: effect of the blow and motion after it, as codes and in words.
+
+The page of `explore` has sentences of its own for the codes.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
 
-from .. import _core
-from .._core import Mode
+from .._core import Mode, Painleve
 
 if TYPE_CHECKING:
     from .scene import Impulse, Scene
@@ -17,6 +19,26 @@ WHERE = {
     Mode.FLIGHT: "in the air",
     Mode.REST: "on the ground, at rest",
 }
+AS_IT_MOVES = "as_it_moves"  # the code of the motion that the velocities at the start suggest
+_SAID = {  # parts of the sentence about a start; numbers by their names in the core
+    "stopped": "{slip_removal}",
+    "no_blow": "no impulse",
+    "in_the_air": "the body is in the air, and the blow changes its flight only",
+    "thrown": "with the blow the body leaves the ground",
+    "slides_off": "the blow makes the contact slip: friction {friction:g} gives an impulse of "
+    "{reaction_x:.6g} N s against {reaction_z:.6g} N s of pressure",
+    "sticks": "the contact sticks: the ground gives {reaction_x:.6g} N s along and "
+    "{reaction_z:.6g} N s away from it; without it omega would be {free_omega:.6g} rad/s",
+    AS_IT_MOVES: "the body {does}",
+    "wedged": "the body rolls; {why_it_rolls}",
+    "no_motion": "the contact slides and jams: no motion of a rigid body goes on (Painleve)",
+    "two_motions": "the contact slides and two motions go on (Painleve), in flight and pressed "
+    "against the ground: rigid mechanics does not choose",
+    "no_grip": "friction {friction:g} cannot hold the contact: the body slides",
+    "pulled": "the ground would have to pull: the body flies",
+    "not_pressed": "the ground would have to pull: the body slides, not pressed "
+    "(infinite friction)",
+}
 _DOES = {
     Mode.ROLLING: "rolls",
     Mode.SLIDING: "slides",
@@ -25,7 +47,7 @@ _DOES = {
 }
 
 
-def blow(impulse: Impulse) -> str:
+def blow_in_words(impulse: Impulse) -> str:
     """Return the components [N s] and the point of attack [m] of an impulse as text."""
     return (
         f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
@@ -33,44 +55,34 @@ def blow(impulse: Impulse) -> str:
     )
 
 
-def what_the_blow_did(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the effect of the blow on the contact, as a part of a sentence."""
+def effect(scene: Scene, start: dict[str, Any]) -> str:
+    """Return the code of the effect of the blow on the contact."""
     if start["slip_removal"]:
-        return str(start["slip_removal"])
+        return "stopped"
     if scene.impulse is None:
-        return "no impulse"
+        return "no_blow"
     if not start["touching"]:
-        return "the body is in the air, and the blow changes its flight only"
-    if start["mode_by_velocity"] is Mode.FLIGHT:
-        return "with the blow the body leaves the ground"
-    if start["mode_by_velocity"] is Mode.SLIDING:
-        return (
-            f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
-            f"{start['reaction_x']:.6g} N s against {start['reaction_z']:.6g} N s of pressure"
-        )
-    return (
-        f"the contact sticks: the ground gives {start['reaction_x']:.6g} N s along and "
-        f"{start['reaction_z']:.6g} N s away from it; without it omega would be "
-        f"{start['free_omega']:.6g} rad/s"
-    )
+        return "in_the_air"
+    by_mode = {Mode.FLIGHT: "thrown", Mode.SLIDING: "slides_off"}
+    return by_mode.get(start["mode_by_velocity"], "sticks")
 
 
-def what_follows(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the motion after t = 0 in words, and why if its velocities suggest another one."""
-    mode, paradox = start["mode"], start["paradox"]
+def motion_after(scene: Scene, start: dict[str, Any]) -> str:
+    """Return the code of the motion after t = 0, and why if its velocities suggest another one."""
+    mode = start["mode"]
     if start["why_it_rolls"]:
-        return f"the body rolls; {start['why_it_rolls']}"
-    if paradox is _core.Painleve.NO_MOTION:
-        return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
-    if paradox is _core.Painleve.TWO_MOTIONS:
-        return (
-            "the contact slides and two motions go on (Painleve), in flight and pressed against "
-            "the ground: rigid mechanics does not choose"
-        )
+        return "wedged"
+    if start["paradox"] is not Painleve.DETERMINED:
+        return str(start["paradox"].name).lower()
     if mode is start["mode_by_velocity"] or mode is Mode.REST:
-        return f"the body {_DOES[mode]}"
-    if mode is Mode.SLIDING and math.isinf(scene.friction):
-        return "the ground would have to pull: the body slides, not pressed (infinite friction)"
-    if mode is Mode.SLIDING:
-        return f"friction {scene.friction:g} cannot hold the contact: the body slides"
-    return "the ground would have to pull: the body flies"
+        return AS_IT_MOVES
+    if mode is not Mode.SLIDING:
+        return "pulled"
+    return "no_grip" if scene.friction < math.inf else "not_pressed"
+
+
+def reason(scene: Scene, start: dict[str, Any]) -> str:
+    """Return the sentence about a start."""
+    known = start | {"friction": scene.friction, "does": _DOES[start["mode"]]}
+    codes = effect(scene, start), motion_after(scene, start)
+    return "; ".join(_SAID[code].format_map(known) for code in codes)

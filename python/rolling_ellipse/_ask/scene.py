@@ -10,12 +10,12 @@ from typing import Any, ClassVar, Self, TypedDict, Unpack
 
 from .. import _core
 from .._core import Mode
-from . import reason as words
 from .check import number, positive, shown
+from .habits import meant
 from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
+from .reason import WHERE, blow_in_words, reason
 from .records import FieldsOnly, cached_property
-from .words import meant
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
 
@@ -237,8 +237,7 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
-        did, then = words.what_the_blow_did(self, start), words.what_follows(self, start)
-        return InitialState(**known, reason=f"{did}; {then}")
+        return InitialState(**known, reason=reason(self, start))
 
     def _changed(self) -> dict[str, Any]:
         """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
@@ -258,9 +257,9 @@ class Scene(FieldsOnly, Listed):
         ]
         start, after = self.initial_state, ""
         if impulse is not None:
-            rows.append(("impulse", words.blow(impulse)))
+            rows.append(("impulse", blow_in_words(impulse)))
             after = f", omega = {brief(start.omega)} rad/s after the blow"
-        return [*rows, ("start", words.WHERE[start.mode] + after)]
+        return [*rows, ("start", WHERE[start.mode] + after)]
 
 
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)

@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import FloatArray, array, choice, number, shown
+from .._ask.habits import MEANT, meant
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import METHODS, MODELS, Method, Model, Settings
-from .._ask.words import MEANT, meant
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events

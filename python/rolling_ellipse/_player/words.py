@@ -65,6 +65,11 @@ def written(value: float, words: dict[str, str]) -> str:
     return text.replace(".", words["decimal"])
 
 
+def numbers_in(key: str) -> list[str]:
+    """Return the names in braces of an English text."""
+    return _BRACES.findall(_table("en")[key])
+
+
 def filled(words: dict[str, str], key: str, **values: float) -> str:
     """Return a text with numbers in its braces."""
     return _BRACES.sub(lambda found: written(values[found[1]], words), words[key])

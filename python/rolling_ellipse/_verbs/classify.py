@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import evaluate, number, optional_number
+from .._ask.habits import understood
 from .._ask.printing import Listed, with_unit
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
-from .._ask.words import understood
 from .._core import Outcome
 from .workers import shared
 

@@ -10,9 +10,9 @@ import numpy as np
 from .. import _core
 from .._ask.categories import StabilityWarning, ValidityWarning
 from .._ask.check import FloatArray, array, flag, shown
+from .._ask.habits import understood
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
-from .._ask.words import understood
 from .._motion.samples import even_times
 from .._motion.stability import advice
 from .._motion.status import COMPLETED, IntegrationError, Status

@@ -17,8 +17,8 @@ import numpy as np
 
 from ... import _core
 from ..._ask.check import FloatArray, array, common_shape, shown
+from ..._ask.habits import meant
 from ..._ask.scene import OPTIONAL, Impulse, Scene
-from ..._ask.words import meant
 from .tables import BLOW, NAMES, WIDTH, name_of, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk

@@ -8,10 +8,10 @@ from typing import Any
 
 from ... import _core
 from ..._ask.check import flag, shown
+from ..._ask.habits import understood
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
-from ..._ask.words import understood
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
