@@ -14,8 +14,7 @@ import pytest
 import rolling_ellipse as rl
 from PIL import Image
 from rolling_ellipse._player import film_page
-from rolling_ellipse._player.colours import DARK, LIGHT
-from rolling_ellipse._player.page import document
+from rolling_ellipse._player.page import DARK, LIGHT, document
 
 Page = Any
 Opened = Callable[..., Page]

@@ -1,12 +1,13 @@
-"""The Axes and figures of pictures, given or new, and the docstring parts that pictures share."""
+"""The Axes and figures of pictures, the artists that plots return, and what docstrings share."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
+from dataclasses import fields
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -51,6 +52,44 @@ ValueError
 TypeError
     If something is no trajectory, or an argument of another wrong kind.
 """
+
+
+class Artists:
+    """A dataclass of artists that prints their names, and how many there are of each.
+
+    `axes` has all Axes with artists, and `ax` is the only or the first one; a dataclass has a field
+    for one of the two.
+    """
+
+    ax: Axes
+    axes: tuple[Axes, ...]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name == "axes" and "ax" in self.__dict__:
+                return (self.ax,)
+            if name == "ax" and "axes" in self.__dict__:
+                return self.axes[0]
+            return object.__getattribute__(self, name)
+
+    @property
+    def figure(self) -> Figure:
+        """The figure, or the part of one (a SubFigure), that the Axes are in."""
+        return self.ax.figure  # type: ignore[return-value]
+
+    def savefig(self, path: Any, **options: Any) -> None:
+        """Write the whole figure to a file, with the options of matplotlib's `Figure.savefig`."""
+        self.ax.get_figure(root=True).savefig(path, **options)  # type: ignore[union-attr]
+
+    def __repr__(self) -> str:
+        names = []
+        for field in fields(self):  # type: ignore[arg-type]
+            artists: Any = getattr(self, field.name)
+            if artists is not None:
+                several = isinstance(artists, (tuple, list, dict))
+                names.append(f"{len(artists)} {field.name}" if several else field.name)
+        return f"<{type(self).__name__}: {', '.join(names)}>"
 
 
 def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:

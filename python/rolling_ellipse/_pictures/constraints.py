@@ -13,11 +13,10 @@ from matplotlib.lines import Line2D
 from .._ask.check import FloatArray
 from .._motion.relative_errors import constraint_errors, worst
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import panels_of, picture
+from .axes import Artists, panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
-from .panels import draw_error, dress_errors, finish
+from .panels import draw_errors, finish
 from .sampling import for_dots
 
 
@@ -61,23 +60,19 @@ def plot_constraints(
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(for_dots)
     panels = panels_of(ax, figsize)
-    lines: list[list[Line2D]] = [[] for _ in panels]
-    for motion, style in shown:
-        of_panels = _errors_of(motion, len(panels), style)
-        for panel, drawn, errors in zip(panels, lines, of_panels, strict=True):
-            for rank, (name, values) in enumerate(errors.items()):
-                drawn.append(draw_error(panel, motion, values, name, rank, style))
-                shown.restyle(drawn[-1])
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
-    for panel, drawn, name in zip(panels, lines, names, strict=True):
-        dress_errors(panel, drawn, name)
+    errors = zip(*(_errors_of(*each, len(panels)) for each in shown), strict=True)
+    lines = tuple(
+        draw_errors(panel, shown, of_all, name)
+        for panel, of_all, name in zip(panels, errors, names, strict=True)
+    )
     if shown.alone:
         name_curves(panels[-1], some_of(lines[-1]))
     marks = finish(panels, shown, some_of(lines[0]))
-    return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
+    return Constraints(tuple(panels), lines, marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Mapping[str, FloatArray]]:
+def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
     """Return the errors of each panel by name; of one of several motions only the worst."""
     positions, velocities = constraint_errors(motion)
     if style.label and panels == 2:

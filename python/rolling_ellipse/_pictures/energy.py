@@ -14,11 +14,10 @@ from .._ask.check import choice
 from .._core import Mode
 from .._motion.relative_errors import energy_error
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import axes_of, picture
+from .axes import Artists, axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .panels import DASHES, draw_energies, draw_error, dress_errors, finish
+from .panels import DASHES, draw_energies, draw_errors, finish
 from .sampling import for_dots, over_time
 
 KINDS = ("energies", "error")
@@ -71,25 +70,15 @@ def plot_energy(
     wanted = choice("kind", default if kind is None else kind, KINDS)
     shown = shown.sampled(over_time if wanted == "energies" else for_dots)
     ax = axes_of(ax, (7, 3.4), figsize)
-    energies: list[tuple[Line2D, Line2D, Line2D]] = []
-    errors: list[Line2D] = []
-    for motion, style in shown:
-        if wanted == "energies":
-            energies.append(draw_energies(ax, motion, style))
-        else:
-            label = style.label or "energy error"
-            errors.append(draw_error(ax, motion, energy_error(motion), label, 0, style))
-    for lines in (*energies, errors):
-        shown.restyle(*lines)
-    handles: list[Any] = some_of(errors)
     if wanted == "energies":
+        drawn = (draw_energies(ax, motion, style) for motion, style in shown)
+        total, kinetic, potential = zip(*drawn, strict=True)
+        shown.restyle(*total, *kinetic, *potential)
         names = ("total", "kinetic", "potential")
         handles = shown.handles(ax, list(zip(names, DASHES, strict=True)))
-    else:
-        # Sliding and impacts lose energy; this is no error.
-        loses = any(each.events or (each.mode == Mode.SLIDING).any() for each in shown.motions)
-        word = "change" if loses else "error"
-        dress_errors(ax, errors, f"relative energy {word}")
-    marks = finish([ax], shown, handles)
-    total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
-    return Energy(ax, total, kinetic, potential, tuple(errors), marks)
+        return Energy(ax, total, kinetic, potential, (), finish([ax], shown, handles))
+    # Sliding and impacts lose energy; this is no error.
+    loses = any(each.events or (each.mode == Mode.SLIDING).any() for each in shown.motions)
+    errors = ({style.label or "energy error": energy_error(motion)} for motion, style in shown)
+    found = draw_errors(ax, shown, errors, f"relative energy {'change' if loses else 'error'}")
+    return Energy(ax, (), (), (), found, finish([ax], shown, some_of(found)))

@@ -15,11 +15,10 @@ from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import axes_of, picture
+from .axes import Artists, axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .panels import draw_error, dress_errors, finish
+from .panels import draw_errors, finish
 from .sampling import over_time
 
 QUANTITIES = {  # quantities and their symbols
@@ -76,15 +75,15 @@ def plot_error(
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
     compared.sampled(over_time)
     ax = axes_of(ax, (7, 3.4), figsize)
-    errors = []
-    for (motion, style), right in zip(compared, references, strict=True):
-        error, label = _error(motion, right, quantity), style.label or "error"
-        errors.append(draw_error(ax, motion, error, label, 0, style, ls=style.dash))
-    compared.restyle(*errors)
+    found = (
+        {style.label or "error": _error(motion, right, quantity)}
+        for (motion, style), right in zip(compared, references, strict=True)
+    )
     none = f"no error beside the {'exact motion' if reference is None else 'reference'}"
-    dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}", none)
+    label = f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}"
+    errors = draw_errors(ax, compared, found, label, none, dashed=True)
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
-    return Error(ax, tuple(errors), references, marks)
+    return Error(ax, errors, references, marks)
 
 
 def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajectory:

@@ -14,8 +14,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import panels_of, picture
+from .axes import Artists, panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
 from .palette import palette_of

@@ -15,17 +15,15 @@ from matplotlib.lines import Line2D
 from .._ask.check import FloatArray, file_name
 from .._motion.relative_errors import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import close, figure_of, picture
+from .axes import Artists, close, figure_of, picture
 from .comparison import Comparison
 from .legends import name_curves
 from .panels import (
     Stems,
     draw_curve,
     draw_energies,
-    draw_error,
+    draw_errors,
     draw_forces,
-    dress_errors,
     dress_forces,
     dress_over_time,
     note_of,
@@ -111,7 +109,7 @@ def plot(
     forces = draw_forces(panels[3], motion)
     (impulses,) = dress_forces(panels[3], shown)
     energies = draw_energies(panels[4], motion)
-    errors = _draw_errors(panels[5], for_dots(trajectory))
+    errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
     marks = _dress_panels(panels, shown)
     whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
     if name is not None:
@@ -138,7 +136,8 @@ def _draw_state(ax: Axes, motion: Trajectory, values: FloatArray, label: str) ->
     return draw_curve(ax, motion, values, f"_{label}", 0)
 
 
-def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
+def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
+    (trajectory,) = shown.motions
     positions, velocities = constraint_errors(trajectory)
     errors = {
         "positions": worst(positions),
@@ -146,12 +145,8 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
         # a loss by friction and impacts is no error
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
-    position, velocity, energy = (
-        draw_error(ax, trajectory, values, name, rank)
-        for rank, (name, values) in enumerate(errors.items())
-    )
     word = "error, change" if trajectory.events else "relative error"
-    dress_errors(ax, (position, velocity, energy), word)
+    position, velocity, energy = draw_errors(ax, shown, [errors], word)
     return position, velocity, energy
 
 

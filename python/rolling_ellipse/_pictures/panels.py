@@ -7,7 +7,7 @@ differ in colour.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -180,9 +180,27 @@ def draw_energies(
     )
 
 
-def dress_errors(
-    ax: Axes, lines: Sequence[Line2D], label: str, none: str = "exactly 0 throughout"
-) -> None:
+def draw_errors(
+    ax: Axes,
+    shown: Comparison,
+    errors: Iterable[Mapping[str, FloatArray]],
+    label: str,
+    none: str = "exactly 0 throughout",
+    *,
+    dashed: bool = False,
+) -> tuple[Line2D, ...]:
+    """Draw the errors of each motion by their names, and scale the axis; lines if `dashed`."""
+    lines = [
+        draw_error(ax, motion, values, name, rank, style, **{"ls": style.dash} if dashed else {})
+        for (motion, style), own in zip(shown, errors, strict=True)
+        for rank, (name, values) in enumerate(own.items())
+    ]
+    shown.restyle(*lines)
+    dress_errors(ax, lines, label, none)
+    return tuple(lines)
+
+
+def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str, none: str) -> None:
     """Scale the axis of errors: logarithmic, from below rounding to above the largest.
 
     A sentence tells of errors that have no place on it.

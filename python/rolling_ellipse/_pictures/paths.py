@@ -14,8 +14,7 @@ from matplotlib.patches import Polygon
 from .._core import EventKind
 from .._motion.trajectory import Trajectory
 from . import ground as drawing
-from .artists import Artists
-from .axes import axes_of, picture
+from .axes import Artists, axes_of, picture
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend

@@ -16,8 +16,7 @@ from .. import _core
 from .._ask.check import FloatArray, flag
 from .._ask.scene import Scene
 from .._motion.trajectory import Trajectory
-from .artists import Artists
-from .axes import axes_of, picture
+from .axes import Artists, axes_of, picture
 from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground, ending_of

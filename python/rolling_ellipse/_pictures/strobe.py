@@ -17,8 +17,7 @@ from .._ask.scene import Scene
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from . import ground as drawing
-from .artists import Artists
-from .axes import axes_of, picture
+from .axes import Artists, axes_of, picture
 from .comparison import require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
 from .legends import name_curves, title_beside_legend

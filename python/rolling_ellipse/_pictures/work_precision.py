@@ -19,8 +19,7 @@ from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, 
 from .._ask.check import choice, shown
 from .._verbs.work_precision.run import ERRORS, OF_STATES, Run, require_quantity
 from .._verbs.work_precision.verdict import EQUAL, Gaps, gaps
-from .artists import Artists
-from .axes import axes_of, picture, pyplot_figure
+from .axes import Artists, axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
 from .legends import name_curves
 from .palette import palette_of

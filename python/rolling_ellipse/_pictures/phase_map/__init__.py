@@ -17,8 +17,7 @@ from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 from ..._ask.check import FloatArray, whole_within
 from ..._core import Outcome
 from ..._verbs.classify import classify
-from ..artists import Artists
-from ..axes import axes_of, picture, require_axes
+from ..axes import Artists, axes_of, picture, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from .marks import draw_marks, marks_of
