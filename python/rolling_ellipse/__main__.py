@@ -19,6 +19,7 @@ from . import StabilityWarning, Status, Trajectory, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
+from ._show.command.benchmark import act, benchmark_parser
 from ._show.command.options import (
     PROGRAM,
     chosen_scene,
@@ -43,17 +44,18 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 on success; 1 if the motion could not be followed to its end (the summary is of the part
-        before); 2 (and one line) on bad input, or if a file cannot be written. A StabilityWarning
-        is a line, too.
+        before), or an answer of `benchmark` is wrong; 2 (and one line) on bad input, or if a file
+        cannot be written. A StabilityWarning is a line, too.
     """
     typed = joined(sys.argv[1:] if arguments is None else arguments)
-    exploring = typed[:1] == ["explore"]
-    options = (explore_parser() if exploring else motion_parser()).parse_args(typed[exploring:])
+    command = typed[0] if typed[:1] in (["explore"], ["benchmark"]) else ""
+    parser = {"": motion_parser, "explore": explore_parser, "benchmark": benchmark_parser}[command]
+    options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")  # the summary says until when the model is valid
             warnings.simplefilter("always", StabilityWarning)
-            code, message = (0, _page(options)) if exploring else _motion(options)
+            code, message = {"": _motion, "explore": _page, "benchmark": act}[command](options)
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
@@ -98,8 +100,8 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
     return path
 
 
-def _page(options: argparse.Namespace) -> str:
-    """Write the page of `explore`, open it unless `--no-open` is given, and return a message."""
+def _page(options: argparse.Namespace) -> tuple[int, str]:
+    """Write the page of `explore`, open it unless `--no-open` is given, and return 0 and a text."""
     explorer = explore(chosen_scene(options), t_end=options.time, language=options.language)
     path = options.save
     if path is None:
@@ -110,7 +112,7 @@ def _page(options: argparse.Namespace) -> str:
     message = f"written           {path}"
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
         message += "\nno browser was found: open the file in one"
-    return message
+    return 0, message
 
 
 def _complain(error: Exception | Warning | str) -> None:

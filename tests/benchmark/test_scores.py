@@ -1,5 +1,6 @@
 """Scores of the exact motion, of broken simulators and of files, and refused results."""
 
+import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rolling_ellipse import benchmark, simulate
+from rolling_ellipse.__main__ import main
 from rolling_ellipse.benchmark._events import read_off
 from rolling_ellipse.benchmark._problem import STATE
 
@@ -49,6 +51,7 @@ def gaining(one: Any, t: Any, setting: Any) -> Any:
     return np.hstack([one.exact(t)[:, :3], one.exact(t)[:, 3:] * growth])
 
 
+no_bounce = changed(restitution=lambda scene: 0.0)
 BROKEN = {
     "theta counted the other way": (mirrored, {*IDS} - {"rest.lie", "hit.bounce_flat"}),
     "inertia of a ring": (
@@ -57,7 +60,7 @@ BROKEN = {
     ),
     "friction 1 % too large": (changed(friction=lambda scene: 1.01 * scene.friction), WITH_SLIP),
     "restitution ignored": (
-        changed(restitution=lambda scene: 0.0),
+        no_bounce,
         {"hit.bounce", "hit.bounce_flat", "hit.drop_slip_e", "hit.settle", "law.which"},
     ),
     "g = 9.8": (changed(gravity=lambda scene: 9.8), {*IDS} - {"rest.lie", "roll.circle"}),
@@ -202,3 +205,21 @@ def test_unknown_names_list_the_valid_ones(tmp_path: Path) -> None:
     (tmp_path / "roll.rock.csv").write_text("t,x\n0,0\n")
     with pytest.raises(ValueError, match=r"roll\.rock: the file must have a column z"):
         benchmark.score(tmp_path)
+
+
+def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Exit code 1 where an answer is wrong, 2 on bad input."""
+    assert main(["benchmark", "list"]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in IDS)
+    assert main(["benchmark", "run", f"{__name__}:exact", "--json"]) == 0
+    assert {row["answer"] for row in json.loads(capsys.readouterr().out)} == {"right"}
+    assert main(["benchmark", "run", f"{__name__}:exact", "--tags"]) == 0
+    assert capsys.readouterr().out == "flight non-round restitution slope spin stiction\n"
+    assert main(["benchmark", "run", f"{__name__}:no_bounce", "--ladder", "0.01", "0.001"]) == 1
+    assert "wrong: hit.bounce, hit.bounce_flat, hit.settle" in capsys.readouterr().out
+    assert main(["benchmark", "export", str(tmp_path)]) == 0
+    assert main(["benchmark", "score", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out.partition("files\n")[2])[0]["error"] is None
+    for typed in (["run", "exact"], ["run", "json:nothing"], ["score", str(tmp_path / "x")]):
+        assert main(["benchmark", *typed]) == 2

@@ -138,18 +138,20 @@ class Scores(tuple[Score, ...]):
         ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
         return f"{said}. {exact}, in {worst.problem}.{ladder}"
 
+    def records(self) -> list[dict[str, Any]]:
+        """Return a dict of plain numbers and text for each score."""
+        rows = []
+        for score in self:
+            row = {name: getattr(score, name) for name in Score.__dataclass_fields__}
+            row["errors"] = dict(zip(STATE, map(float, score.errors), strict=True))
+            rows.append(row | {"error": score.error, "digits": score.digits})
+        return rows
+
     def to_dataframe(self) -> Any:
         """Return the scores as a pandas DataFrame, a row each."""
         import pandas
 
-        rows = []
-        for score in self:
-            row = {name: getattr(score, name) for name in Score.__dataclass_fields__}
-            errors, events = row.pop("errors"), row.pop("events")
-            row |= {f"error_{name}": float(e) for name, e in zip(STATE, errors, strict=True)}
-            row |= {"error": score.error, "digits": score.digits, **events}
-            rows.append(row)
-        return pandas.DataFrame(rows)
+        return pandas.json_normalize(self.records(), sep="_")
 
     def __repr__(self) -> str:
         return text_table([_HEAD, *(score._row() for score in self)]) + f"\n{self.verdict()}"

@@ -71,7 +71,8 @@ def motion_parser() -> OneLineParser:
     found = _scene_parser(
         PROGRAM,
         "Simulate an ellipse on the ground, and say what happens.",
-        f"{PROGRAM} explore [options] writes a page to play with the scene in a browser.",
+        f"{PROGRAM} explore [options] writes a page to play with the scene in a browser; "
+        f"{PROGRAM} benchmark tests other simulators.",
     )
     found.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
     found.add_argument("--model", choices=MODELS, default="auto", help="how it moves")
