@@ -12,10 +12,12 @@ from ... import benchmark
 from ..._ask.printing import text_table
 from .options import PROGRAM, OneLineParser
 
+_ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
+
 
 def benchmark_parser() -> OneLineParser:
     """Return the parser of `benchmark`."""
-    found = OneLineParser(prog=f"{PROGRAM} benchmark", description=benchmark.__doc__)
+    found = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
     actions = found.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
     actions.add_parser("list", help="print the problems and what they need")
     export = actions.add_parser("export", help="write problems and empty tables for results")
