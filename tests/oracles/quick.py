@@ -27,6 +27,7 @@ QUICK = (
     "border/test_faces.py",
     "refusals/test_numbers.py",
     "export/test_atomic.py",
+    "benchmark/test_scores.py",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
     "report/test_errata.py",
     "pictures/test_curves.py::test_scenes_are_named_by_the_fields_that_differ",
