@@ -24,7 +24,6 @@ from ._show.command.options import (
     PROGRAM,
     chosen_scene,
     explore_parser,
-    joined,
     motion_parser,
     require_file,
 )
@@ -47,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
         before), or an answer of `benchmark` is wrong; 2 (and one line) on bad input, or if a file
         cannot be written. A StabilityWarning is a line, too.
     """
-    typed = joined(sys.argv[1:] if arguments is None else arguments)
+    typed = sys.argv[1:] if arguments is None else arguments
     command = typed[0] if typed[:1] in (["explore"], ["benchmark"]) else ""
     parser = {"": motion_parser, "explore": explore_parser, "benchmark": benchmark_parser}[command]
     options = parser().parse_args(typed[bool(command) :])

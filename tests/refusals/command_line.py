@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from rolling_ellipse.__main__ import _motion
-from rolling_ellipse._show.command.options import joined, motion_parser
+from rolling_ellipse._show.command.options import motion_parser
 
 from refusals import Row
 
 
 def told(*arguments: str) -> Callable[[Path], Any]:
     """The command line's one-line error of a call."""
-    return lambda _: _motion(motion_parser().parse_args(joined(list(arguments))))
+    return lambda _: _motion(motion_parser().parse_args(list(arguments)))
 
 
 REFUSALS: list[Row] = [

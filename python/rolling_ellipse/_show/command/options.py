@@ -39,6 +39,8 @@ _BASE = (
     "centre; options change it."
 )
 _SCRIPT = "rolling-ellipse"
+# For argparse -1e-3, -inf and -nan would be unknown options
+_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.IGNORECASE)
 PROGRAM = _SCRIPT if Path(sys.argv[0]).stem == _SCRIPT else "python -m rolling_ellipse"
 
 
@@ -57,6 +59,7 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
     found = OneLineParser(
         prog=prog, description=f"{description} {_BASE}", epilog=epilog, allow_abbrev=False
     )
+    found._negative_number_matcher = _NEGATIVE
     for name, meaning in SCENE_OPTIONS.items():
         found.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
     found.add_argument(
@@ -93,34 +96,6 @@ def explore_parser() -> OneLineParser:
     found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
     found.add_argument("--no-open", action="store_true", help="write it and open no browser")
     return found
-
-
-def joined(arguments: list[str]) -> list[str]:
-    """Join negative numbers to their options, since argparse takes -1e-3 for another option.
-
-    The number of an option is joined by "="; the two of --press get a leading blank, so that they
-    do not look like options.
-    """
-    found: list[str] = []
-    for argument in arguments:
-        last = found[-1] if found else ""
-        if not (argument.startswith("-") and _is_number(argument)):
-            found.append(argument)
-        elif "--press" in found[-2:]:
-            found.append(f" {argument}")
-        elif re.match("--[a-z]+$", last):
-            found[-1] += f"={argument}"
-        else:
-            found.append(argument)
-    return found
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def require_file(option: str, path: str) -> None:

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ... import _core
 from ..._ask.scene import Scene
 from ..._core import Mode, Validity
 from ..._motion.trajectory import Trajectory
 from ..._verbs.certify import certify
 from ..._verbs.flow import period
-from ..._verbs.outcome import outcome
 
 _SHOWN_EVENTS = 10
 _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
@@ -45,7 +45,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
         residuals = trajectory.constraint_residuals()
         touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
         found |= {
-            "outcome": _lower(outcome(scene)),
+            "outcome": _core.outcome(scene.core).name.lower(),
             "period": _period(scene) if rolls else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
@@ -61,10 +61,6 @@ def _scene_facts(scene: Scene) -> dict[str, Any]:
     """Return the changed fields of a scene: JSON has no infinite friction, which is the default."""
     facts = {name: value for name, value in asdict(scene).items() if name in scene._changed()}
     return facts | {"impulse": facts.get("impulse")}
-
-
-def _lower(found: Any) -> str:
-    return str(found.name).lower()
 
 
 def _largest(values: np.ndarray[Any, Any]) -> float:

@@ -13,13 +13,14 @@ import math
 import os
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
+from functools import partial
 from importlib.metadata import version
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -50,8 +51,6 @@ _AGAIN = "simulate_many with the same arguments"
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
 _Names = dict[int, list[str]]  # names of the files of each chunk, by its index, ascending
-
-_Made = TypeVar("_Made")
 
 
 class Folder:
@@ -97,17 +96,11 @@ class Folder:
             self._refuse_scenes(f"whose scenes {chunk.begin} to {last} are others: {others[0]!r}")
         if chunk.begin >= self._scenes:
             self._refuse_scenes(f"which has {self._scenes}")
-        if not there:
-            return False
-
-        def read(content: bytes) -> Tables:
-            return _tables(content, name, len(chunk.table), self._samples)
-
-        try:
-            _chunk(self.path / name, read)
-        except (FileNotFoundError, ValueError):
-            return False
-        return True
+        if there:
+            with suppress(FileNotFoundError, ValueError):
+                _chunk(self.path, name, len(chunk.table), self._samples)
+                return True
+        return False
 
     def store(self, chunk: Chunk, tables: Tables) -> None:
         name = _name(chunk.index, self._request, chunk.table)
@@ -187,11 +180,7 @@ class StoredMotions(Sequence[Answer]):
 
     def _tables(self, index: int) -> Tables:
         begin, end = self._begins[index : index + 2]
-
-        def read(content: bytes) -> Tables:
-            return _tables(content, self._names[index], end - begin, self._request.times.size)
-
-        return _chunk(self._folder / self._names[index], read)
+        return _chunk(self._folder, self._names[index], end - begin, self._request.times.size)
 
     def arrays(self, returns: Any = DIRECT) -> MotionArrays:
         """Return quantities of all motions, as `simulate_many` does for ``returns``."""
@@ -332,8 +321,10 @@ def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
     return restored(folder / _REQUEST, _of_request, ARCHIVE, "simulate_many", cure)
 
 
-def _chunk(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
-    return restored(path, restore, ARCHIVE, "simulate_many", f": {_AGAIN} computes it anew")
+def _chunk(folder: Path, name: str, n: int, samples: int) -> Tables:
+    """Return the tables of the file of this name, with n scenes."""
+    read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} computes it anew"
+    return restored(folder / name, read, ARCHIVE, "simulate_many", cure)
 
 
 def _replacing(path: Path) -> AbstractContextManager[Path]:
