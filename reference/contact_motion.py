@@ -354,10 +354,12 @@ class Hit(NamedTuple):
     rebound: Any
 
 
-def collide(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
-    """Impulses of a collision that starts with slip v and gap rate u < 0."""
+def collide(body: Body, touch: Touch, v: Any, u: Any, law: str = "stronge") -> Hit:
+    """Impulses of a collision that starts with slip v and gap rate u < 0; the laws "poisson" and
+    "newton" of restitution are known for finite friction only."""
     if gmpy2.is_finite(body.mu):
-        return collide_with_friction(body, touch, v, u)
+        return collide_with_friction(body, touch, v, u, law)
+    assert law == "stronge"
     tangential, normal, coupling = touch[2:]
     stopped = u - v * coupling / tangential  # gap rate when friction alone has ended the slip
     if stopped <= 0:
@@ -370,10 +372,15 @@ def collide(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
     return Hit(along, mpfr(0), v + tangential * along, -body.e * u)
 
 
-def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
-    """Impulses of a collision with Coulomb friction, in pieces on which v and u are linear in p."""
+def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) -> Hit:
+    """Impulses of a collision with Coulomb friction, in pieces on which v and u are linear in p.
+
+    Restitution ends by its law: with e^2 of the work of compression done (Stronge), e times the
+    impulse of compression (Poisson), or u = -e times its first value (Newton).
+    """
     tangential, normal, coupling = touch[2:]
     along, away, work, compressing = mpfr(0), mpfr(0), mpfr(0), True
+    most_away, most_u = mpfr(0), -body.e * u
     while True:
         if v != 0:
             side = 1 if v > 0 else -1
@@ -386,9 +393,10 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
         ends = []
         if v * v_rate < 0:
             ends.append((-v / v_rate, "slip"))
-        if not compressing:  # the piece ends at u p + u_rate p^2 / 2 = work, with u >= 0
+        if not compressing:  # Stronge: the piece ends at u p + u_rate p^2 / 2 = work, with u >= 0
             assert u_rate > 0
-            ends.append(((gmpy2.sqrt(u**2 + 2 * u_rate * work) - u) / u_rate, "end"))
+            last_u = gmpy2.sqrt(u**2 + 2 * u_rate * work) if law == "stronge" else most_u
+            ends.append((most_away - away if law == "poisson" else (last_u - u) / u_rate, "end"))
         elif u_rate > 0:
             ends.append((-u / u_rate, "turn"))
         p, what = min(ends)
@@ -399,6 +407,7 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
             v = mpfr(0)
         elif what == "turn":
             u, compressing, work = mpfr(0), False, body.e**2 * work
+            most_away = (1 + body.e) * away
             if body.e == 0:
                 return Hit(along, away, v, u)
         else:
@@ -422,6 +431,7 @@ class Follower:
 
     most_steps = MOST_STEPS
     least_rebound = LEAST_REBOUND
+    law = "stronge"  # of restitution
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.body = body = Body(scene)
@@ -586,7 +596,7 @@ class Follower:
         touch = body.touch(s.phi)
         s = s._replace(z=touch.h)
         v, u = s.x_dot - touch.h * s.omega, s.z_dot - touch.o * s.omega
-        hit = collide(body, touch, v, u)
+        hit = collide(body, touch, v, u, self.law)
         before = self.energy()
         omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / body.k2
         x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
