@@ -71,6 +71,8 @@ KINDS = {
     "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
         "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
         "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py",
+        "reference/contact_motion.py", "reference/make_benchmark.py",
+        "tests/benchmark/test_problems.py",
     )),
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip

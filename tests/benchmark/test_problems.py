@@ -1,0 +1,114 @@
+"""The package gives the known answers of reference/make_benchmark.py, which shares no code with it.
+
+Bound. Inputs are doubles, off by up to half an ulp, 1.1e-16 of them, and so are the numbers of the
+files. A condition is the change of an answer, in its own scale, by that of all inputs: a method as
+good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room for its own roundings
+and for forces, functions of the state with slopes of up to three weights by scale.
+"""
+
+import json
+import random
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from oracles.paths import ROOT
+from rolling_ellipse import Scene, Status, Trajectory, impacts, simulate
+
+FOLDER = ROOT / "python" / "rolling_ellipse" / "benchmark" / "problems"
+PROBLEMS: dict[str, Any] = {
+    path.stem: json.loads(path.read_text(encoding="utf-8")) for path in FOLDER.glob("*.json")
+}
+STATE = ["x", "z", "theta", "x_dot", "z_dot", "omega"]
+COLUMNS = [*STATE, "normal_force", "friction_force"]
+ULP, ULPS = 2.2e-16, 4
+each_problem = pytest.mark.parametrize("name", sorted(PROBLEMS))
+
+
+@cache
+def motion(name: str) -> Trajectory:
+    """The package's motion; a jam at the start ends it there."""
+    data = PROBLEMS[name]
+    return simulate(Scene(**data["scene"]), data["t_end"] or 1.0, model="contact")
+
+
+def errors(data: Any, found: Any, exact: Any) -> NDArray[np.float64]:
+    """Errors of rows of states, with or without forces, in ulps of their scales."""
+    weight = data["scene"]["mass"] * data["scene"]["gravity"]
+    scales = np.array([*data["scales"], weight, weight])[: np.shape(exact)[1]]
+    largest: NDArray[np.float64] = np.max(np.abs(np.asarray(found) - exact) / scales, axis=1)
+    return largest / ULP
+
+
+@each_problem
+def test_states_forces_and_events_are_the_known_ones(name: str) -> None:
+    """Within the bound, and states and forces to twelve digits where the condition is large."""
+    data, of = PROBLEMS[name], motion(name)
+    rows, condition = np.array(data["states"]), np.array(data["condition"])
+    samples = of.sol(rows[:, 0])
+    found = np.stack([getattr(samples, column) for column in COLUMNS], axis=1)
+    error = errors(data, found, rows[:, 1:])
+    assert np.all(error <= ULPS * (condition + 1)) and error.max() * ULP < 1e-12
+    assert (of.status is Status.JAMMED) == (data["answer"] == {"status": "JAMMED"})
+    assert [event.kind.name for event in of.events] == [event["kind"] for event in data["events"]]
+    for event, known in zip(of.events, data["events"], strict=True):
+        most = ULPS * (known["condition"] + 1)
+        assert abs(event.t - known["t"]) * data["scales"][5] <= most * ULP
+        near = of.sol(np.array([np.nextafter(event.t, 0), event.t]))
+        states = [
+            [getattr(each, column) for column in STATE]
+            for each in (event.state_before, event.state_after)
+        ]
+        found = np.column_stack([states, near.normal_force, near.friction_force])
+        assert errors(data, found, [known["before"], known["after"]]).max() <= most
+
+
+def test_other_laws_of_restitution_are_the_known_ones() -> None:
+    data = PROBLEMS["law.which"]
+    body = {key: data["scene"][key] for key in ("a", "b", "friction", "restitution")}
+    (hit,), g = data["events"], data["scene"]["gravity"]
+    x, z, theta, *velocity = hit["before"][:6]
+    for law, rows in data["laws"].items():
+        x_dot, z_dot, omega = impacts.collide(theta, *velocity, **body, law=law)
+        for (t, *exact), condition in zip(rows, data["condition"], strict=True):
+            if (after := t - hit["t"]) > 0:
+                place = (
+                    x + x_dot * after,
+                    z + (z_dot - g * after / 2) * after,
+                    theta + omega * after,
+                )
+                found = [*place, x_dot, z_dot - g * after, omega]
+                assert errors(data, [found], [exact[:6]]) <= ULPS * (condition + 1)
+        assert not np.allclose(rows, data["states"], rtol=0.05)
+
+
+@each_problem
+def test_twins_have_the_same_events(name: str) -> None:
+    """All inputs off by 1e-12 of their size, zeros of the start by 1e-12 of their scale."""
+    data, rng = PROBLEMS[name], random.Random(33)
+    scene, sizes = data["scene"], dict(zip(STATE, data["scales"], strict=True))
+    follow = ["z", "z_dot"] * (Scene(**scene).initial_state.mode.name != "FLIGHT")
+    if follow and abs(scene["x_dot"] - scene["z"] * scene["omega"]) < 1e-12:
+        follow.append("x_dot")
+    for _ in range(64):
+        size = {key: 1e-12 * (abs(old) or sizes.get(key, 0)) for key, old in scene.items()}
+        changed = {key: old + rng.choice([-1, 1]) * size[key] for key, old in scene.items()}
+        changed["restitution"] = min(changed["restitution"], 2 - changed["restitution"])
+        twin = simulate(
+            Scene(**changed | dict.fromkeys(follow)), data["t_end"] or 1.0, model="contact"
+        )
+        assert [each.kind for each in twin.events] == [each.kind for each in motion(name).events]
+
+
+def test_the_files_are_small_and_of_one_form() -> None:
+    assert len(PROBLEMS) == 20 and sum(data["scored"] for data in PROBLEMS.values()) == 18
+    assert sum(path.stat().st_size for path in FOLDER.glob("*.json")) <= 200_000
+    for name, data in PROBLEMS.items():
+        assert (data["id"], data["format"]) == (name, "rolling_ellipse.benchmark/1")
+        assert data["columns"] == ["t", *COLUMNS] and data["needs"] == sorted(data["needs"])
+        rows = list(zip(data["states"], data["condition"], strict=True))
+        assert all(len(row) == 9 and condition >= 1 for row, condition in rows)
+        wild = [row[0] for row, condition in rows if condition > 1000]
+        assert data["horizon"] == min([*wild, data["t_end"]])
