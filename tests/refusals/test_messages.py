@@ -23,7 +23,7 @@ from refusals import Row
 
 ROOMS = (
     "ask", "core", "functions", "trajectory", "files", "batches", "races", "report", "pictures",
-    "command_line",
+    "command_line", "benchmark",
 )  # fmt: skip
 TABLE: list[Row] = [
     row for room in ROOMS for row in importlib.import_module(f"refusals.{room}").REFUSALS
@@ -43,6 +43,7 @@ UNREACHABLE: dict[str, str] = {
     # reason of a run that has no answer, kept in the race
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",
+    'NotImplementedError("no result")': "a reason",
     "it returned theta, omega, x": "a reason",
 }
 

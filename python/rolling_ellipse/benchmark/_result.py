@@ -65,22 +65,26 @@ def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
         such kind. The message names the problem and the argument.
     """
     result = found if isinstance(found, Result) else Result(found)
-    states = array(f"{problem.id}: states", result.states)
+    states = array(f"states of {problem.id}", result.states)
     if states.ndim != 2 or states.shape[1] != len(STATE):
         columns = ", ".join(STATE)
         raise ValueError(
-            f"{problem.id}: states must have shape (n, 6) for {columns}, got {states.shape}"
+            f"states of {problem.id} must have shape (n, 6) for {columns}, got {states.shape}"
         )
-    t = times if result.t is None else array(f"{problem.id}: t", result.t)
+    t = times if result.t is None else array(f"t of {problem.id}", result.t)
     if t.shape != states.shape[:1]:
         if result.t is not None or len(states) > len(t):
             raise ValueError(
-                f"{problem.id}: t must have one time a row of states, "
+                f"t of {problem.id} must have one time for each row of states, "
                 f"got shapes {t.shape} and {states.shape}"
             )
         t = t[: len(states)]  # a simulation that ended early
-    if not (np.diff(t) > 0).all():
-        raise ValueError(f"{problem.id}: t must increase from row to row")
+    grows = np.diff(t) > 0
+    if not grows.all():
+        k = int(np.argmin(grows))
+        raise ValueError(
+            f"t of {problem.id} must increase from row to row, got {t[k + 1]!s} after {t[k]!s}"
+        )
     usable = np.isfinite(states).all(axis=1) & np.isfinite(t)
     given = np.isin(problem.times.round(9), t[usable].round(9))
     missing = "" if given.all() else f"{(~given).sum()} of {given.size} given times are missing"
@@ -91,7 +95,7 @@ def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | No
     if events is None:
         return None
     found = [
-        (choice(f"{problem.id}: kind of an event", getattr(kind, "name", kind), _KINDS), float(t))
+        (choice(f"events of {problem.id}", getattr(kind, "name", kind), _KINDS), float(t))
         for kind, t in events
     ]
     return tuple(sorted(found, key=lambda event: event[1]))
@@ -113,7 +117,7 @@ def read(problem: Problem, path: Path) -> Result:
     names = [SYNONYMS.get(name.strip(), name.strip()) for name in (rows[0] if rows else [])]
     for name in COLUMNS[:7]:
         if name not in names:
-            raise ValueError(f"{problem.id}: the file must have a column {name}, got {names}")
+            raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")
     columns = {
         name: np.array([_entry(problem, name, row, names.index(name)) for row in rows[1:]])
         for name in COLUMNS
@@ -131,7 +135,7 @@ def _entry(problem: Problem, name: str, row: list[str], place: int) -> float:
     try:
         return float(text) if text else np.nan
     except ValueError:
-        raise ValueError(f"{problem.id}: {name} must be a number, got {text!r}") from None
+        raise ValueError(f"{name} of {problem.id} must be a number, got {text!r}") from None
 
 
 def _read_events(problem: Problem, path: Path) -> Iterable[tuple[str, float]] | None:

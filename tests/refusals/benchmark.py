@@ -1,0 +1,60 @@
+"""Refusals of `benchmark`: unknown names, and results that are not as they must be."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rolling_ellipse import benchmark
+from rolling_ellipse._show.command.benchmark import act, benchmark_parser
+
+from refusals import Row, wrong
+
+STICK = benchmark.problem("slide.stick")
+T = STICK.output_times
+STATES = STICK.exact(T)
+
+
+def exact(one: Any, t: Any, setting: Any) -> Any:
+    return one.exact(t)
+
+
+def scored(states: Any, **others: Any) -> Callable[[Path], Any]:
+    return lambda _: benchmark.score({STICK.id: benchmark.Result(states, **others)})
+
+
+def written(text: str, events: str = "") -> Callable[[Path], Any]:
+    """Score a file, and a file of events."""
+
+    def call(folder: Path) -> Any:
+        (folder / "slide.stick.csv").write_text(text)
+        if events:
+            (folder / "slide.stick.events.csv").write_text(events)
+        return benchmark.score(folder)
+
+    return call
+
+
+def told(*arguments: str) -> Callable[[Path], Any]:
+    return lambda _: act(benchmark_parser().parse_args(list(arguments)))
+
+
+def _rows() -> Iterator[Row]:
+    yield from wrong(benchmark.problem, {}, id=["slide", 3])
+    yield from wrong(benchmark.problems, {}, tags=[["gpu"]])
+    yield from wrong(benchmark.run, {"mine": exact}, tolerance=[0.0, np.nan], tags=[["gpu"]])
+    yield from wrong(benchmark.score, {}, results=["no/such/folder"])
+    yield TypeError, lambda _: benchmark.score(3)
+    yield "states", scored(STATES[:, :5])
+    yield TypeError, scored("x")
+    yield "t", scored(STATES, t=T[1:])
+    yield "t", scored(STATES, t=T[::-1])
+    yield "events", scored(STATES, events=[("HOP", 1.0)])
+    yield "z", written("t,x\n0,0\n")
+    yield "x_dot", written("t,x,z,theta,vx,vz,omega\n0,0,1,0,fast,0,0\n")
+    yield "t", written("t,x,z,theta,vx,vz,omega\n0,0,1,0,3,0,0\n", "kind,t\nSTICK,soon\n")
+    yield "run", told("run", "exact")
+    yield "run", told("run", "json:nothing")
+
+
+REFUSALS: list[Row] = list(_rows())
