@@ -150,6 +150,25 @@ class Gradient:
     t: float
     value: FloatArray
 
+    def error(self, value: Any) -> float:
+        """Return the error of a derivative over the known one, both by the scales of states.
+
+        Parameters
+        ----------
+        value : array_like, shape (6,)
+
+        Raises
+        ------
+        ValueError
+            If it has another shape.
+        """
+        found = array("value", value)
+        if found.shape != self.value.shape:
+            raise ValueError(f"value must have shape (6,), got {found.shape}")
+        scales = problem(self.problem).scales
+        largest = np.max(np.abs(self.value / scales))
+        return float(np.max(np.abs((found - self.value) / scales)) / largest)
+
 
 @cache
 def _read() -> dict[str, dict[str, Any]]:
