@@ -81,22 +81,18 @@ def plot_forces(
     panels = panels_of(ax, figsize)
     drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
     impulses = dress_forces(panels[0], shown)
-    needed: list[Line2D] = []
-    available: list[Line2D | None] = []
-    if len(panels) == 2:
-        for motion, style in shown:
-            needed.append(_draw_needed(panels[1], motion, style))
-            available.append(_draw_available(panels[1], motion, style))
-        _dress_needed(panels[1], shown, any(available))
+    below = panels[1:]
+    needed = tuple(_draw_needed(ax, *each) for ax in below for each in shown)
+    available = tuple(_draw_available(ax, *each) for ax in below for each in shown)
+    for panel in below:
+        _dress_needed(panel, shown, any(available))
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
     if not shown.alone:
         handles += entries_of([upright for upright, _ in impulses])
     marks = finish(panels, shown, handles)
-    return Forces(
-        tuple(panels), normal, friction, limits, impulses, tuple(needed), tuple(available), marks
-    )
+    return Forces(tuple(panels), normal, friction, limits, impulses, needed, available, marks)
 
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:

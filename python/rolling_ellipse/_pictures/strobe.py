@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -148,27 +149,24 @@ def _fill(at: Trajectory) -> float:
 
 def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
     """Draw the paths of the centre and the contact, and marks where the bodies touch and slide."""
-    on_slope = drawing.tilted(at.scene) + ax.transData
+    draw = partial(ax.plot, transform=drawing.tilted(at.scene) + ax.transData)
     palette = palette_of(ax)
-    marker: dict[str, Any] = {"ls": "none", "mec": palette.ink, "transform": on_slope}
+    marker: dict[str, Any] = {"ls": "none", "mec": palette.ink}
     skid = SKID | {"color": palette.plum}
     skids = drawing.skids(path)
     name = "sliding" if np.isfinite(skids[0]).any() else "_sliding"
     return [
-        *ax.plot(
-            path.x, path.z, color=palette.orange, lw=1.8, transform=on_slope, zorder=5,
-            label="centre",
-        ),
-        *ax.plot(
+        *draw(path.x, path.z, color=palette.orange, lw=1.8, zorder=5, label="centre"),
+        *draw(
             *drawing.contact_points(path), color=palette.ink, lw=2.4, solid_capstyle="round",
-            transform=on_slope, zorder=5, label="contact",
+            zorder=5, label="contact",
         ),
-        *ax.plot(
+        *draw(
             *drawing.contact_points(at), marker="o", ms=5, mfc=palette.background, zorder=6,
             **marker,
         ),
-        *ax.plot(*skids, **skid, transform=on_slope, zorder=4.5, label=name),
-        *ax.plot(*drawing.skids(at), marker="D", ms=6, mfc=palette.plum, zorder=7, **marker),
+        *draw(*skids, **skid, zorder=4.5, label=name),
+        *draw(*drawing.skids(at), marker="D", ms=6, mfc=palette.plum, zorder=7, **marker),
     ]  # fmt: skip
 
 

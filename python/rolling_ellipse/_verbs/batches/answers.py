@@ -1,6 +1,8 @@
 """Results of many scenes: tables of numbers, as the core and files have them, and answers.
 
-An answer is a trajectory, or the exception of its scene."""
+Tables of files, which may be damaged, are checked before they are split into answers. An answer is
+a trajectory, or the exception of its scene.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +20,7 @@ from ..._ask.scene import Scene
 from ..._ask.settings import Settings
 from ..._motion.events import Events
 from ..._motion.events import events as made_events
+from ..._motion.export.npz import require_array
 from ..._motion.samples import frozen, of_contact, of_coordinates
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
@@ -28,6 +31,11 @@ Answer: TypeAlias = Trajectory | Exception
 REFUSED = -1  # code of the ending of a scene that the core refused
 MODELS, METHODS = _core.MODELS, _core.METHODS  # names, at the places of their codes
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
+_WIDTH = {name: len(names) for name, names in _COLUMNS.items()}
+_FIRST_COUNT = _COLUMNS["codes"].index("samples")  # counts begin at this column
+TABLES = (
+    "codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot",
+)  # fmt: skip
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
@@ -139,3 +147,45 @@ class _Cut:
             found["mode"] = frozen(tables["mode"][here].copy())
             return of_contact(found)
         return found
+
+
+def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> None:
+    """Raise an exception unless the tables hold n scenes, sampled at most `times` times each."""
+    require_array("scenes", scenes, np.float64, (n, _WIDTH["scenes"]), finite=False)
+    require_array("codes", tables["codes"], np.int64, (n, _WIDTH["codes"]))
+    code, event = columns("codes", tables), columns("events", tables)
+    counts = tables["codes"][:, _FIRST_COUNT:]
+    if counts.min(initial=0) < 0 or code["samples"].max(initial=0) > times:
+        raise ValueError(f"codes must hold counts, of samples at most {times}")
+    rolling, contact, multipliers = (
+        int(code["samples"][code["model"] == MODELS.index(name)].sum())
+        for name in ("rolling", "contact", "multipliers")
+    )
+    shapes = {
+        "text": (int(code["letters"].sum()),),
+        "events": (int(code["events"].sum()), _WIDTH["events"]),
+        "rolling": (_WIDTH["rolling"], rolling),
+        "contact": (_WIDTH["contact"], contact),
+        "mode": (contact,),
+        "q": (multipliers, 5),
+        "q_dot": (multipliers, 5),
+    }
+    for name, shape in shapes.items():
+        dtype = np.int8 if name in ("text", "mode") else np.float64
+        require_array(name, tables[name], dtype, shape)
+    numbers = tables["numbers"]  # not all finite: `valid_until` may be infinite
+    require_array("numbers", numbers, np.float64, (n, _WIDTH["numbers"]), finite=False)
+    if np.isnan(numbers).any():
+        raise ValueError("numbers must not contain NaN")
+    modes = list(_core.Mode)
+    for name, values, known in (
+        ("codes of endings", code["ending"], [REFUSED, *STATUSES]),
+        ("codes of models", code["model"], list(range(len(MODELS)))),
+        ("codes of methods", code["method"], list(range(len(METHODS)))),
+        ("mode", tables["mode"], modes),
+        ("modes of events", event["mode_before"], modes),
+        ("modes of events", event["mode_after"], modes),
+        ("kinds of events", event["kind"], [kind.value for kind in _core.EventKind]),
+    ):
+        if not np.isin(values, known).all():
+            raise ValueError(f"{name} must be of {known}")

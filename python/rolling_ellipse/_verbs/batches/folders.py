@@ -31,10 +31,9 @@ from ..._motion.export.atomic import remove_unfinished, replacing
 from ..._motion.export.npz import arrays as npz_arrays
 from ..._motion.export.npz import require_array
 from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
-from .answers import Answer, Request, Tables, answers
+from .answers import TABLES, Answer, Request, Tables, answers, require_tables
 from .arrays import DIRECT, MotionArrays, gathered, names_in
 from .asked import Chunk, sizes
-from .checked import NAMES, require_tables
 from .tables import scenes_of
 
 if TYPE_CHECKING:
@@ -273,7 +272,7 @@ def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
     """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
-    tables = npz_arrays(content, {"request", "scenes", *NAMES})
+    tables = npz_arrays(content, {"request", "scenes", *TABLES})
     scenes = tables["scenes"]
     require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
