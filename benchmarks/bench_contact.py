@@ -2,10 +2,10 @@
 
 Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
 events, started anew after each of them; both give the events, and theta, omega, x, z at the same
-1001 times. SciPy's flights are parabolas whose end brentq finds. Right-hand sides compiled by numba
-gain 15 % at most, since solve_ivp itself is Python. Before the timing the motions are compared:
-events that differ from the package's leave a gap in the table. Every case is run in each of many
-rounds; compare ratios of one run.
+1001 times. SciPy's flights are parabolas whose end brentq finds; impacts are the package's for
+both. Right-hand sides compiled by numba gain 15 % at most, since solve_ivp itself is Python. Before
+the timing the motions are compared: events that differ from the package's leave a gap in the table.
+Every case is run in each of many rounds; compare ratios of one run.
 """
 
 import math
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from common import interleaved, options, print_machine
-from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
+from rolling_ellipse import EventKind, Mode, Scene, certify, impacts, simulate
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -93,34 +93,6 @@ def laws(scene: Scene) -> SimpleNamespace:
     return SimpleNamespace(support=support, grip=grip, arcs=arcs, along=along, down=down)
 
 
-def collision(scene: Scene, h: float, dh: float, v: float, u: float) -> tuple[float, ...]:
-    """Impulses per mass along and away from the ground; v and u afterwards, 0 where they end so.
-
-    A piece of the impact ends when slip or compression ends, or when restitution has done e^2 of
-    the work of compression.
-    """
-    k2, mu, e = scene.gyration2, scene.friction, scene.restitution
-    gtt, gnt, gnn = 1 + h * h / k2, h * dh / k2, 1 + dh * dh / k2
-    tangential = normal = work = 0.0
-    while True:
-        sticks = v == 0 and abs(gnt) <= mu * gtt
-        ratio = -gnt / gtt if sticks else -mu * math.copysign(1, v or gnt)
-        du, dv = gnn + gnt * ratio, 0.0 if sticks else gnt + gtt * ratio
-        to_stick = -v / dv if v * dv < 0 else math.inf
-        compresses = u < 0
-        if compresses:
-            to_end = -u / du if du > 0 else math.inf
-        else:
-            to_end = 2 * work / (u + math.sqrt(u * u + 2 * du * work)) if work > 0 else 0.0
-        p = min(to_stick, to_end)
-        work -= (e * e if compresses else 1) * p * (u + du * p / 2)
-        tangential, normal = tangential + ratio * p, normal + p
-        v = 0.0 if p == to_stick else v + dv * p
-        u = 0.0 if compresses and p == to_end else u + du * p
-        if not compresses and p == to_end:
-            return tangential, normal, v, u
-
-
 class SciPyMotion:
     """A scene followed by SciPy, segment after segment."""
 
@@ -129,6 +101,8 @@ class SciPyMotion:
         self.solve = partial(solve_ivp, **how)
         self.root = partial(brentq, xtol=1e-15, rtol=1e-15)
         self.scene, self.laws, self.t_end = scene, laws(scene), t_end
+        law = ("a", "b", "gyration2", "friction", "restitution")
+        self.law = {name: getattr(scene, name) for name in law}
         self.times = np.linspace(0, t_end, SAMPLES)
         self.height = lambda theta: np.hypot(scene.a * np.sin(theta), scene.b * np.cos(theta))
 
@@ -161,11 +135,14 @@ class SciPyMotion:
 
     def fly(self) -> EventKind | None:
         kind, (theta, omega, x, _, x_dot, z_dot) = self.parabola()
-        h, dh, _ = self.laws.support(theta)
-        v, u = x_dot - h * omega, z_dot - dh * omega
-        if kind:
-            tangential, normal, v, u = collision(self.scene, h, dh, v, u)
-            omega -= (h * tangential + dh * normal) / self.scene.gyration2
+        if kind is not None:
+            x_dot, z_dot, omega = impacts.collide(theta, x_dot, z_dot, omega, **self.law)
+            h, dh, _ = self.laws.support(theta)
+            rounding = 1e-13 * (abs(x_dot) + abs(z_dot) + abs(omega) * self.scene.a)
+            v, u = (
+                speed if abs(speed) > rounding else 0.0
+                for speed in (x_dot - h * omega, z_dot - dh * omega)
+            )
             self.touch(theta, omega, x, v, u)
             if u == 0:
                 self.go_on()

@@ -70,9 +70,12 @@ LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
 MANY = np.linspace(0.0, 1e3, 40_000_000)
 LOOPS: dict[str, Callable[[], Any]] = {
     "times of flow": lambda: flow(MANY, a=2.0, b=1.0, theta=0.1, omega=3.2),
-    "motions of flow": lambda: flow(
-        1.0, a=2.0, b=1.0, theta=MANY[:4_000_000], omega=3.2, workers=2
-    ),
+    **{
+        f"motions of flow, {workers} workers": lambda workers=workers: flow(  # type: ignore[misc]
+            1.0, a=2.0, b=1.0, theta=MANY[: 4_000_000 * workers], omega=3.2, workers=workers
+        )
+        for workers in (1, 2)
+    },
     "samples of rolling": lambda: TIMES.sample_rolling(MANY / 1e3),
     "samples of contact": lambda: SLIDES.sample_contact(MANY / 1e3),
     "steps of a fixed size": lambda: simulate(

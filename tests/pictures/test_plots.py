@@ -476,7 +476,9 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> N
 
 
 def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:
-    whole = rl.plot(report, figure=Figure())
+    figure = Figure()
+    whole = rl.plot(report, figure=figure)
+    assert whole.figure is figure
     assert whole.marks == () and "not valid" not in whole.figure.get_suptitle()
     half = rl.plot(dataclasses.replace(report, valid_until=2.5), figure=Figure())
     assert "not valid from 2.5 s" in half.figure.get_suptitle()
@@ -484,11 +486,6 @@ def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> N
     for mark in half.marks:
         assert isinstance(mark, Rectangle)
         assert (mark.get_x(), mark.get_x() + mark.get_width()) == (2.5, 6.0)
-
-
-def test_overview_uses_the_figure_it_is_given(report: rl.Trajectory) -> None:
-    figure = Figure(layout="constrained")
-    assert rl.plot(report, figure=figure).figure is figure
 
 
 # ---------------------------------------------------------------------------------- errors

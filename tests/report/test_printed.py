@@ -190,6 +190,7 @@ def test_as_many_states_everywhere() -> None:
 @pytest.mark.parametrize("method", ["dopri5", "rk4"])
 def test_a_step_that_cannot_change_the_time(method: Any) -> None:
     motion = report.simulate(
-        Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14
-    )
+        Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14,
+        method=method,
+    )  # fmt: skip
     assert motion.message == "" and motion.t[-1] == 1e-12

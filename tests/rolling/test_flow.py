@@ -6,7 +6,6 @@ ulp of the answer; test_flow_reference.py allows LARGEST_ERROR units, too.
 """
 
 import math
-import time
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -16,7 +15,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion
-from oracles.limits import ctrl_c_after
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
@@ -276,29 +274,3 @@ def test_inputs_are_not_modified() -> None:
     for name, values in given.items():
         assert np.array_equal(values, kept[name])
         assert not any(np.shares_memory(values, answer) for answer in answers)
-
-
-# ----------------------------------------------------------------------------------- Ctrl-C
-
-
-@pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_stops_a_long_call(workers: int) -> None:
-    """A call of many seconds, interrupted after 0.3 s, ends early with a KeyboardInterrupt. The
-    full time is scaled from a part of the same call, so that speed and load of the machine cancel;
-    a quarter of it is hundreds of chunks."""
-    n, part = 3_000_000, 30_000
-    angles = np.linspace(0.1, 0.4, n)  # a motion each: most expensive
-    start: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": 3.2, "workers": workers}
-
-    def seconds(count: int) -> float:
-        begin = time.perf_counter()
-        flow(5.0, theta=angles[:count], **start)
-        return time.perf_counter() - begin
-
-    full = seconds(part) * n / part
-    begin = time.perf_counter()
-    with ctrl_c_after(0.3):
-        flow(5.0, theta=angles, **start)
-    taken = time.perf_counter() - begin
-    told(f"stopped after {taken:.2f} s of {full:.1f} s")
-    assert taken < 0.3 + full / 4

@@ -9,7 +9,7 @@ import pytest
 from mpmath import mp, mpf
 from oracles import table
 from oracles.margins import told
-from rolling_ellipse import Scene, Validity, certify, flow, period, work_precision
+from rolling_ellipse import Scene, Validity, certify, period
 from rolling_ellipse._verbs.work_precision.truth import Judge
 
 ROWS = [row for row in table.rows("rolling_reference") if 0 < float(row["t"]) < 1e4]
@@ -37,31 +37,6 @@ def test_attainable_is_what_the_inputs_carry() -> None:
     told(f"{len(ratios)} scenes: {min(ratios):.2f} ... {max(ratios):.2f}")
     assert len(ratios) > 60
     assert min(ratios) > 0.9 and max(ratios) < 1.05
-
-
-def test_flow_is_within_the_floor_of_40_digits() -> None:
-    """flow stays within the floor beside an independent 40-digit truth, and the floor is not 0."""
-    for row in ROWS[::20]:
-        scene, t = scene_of(row)
-        if certify(scene).validity is not Validity.VALID:
-            continue
-        exact = [row[name] for name in ("theta", "omega", "x")]
-
-        def reference(times: Any, end: list[str] = exact, scene: Scene = scene) -> Any:
-            columns = flow(
-                times, a=scene.a, b=scene.b, theta=scene.theta, omega=scene.omega,
-                gravity=scene.gravity, gyration2=scene.gyration2,
-            )  # fmt: skip
-            for column, value in zip(columns, end, strict=True):
-                column[-1] = float(value)
-            return columns
-
-        own = Judge(scene, t, 4, None).reference
-        found = work_precision(
-            scene, t, methods=["flow"], samples=4, rounds=1, reference=reference
-        ).runs[0]
-        assert found.errors.final <= own.floor, row
-        assert own.floor == pytest.approx(4 * own.attainable)
 
 
 def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
