@@ -163,9 +163,10 @@ def test_files_written_and_scored(tmp_path: Path) -> None:
         np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
     benchmark.export(tmp_path)  # leaves the results
     found = benchmark.score(tmp_path)
-    assert all(score.answer == "right" for score in found)
     assert [score.problem for score in found if not score.passed] == ["roll.rock"]
-    assert found[IDS.index("roll.rock")].reason == "39 of 41 given times are missing"
+    short = found[IDS.index("roll.rock")]
+    assert found.wrong == ["roll.rock"] and short.answer == "failed" and short.digits > 12
+    assert short.reason == "ends at 0.5 s; 39 of 41 given times are missing"
     assert len(found.to_dataframe()) == 18
 
 
@@ -176,7 +177,12 @@ def test_rows_that_are_not_finite_are_missing() -> None:
     found = benchmark.score({one.id: states})[IDS.index(one.id)]
     assert "given times are missing" in found.reason and not found.passed
     nothing = benchmark.score({one.id: states * math.nan})[IDS.index(one.id)]
-    assert nothing.answer == "failed" and nothing.reason == "no row is finite"
+    assert nothing.answer == "failed" and "no row is finite" in nothing.reason
+    between = benchmark.Result(states[:2], t=[-1.0, 0.015])
+    (score,) = [s for s in benchmark.score({one.id: between}) if s.problem == one.id]
+    assert math.isnan(score.error) and math.isnan(score.digits) and not score.passed
+    huge = benchmark.score({one.id: np.full((501, 6), 1e300)})[IDS.index(one.id)]
+    assert huge.answer == "wrong" and huge.error > 1e299
 
 
 def test_gradients_are_those_of_the_exact_motion() -> None:

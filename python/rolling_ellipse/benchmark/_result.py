@@ -25,9 +25,9 @@ class Result:
     Attributes
     ----------
     states : array_like, shape (n, 6)
-        x, z, theta, x_dot, z_dot, omega. A row that is not finite counts as missing.
+        x, z, theta, x_dot, z_dot, omega. Rows that are not finite count as missing.
     t : array_like, shape (n,), optional
-        Increasing times [s]; default: the times asked for.
+        Increasing times [s]; default: the times asked for. Only rows from 0 to the end count.
     events : iterable of (kind, t), optional
         Events in order of time, kinds as names of `EventKind`.
     normal_force, friction_force : array_like, shape (n,), optional
@@ -85,7 +85,7 @@ def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
         raise ValueError(
             f"t of {problem.id} must increase from row to row, got {t[k + 1]!s} after {t[k]!s}"
         )
-    usable = np.isfinite(states).all(axis=1) & np.isfinite(t)
+    usable = np.isfinite(states).all(axis=1) & (t >= 0) & (t <= problem.t_end)
     given = np.isin(problem.times.round(9), t[usable].round(9))
     missing = "" if given.all() else f"{(~given).sum()} of {given.size} given times are missing"
     return Checked(t[usable], states[usable], _events(problem, result.events), missing, result.note)
