@@ -12,7 +12,7 @@ from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
 from ..._motion.export.tables import required
 from . import files
-from .run import ERRORS, NOT_RUN, OF_STATES, Reference, Run, require_quantity
+from .run import ERRORS, NOT_RUN, Reference, Run, by_name, require_quantity
 from .verdict import Gaps, gaps, verdict
 
 if TYPE_CHECKING:
@@ -197,9 +197,8 @@ class WorkPrecision:
 
     def _repr_html_(self) -> str:
         rows: list[Row] = []
-        for name in self.names:
-            answers = [run for run in self.of() if run.name == name and run.completed]
-            if answers:
+        for name, runs in by_name(self.of()).items():
+            if answers := [run for run in runs if run.completed]:
                 error, time = (min(run.value(of) for run in answers) for of in ("largest", "time"))
                 rows.append((name, f"{error:.2g}", f"{1e6 * time:.3g} µs"))
             else:
@@ -212,7 +211,7 @@ class WorkPrecision:
         if require_quantity("x", x) not in ERRORS:
             raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
         require_quantity("y", y)
-        floor = self.judged_by(t_end).limits(x)[0] if x in OF_STATES else 0.0
+        floor = self.judged_by(t_end).limits(x)[0]
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
 

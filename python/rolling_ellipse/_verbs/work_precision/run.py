@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -101,9 +101,19 @@ class Reference:
     growth: float = 1.0  # factor of both at the worst of the sample times over the end; at least 1
 
     def limits(self, error: str) -> tuple[float, float]:
-        """Return floor and attainable for an error of the state, by its name."""
+        """Return floor and attainable for an error, by its name; 0 if it is not of the state."""
+        if error not in OF_STATES:
+            return 0.0, 0.0
         factor = 1.0 if error == "final" else self.growth
         return factor * self.floor, factor * self.attainable
+
+
+def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
+    """Return the runs of each contender, in their order."""
+    found: dict[str, list[Run]] = {}
+    for run in runs:
+        found.setdefault(run.name, []).append(run)
+    return found
 
 
 def require_quantity(name: str, value: Any) -> str:
