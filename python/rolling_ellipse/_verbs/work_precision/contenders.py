@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..._motion.status import Status
 from ..._motion.trajectory import Trajectory
 from ..flow import arguments_of, flow, period
 from ..simulate import sample_times
+from .run import Run
 
 TOLERANCES, STEPS = "tolerances", "steps"
 
@@ -44,29 +46,24 @@ class Contender:
     theta, omega, x; `counts` of its last call; and `advice` about its answer.
     """
 
-    name: str
-    model: str
-    method: str
-    stabilization: str
+    run: Run  # its name, model, method, stabilization and tags
     ladder: str | None
-    tags: tuple[str, ...]
     prepare: Callable[[Scene, float, float], Any]
 
 
-class _Flow:
-    def __init__(self, scene: Scene, t_end: float, _: float) -> None:
-        start = scene.initial_state
-        if scene.slope or start.mode.name not in _HELD:
-            raise ValueError("flow must be given a scene that rolls on level ground")
-        self.x, self.t_end, self.arguments = start.x, t_end, arguments_of(scene)
+def _prepared_flow(scene: Scene, t_end: float, _: float) -> Any:
+    start = scene.initial_state
+    if scene.slope or start.mode.name not in _HELD:
+        raise ValueError("flow must be given a scene that rolls on level ground")
+    arguments = arguments_of(scene)
 
-    def __call__(self) -> tuple[float, float, float]:
-        theta, omega, x = flow(self.t_end, **self.arguments)
-        return theta, omega, self.x + x
+    def sample(times: Any) -> tuple[Any, Any, Any]:
+        theta, omega, x = flow(times, **arguments)
+        return theta, omega, start.x + x
 
-    def sample(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        theta, omega, x = flow(times, **self.arguments)
-        return theta, omega, self.x + x
+    call: Any = partial(sample, t_end)
+    call.sample = sample
+    return call
 
 
 class _Simulation:
@@ -118,7 +115,8 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
 def _own(spec: Any) -> Contender:
     """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
     if spec == "flow":
-        return Contender("flow", "rolling", "exact", "", None, ("own", "exact"), _Flow)
+        run = Run("flow", "rolling", "exact", "", tags=("own", "exact"))
+        return Contender(run, None, _prepared_flow)
     if isinstance(spec, str):
         return _simulation(spec, _named(spec))
     if not isinstance(spec, Mapping) or not all(isinstance(key, str) for key in spec):
@@ -167,7 +165,7 @@ def _simulation(name: str, arguments: dict[str, Any]) -> Contender:
 
     default = DEFAULTS.stabilization if model == "multipliers" else ""
     stabilization = str(arguments.get("stabilization", default))
-    return Contender(name, model, method, stabilization, ladder, ("own", model), prepare)
+    return Contender(Run(name, model, method, stabilization, tags=("own", model)), ladder, prepare)
 
 
 def of_peer(peer: Any) -> Contender:
@@ -177,7 +175,7 @@ def of_peer(peer: Any) -> Contender:
         raise TypeError(f"peers must have a name and a function prepare, got {shown(peer)}")
     ladder = choice(f"ladder of {name}", getattr(peer, "ladder", TOLERANCES), (TOLERANCES, STEPS))
     tags = dict.fromkeys(["peer", *(str(tag) for tag in getattr(peer, "tags", ()))])
-    return Contender(name, "rolling", name, "", ladder, tuple(tags), peer.prepare)
+    return Contender(Run(name, "rolling", name, "", tags=tuple(tags)), ladder, peer.prepare)
 
 
 def default_steps(scene: Scene, t_end: float) -> list[float]:

@@ -8,6 +8,7 @@ import platform
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from datetime import date
 from importlib.metadata import version
 from itertools import pairwise
@@ -117,7 +118,7 @@ def work_precision(
         raise TypeError(f"peers must be a sequence, got {shown(peers)}") from None
     contenders = own_contenders(methods, scene, rolls_for_certain(scene))
     contenders += [of_peer(peer) for peer in rivals]
-    names = [contender.name for contender in contenders]
+    names = [contender.run.name for contender in contenders]
     if not names:
         raise ValueError("methods and peers must name at least one contender, got none")
     for name in names:
@@ -231,10 +232,9 @@ class _Attempt:
             self.facts["time"] = least
             if len(self.times) > 1:
                 self.facts["spread"] = statistics.median(self.times) / least - 1
-        who = self.contender
-        return Run(
-            who.name, who.model, who.method, who.stabilization, self.setting, status=self.status,
-            reason=self.reason, tags=who.tags, t_end=self.judge.t_end, **self.facts,
+        return replace(
+            self.contender.run, setting=self.setting, t_end=self.judge.t_end, status=self.status,
+            reason=self.reason, **self.facts,
         )  # fmt: skip
 
 

@@ -60,7 +60,9 @@ class Run:
     model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
     method: str
     stabilization: str
-    setting: float  # relative tolerance, or step [s]; NaN of a contender without settings
+    setting: float = (
+        math.nan
+    )  # relative tolerance, or step [s]; NaN of a contender without settings
     errors: Errors = Errors()
     time: float = math.nan  # least of a call that returns the state at the end [s]
     setup: float = math.nan  # cost of a new scene, with the first call's longer time [s]
