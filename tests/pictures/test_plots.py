@@ -206,7 +206,8 @@ def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
     assert np.all(data(shown.contacts[0])[1] == 0)
     tips = np.asarray(shown.tips[0].get_xydata())
     for i in range(0, trajectory.t.size, 100):
-        end = drawing.body_patch(trajectory, i).get_patch_transform().transform((1.0, 0.0))
+        body = drawing.draw_body(shown.ax, trajectory, i)
+        end = body.get_patch_transform().transform((1.0, 0.0))
         assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # rounding of theta in degrees
 
 

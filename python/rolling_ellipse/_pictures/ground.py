@@ -33,11 +33,14 @@ def tilted(scene: Scene) -> Affine2D:
     return Affine2D().rotate(-scene.slope)
 
 
-def body_patch(trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
-    """Return the body at sample i (theta is clockwise, matplotlib's angle is not)."""
+def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
+    """Draw the body at sample i (theta is clockwise, matplotlib's angle is not)."""
     centre = (float(trajectory.x[i]), float(trajectory.z[i]))
-    angle = -math.degrees(trajectory.theta[i])
-    return Ellipse(centre, 2 * trajectory.scene.a, 2 * trajectory.scene.b, angle=angle, **style)
+    angle, scene = -math.degrees(trajectory.theta[i]), trajectory.scene
+    body = Ellipse(centre, 2 * scene.a, 2 * scene.b, angle=angle, **style)
+    body.set_transform(tilted(scene) + ax.transData)
+    ax.add_patch(body)
+    return body
 
 
 def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:

@@ -126,9 +126,7 @@ def _draw_paths(
     """Draw the three paths of a motion; `share` of the motions are drawn before it."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
     palette = palette_of(ax)
-    body = drawing.body_patch(motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
-    body.set_transform(on_slope)
-    ax.add_patch(body)
+    drawing.draw_body(ax, motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
     colours = [style.colour or own for own in (palette.orange, palette.blue, palette.ink)]
     start: dict[str, Any] = {"marker": ".", "ms": 6, "markevery": [0]}
     name = f"{style.label}, " if style.label else ""

@@ -126,13 +126,8 @@ def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[L
     for i, t in enumerate(at.t):
         colour = palette.times(i / (at.t.size - 1) if at.t.size > 1 else 1.0)
         style = "-" if t < at.valid_until else ":"
-        body = drawing.body_patch(
-            at, i, facecolor=(*to_rgb(palette.blue), fill), edgecolor=colour, lw=1.3, ls=style,
-            zorder=3,
-        )  # fmt: skip
-        body.set_transform(on_slope)
-        ax.add_patch(body)
-        bodies.append(body)
+        face = (*to_rgb(palette.blue), fill)
+        bodies.append(drawing.draw_body(ax, at, i, fc=face, ec=colour, lw=1.3, ls=style, zorder=3))
         hands += ax.plot(
             [at.x[i], tip_x[i]], [at.z[i], tip_z[i]], color=colour, lw=1.3, ls=style, marker="o",
             markevery=[1], ms=3, transform=on_slope, zorder=4,

@@ -129,12 +129,7 @@ function paintGround(ink, colours, strip, view, { floor, width, tall }) {
 
 /** The last SHOWN points of a trace up to a time. */
 function past(points, t) {
-  let low = 0, end = points.length;
-  while (end - low > 1) {
-    const middle = (low + end) >> 1;
-    if (points[middle][0] <= t) low = middle;
-    else end = middle;
-  }
+  const end = lastUntil(t, points.length, (k) => points[k][0]) + 1;
   return points.slice(Math.max(0, end - SHOWN), end);
 }
 

@@ -17,6 +17,17 @@ export function unpacked(columns) {
     [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
 }
 
+/** The place of the last of rising times up to t, at least the first; `time` has them by place. */
+export function lastUntil(t, count, time) {
+  let first = 0, end = count;
+  while (end - first > 1) {
+    const middle = (first + end) >> 1;
+    if (time(middle) <= t) first = middle;
+    else end = middle;
+  }
+  return first;
+}
+
 /** One motion: its state at any time, by cubics between samples of position and rate. */
 export class Track {
   constructor(columns, a) {
@@ -25,15 +36,9 @@ export class Track {
   }
 
   at(t) {
-    let i = 0, j = this.t.length;
-    while (j - i > 1) {
-      const middle = (i + j) >> 1;
-      if (this.t[middle] <= t) i = middle;
-      else j = middle;
-    }
-    const held = j === this.t.length;
-    const span = held ? 1 : this.t[j] - this.t[i], u = held ? 0 : Math.max(0, t - this.t[i]) / span;
-    if (held) j = i;
+    const i = lastUntil(t, this.t.length, (k) => this.t[k]), held = i === this.t.length - 1;
+    const j = held ? i : i + 1, span = held ? 1 : this.t[j] - this.t[i];
+    const u = held ? 0 : Math.max(0, t - this.t[i]) / span;
     const v = 1 - u;
     const line = (p) => v * p[i] + u * p[j];
     const cubic = (p, rate) => v * v * (1 + 2 * u) * p[i] + u * u * (1 + 2 * v) * p[j]

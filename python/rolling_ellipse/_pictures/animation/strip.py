@@ -56,11 +56,8 @@ class Strip:
         self.ruler = drawing.Ruler(ax, motion.scene, span)
 
         palette = palette_of(ax)
-        self.body = drawing.body_patch(
-            motion, 0, fc=(*to_rgb(palette.blue), 0.25), ec=palette.ink, lw=1.8, zorder=4
-        )
-        self.body.set_transform(on_slope)
-        ax.add_patch(self.body)
+        face = (*to_rgb(palette.blue), 0.25)
+        self.body = drawing.draw_body(ax, motion, 0, fc=face, ec=palette.ink, lw=1.8, zorder=4)
         ink, paper, blue, plum = palette.ink, palette.background, palette.blue, palette.plum
 
         def line(zorder: int, color: str, lw: float = 1.2, **properties: Any) -> Line2D:
