@@ -75,10 +75,9 @@ def plot_constraints(
 def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
     """Return the errors of each panel by name; of one of several motions only the worst."""
     positions, velocities = constraint_errors(motion)
-    if style.label and panels == 2:
-        return [{style.label: worst(positions)}, {style.label: worst(velocities)}]
     if style.label:
-        return [{style.label: worst({**positions, **velocities})}]
+        shown = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
+        return [{style.label: worst(errors)} for errors in shown]
     if panels == 2:
         return [positions, velocities]
     return [{"positions": worst(positions), "velocities": worst(velocities)}]
