@@ -40,7 +40,7 @@ _BASE = (
 )
 _SCRIPT = "rolling-ellipse"
 # For argparse -1e-3, -inf and -nan would be unknown options
-_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.IGNORECASE)
+_NEGATIVE = re.compile(r"-(\d[\d_]*\.?[\d_]*|\.[\d_]+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.I)
 PROGRAM = _SCRIPT if Path(sys.argv[0]).stem == _SCRIPT else "python -m rolling_ellipse"
 
 
