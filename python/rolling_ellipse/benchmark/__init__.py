@@ -11,11 +11,12 @@ z, theta, x_dot, z_dot, omega.
 """
 
 from ._export import export
+from ._ode import Ode
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
 from ._result import Result
 from ._score import Score, Scores, run, score
 
 __all__ = [
-    "Gradient", "KnownEvent", "Problem", "Result", "Score", "Scores", "export", "gradients",
+    "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export", "gradients",
     "problem", "problems", "run", "score",
 ]  # fmt: skip

@@ -17,6 +17,7 @@ from .._ask.scene import Scene
 from .._core import EventKind
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import simulate
+from ._ode import Ode, first_arc
 
 FORMAT = "rolling_ellipse.benchmark/1"
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
@@ -127,6 +128,16 @@ class Problem(FieldsOnly):
         found = self.trajectory.sol(np.atleast_1d(array("t", t)))
         states = np.stack([getattr(found, name) for name in STATE], axis=1)
         return states if np.ndim(t) else states[0]
+
+    def ode(self, xp: Any = np) -> Ode:
+        """Return the first arc as differential equations with events.
+
+        Parameters
+        ----------
+        xp : module
+            NumPy, or a module with its functions such as ``jax.numpy``.
+        """
+        return first_arc(self, xp)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,189 @@
+"""A problem as ordinary differential equations with events: one arc after the other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._ask.check import FloatArray
+from .._core import Mode
+from ..impacts import collide
+
+if TYPE_CHECKING:
+    from ._problem import Problem
+
+ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
+_QUIET = 1e-3  # time without events after SLIP and LIFT_OFF, over sqrt(L/g)
+_LEAST_REBOUND = 1e-8  # over sqrt(g L); slower rebounds are none
+
+
+@dataclass(frozen=True, eq=False)
+class Ode:
+    """One arc of a motion, ready for `scipy.integrate.solve_ivp` and its like.
+
+    States are x, z, theta, x_dot, z_dot, omega; the equations are those of a rigid body with
+    Coulomb friction, written without the solver of the package.
+
+    >>> arc = problem.ode()
+    >>> while True:
+    ...     found = solve_ivp(arc.rhs, (arc.t0, problem.t_end), arc.y0, events=arc.events)
+    ...     fired = [k for k, times in enumerate(found.t_events) if times.size]
+    ...     if not fired:
+    ...         break
+    ...     arc = arc.jump(found.t[-1], found.y[:, -1], fired[0])
+
+    Attributes
+    ----------
+    problem : Problem
+    mode : str
+        "rolling" (also at rest), "sliding" or "flight".
+    t0 : float
+        Begin of the arc [s].
+    y0 : ndarray, shape (6,)
+        State there.
+    kind : str
+        Event with which it begins, "" at the start.
+    side : int
+        Sign of the slip, 0 without slip.
+    quiet : float
+        Time at the begin during which events are kept positive [s]; see `events`.
+    xp : module
+        NumPy or another array module such as ``jax.numpy``, with which `rhs` is computed.
+    """
+
+    problem: Problem
+    mode: str
+    t0: float
+    y0: FloatArray
+    kind: str = ""
+    side: int = 0
+    quiet: float = 0.0
+    xp: Any = np
+
+    def rhs(self, t: Any, y: Any) -> Any:
+        """Return dy/dt, shape (6,)."""
+        spin_up, normal, friction = self._forces(y)
+        down, into = self._gravity
+        return self.xp.stack([y[3], y[4], y[5], friction + down, normal - into, spin_up])
+
+    @property
+    def events(self) -> list[Callable[[float, Any], Any]]:
+        """Functions of t and y that fall through zero where the arc ends.
+
+        They have `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a rebound they begin
+        at zero, with which a solver would take a bounce within its first step for none: they are
+        kept at 1 for 0.001 sqrt(L/g), after a rebound for a tenth of its time to the top.
+        """
+        arcs: dict[str, dict[str, Callable[[Any], Any]]] = {
+            ROLLING: {"SLIP": self._grip},
+            SLIDING: {"STICK": self._slip, "LIFT_OFF": self._weight},
+            FLIGHT: {"IMPACT": lambda y: y[1] - self._geometry(y)[0]},
+        }
+        made = arcs[self.mode]
+
+        def event(kind: str, function: Callable[[Any], Any]) -> Any:
+            def value(t: float, y: Any) -> Any:
+                return 1.0 if t < self.t0 + self.quiet else function(y)
+
+            vars(value).update(kind=kind, terminal=True, direction=-1)
+            return value
+
+        if self.side == 0 and self.mode == SLIDING:  # without friction slip has no side
+            del made["STICK"]
+        return [event(kind, function) for kind, function in made.items()]
+
+    def jump(self, t: float, y: Any, index: int) -> Ode:
+        """Return the arc that begins with event number `index` of this one."""
+        x, _, theta, x_dot, z_dot, omega = map(float, y)
+        kind, scene = str(vars(self.events[index])["kind"]), self.problem.scene
+        h, o, _ = map(float, self._geometry(y))
+        if kind == "IMPACT":
+            x_dot, z_dot, omega = collide(
+                theta, x_dot, z_dot, omega, a=scene.a, b=scene.b, friction=scene.friction,
+                restitution=scene.restitution, gyration2=scene.gyration2,
+            )  # fmt: skip
+        speed = float(self.problem.scales[3])
+        opening, late = z_dot - o * omega, _QUIET / float(self.problem.scales[5])
+        rebounds = kind == "IMPACT" and opening > _LEAST_REBOUND * speed
+        if rebounds or kind == "LIFT_OFF":
+            there = np.array([x, h, theta, x_dot, z_dot, omega])
+            quiet = min(late, 0.1 * opening / max(self._weight(there), 1e-9)) if rebounds else late
+            return replace(self, mode=FLIGHT, t0=float(t), y0=there, kind=kind, side=0, quiet=quiet)
+        slip = x_dot - h * omega
+        if kind != "IMPACT" or abs(slip) < _LEAST_REBOUND * speed:
+            slip = 0.0
+        there = np.array([x, h, theta, h * omega + slip, o * omega, omega])
+        found = self._touching(float(t), there, slip, kind)
+        reversed_ = kind == "STICK" and found.mode == SLIDING
+        return replace(found, kind="REVERSE") if reversed_ else found
+
+    def exact(self, t: Any) -> FloatArray:
+        """Return the exact states at times, as `Problem.exact`."""
+        return self.problem.exact(t)
+
+    @property
+    def switching_times(self) -> FloatArray:
+        """Exact times of all events of the problem [s]."""
+        return np.array([event.t for event in self.problem.events])
+
+    def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
+        """Return the arc of a body on the ground; slip starts against the friction needed."""
+        quiet = _QUIET / float(self.problem.scales[5]) if kind == "SLIP" else 0.0
+        here = replace(self, mode=ROLLING, t0=t, y0=y, kind=kind, side=0, quiet=quiet)
+        if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
+            return here
+        side = int(np.sign(slip or -here._forces(y)[2])) if self.problem.scene.friction else 0
+        return replace(here, mode=SLIDING, side=side)
+
+    @property
+    def _gravity(self) -> tuple[float, float]:
+        scene = self.problem.scene
+        return scene.gravity * math.sin(scene.slope), scene.gravity * math.cos(scene.slope)
+
+    def _geometry(self, y: Any) -> tuple[Any, Any, Any]:
+        """Return the support function h, its derivative, and the radius of curvature."""
+        a, b = self.problem.scene.a, self.problem.scene.b
+        sin, cos = self.xp.sin(y[2]), self.xp.cos(y[2])
+        h = self.xp.sqrt((a * sin) ** 2 + (b * cos) ** 2)
+        return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / h**3
+
+    def _weight(self, y: Any) -> Any:
+        """Return the acceleration of the free contact into the ground."""
+        h, _, radius = self._geometry(y)
+        return self._gravity[1] + (radius - h) * y[5] ** 2
+
+    def _slip(self, y: Any) -> Any:
+        return self.side * (y[3] - self._geometry(y)[0] * y[5])
+
+    def _grip(self, y: Any) -> Any:
+        _, normal, friction = self._forces(y)
+        return self.problem.scene.friction * normal - self.xp.abs(friction)
+
+    def _forces(self, y: Any) -> tuple[Any, Any, Any]:
+        """Return the angular acceleration, and normal and friction force per mass."""
+        scene, (down, into) = self.problem.scene, self._gravity
+        k2, omega = scene.gyration2, y[5]
+        h, o, radius = self._geometry(y)
+        if self.mode == FLIGHT:
+            return 0.0 * h, 0.0 * h, 0.0 * h
+        if self.mode == SLIDING:
+            pull = -scene.friction * self.side
+            normal = self._weight(y) / (1 + (o * o + pull * h * o) / k2)
+            return -(h * pull + o) * normal / k2, normal, pull * normal
+        spin_up = (h * down - o * (into + radius * omega**2)) / (k2 + h * h + o * o)
+        normal = self._weight(y) + o * spin_up
+        return spin_up, normal, h * spin_up + o * omega**2 - down
+
+
+def first_arc(problem: Problem, xp: Any) -> Ode:
+    """Return the arc with which a problem begins."""
+    start = problem.exact(0.0)
+    arc = Ode(problem, FLIGHT, 0.0, start, xp=xp)
+    if problem.scene.initial_state.mode is Mode.FLIGHT:
+        return arc
+    slip = float(start[3] - arc._geometry(start)[0] * start[5])
+    return arc._touching(0.0, start, 0.0 if abs(slip) < 1e-12 * problem.scales[3] else slip, "")
