@@ -117,9 +117,9 @@ def _back_substitution() -> Comparison:
     """Compare residuals of the code's equations with the gap, after 0.25 s of their motion."""
     shape = {"a": _BODY["a"], "b": _BODY["b"]}
     q, _ = kinematics(0.2, 2.0, **shape)
-    q_dot = consistent_rates(q, 2.0, **shape)
+    begin = q, consistent_rates(q, 2.0, **shape)
     how: dict[str, Any] = {"equations": "printed", "rtol": 1e-12, "atol": 1e-14}
-    motion: Any = report_motion(q, q_dot, [0.25], **_BODY, **how)
+    motion: Any = report_motion(*begin, [0.25], **_BODY, **how)
     found = (np.max(np.abs(values)) for values in (motion.back_substitution(), motion.gap))
     return Comparison(*map(float, found))
 
