@@ -1,4 +1,4 @@
-"""The errata of the report, row by _row, each with two numbers on an exact motion."""
+"""The errata of the report, row by row, each with two numbers on an exact motion."""
 
 from __future__ import annotations
 
@@ -6,35 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from inspect import signature
-from typing import Any, NamedTuple
 
-import numpy as np
-
-from .._ask.scene import Scene
-from .._motion.constraints import kinematics
-from .._verbs.classify import thresholds
-from .._verbs.simulate import simulate
-from ..geometry import contact_angle, contact_distance, support, support_slope
-from . import _equations as equations
-from ._multipliers import complete_f, eq_39, eq_40, lambda4_numerator, multipliers
-from ._rows import CODE, EQ_32, consistent_rates, constraint_matrix
-from ._simulate import simulate as report_motion
-
-_BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
-_THETA, _OMEGA = 0.2, 3.2  # rad, rad/s
-
-
-class Comparison(NamedTuple):
-    """The two numbers of an erratum: its quantity as the report prints it, and right."""
-
-    printed: float
-    right: float
-
-    @property
-    def gap(self) -> float:
-        """The effect of the misprint: printed less right."""
-        return self.printed - self.right
+from . import _errata_numbers as compare
+from ._errata_numbers import Comparison
+from ._rows import CODE, EQ_32
 
 
 @dataclass(frozen=True)
@@ -58,170 +33,91 @@ class Erratum:
     evaluate: Callable[[], Comparison]
 
 
-def _exact(theta: float = 0.7, **other: float) -> dict[str, Any]:
-    """Return the arguments of the report's equations by name, where a motion passes theta [rad].
-
-    It rolls through all quadrants, with speed _OMEGA at the angle _THETA.
-    """
-    body = _BODY | other
-    shape = {"a": body["a"], "b": body["b"]}
-    scene = Scene(**body, theta=theta)
-
-    def inertia(angle: float) -> float:  # D = k^2 + r^2, about the contact, per mass [m^2]
-        return scene.gyration2 + float(contact_distance(angle, **shape)) ** 2
-
-    fall = float(support(_THETA, **shape) - support(theta, **shape))
-    omega2 = (inertia(_THETA) * _OMEGA**2 + 2 * scene.gravity * fall) / inertia(theta)
-    there = simulate(scene.replace(omega=math.sqrt(omega2)), 0.0)
-    columns = there.x_ddot, there.z_ddot, there.omega_dot, there.psi_ddot, there.r_ddot
-    state = {"q": there.q[0], "q_dot": there.q_dot[0], "q_ddot": np.stack(columns, axis=-1)[0]}
-    return {"theta": theta, "body": body, "impulse": 48.0, "d": 1.5, **body, **state}
-
-
-def _both(
-    printed: Callable[..., Any], right: Callable[..., Any], index: Any = (), **where: float
-) -> Callable[[], Comparison]:
-    """Return the comparison of an entry of what two functions return in exact rolling.
-
-    The functions get those of the report's arguments that they take. ``where`` may have another
-    angle theta, or another semi-axis b.
-    """
-
-    def compare() -> Comparison:
-        known = _exact(**where)
-        values = []
-        for function in (printed, right):
-            names = signature(function).parameters.keys() & known.keys()
-            values.append(np.asarray(function(**{name: known[name] for name in names}))[index])
-        return Comparison(*map(float, values))
-
-    return compare
-
-
-def _row(index: int, printed: tuple[str, ...]) -> Callable[[], Comparison]:
-    """Return the comparison of a row of the constraint matrix times exact rates."""
-
-    def rates(names: tuple[str, ...]) -> Callable[..., Any]:
-        return lambda q, q_dot, a, b: constraint_matrix(q, a=a, b=b, printed=names) @ q_dot
-
-    return _both(rates(printed), rates(("tan",)), index)
-
-
-def _third_term(q: Any, q_ddot: Any, body: Any, sign: int = 1) -> float:
-    """Return the term of lambda3 in the equation of psi, eq 37 [N m]."""
-    coefficient = constraint_matrix(q, a=body["a"], b=body["b"], printed=())[2, 3]
-    return float(sign * coefficient * multipliers(q, q_ddot, **body)[2])
-
-
-def _back_substitution() -> Comparison:
-    """Compare residuals of the code's equations with the gap, after 0.25 s of their motion."""
-    shape = {"a": _BODY["a"], "b": _BODY["b"]}
-    q, _ = kinematics(0.2, 2.0, **shape)
-    begin = q, consistent_rates(q, 2.0, **shape)
-    how: dict[str, Any] = {"equations": "printed", "rtol": 1e-12, "atol": 1e-14}
-    motion: Any = report_motion(*begin, [0.25], **_BODY, **how)
-    found = (np.max(np.abs(values)) for values in (motion.back_substitution(), motion.gap))
-    return Comparison(*map(float, found))
-
-
 _ERRATA = (
     Erratum(
         "eqs 9, 10, f1", "velocity of the geometric contact point is zero",
         "that keeps x + r sin(ψ−θ) where it is, and the ellipse cannot advance; rolling is "
         "ẋ = r cos(ψ−θ) θ̇, and in the plane it is integrable",
-        "f1 of an exact motion [m/s]", _both(
-            equations.f1, lambda q, q_dot, a, b: equations.constraint_rates(q, q_dot, a=a, b=b)[0]
-        ),
+        "f1 of an exact motion [m/s]", compare.velocity,
     ),
     Erratum(
         "section 2.2, cases 1 and 2", "sign of r sin(ψ−θ) by quadrant",
         "it mends the arctan in the second quadrant only; h′ is one smooth expression",
-        "x_C − x_G at θ = 4 rad [m]", _both(equations.case_lead, support_slope, theta=4.0),
+        "x_C − x_G at θ = 4 rad [m]", compare.cases,
     ),
     Erratum(
         "eq 32, df2, row 2", "−r sin(ψ−θ) dψ + r sin(ψ−θ) dθ",
         "both signs are wrong: d(−r cos(ψ−θ)) gives +r sin(ψ−θ) (dψ − dθ)",
-        "row 2 times exact rates [m/s]", _row(1, ("df2", "tan")),
+        "row 2 times exact rates [m/s]", partial(compare.row, 1, ("df2", "tan")),
     ),
     Erratum(
         "eq 32, df3", "2 (…) dr − a b (a²−b²) sin²ψ dψ",
         "the exponent 3/2 is missing and sin²ψ stands for sin 2ψ; the matrix has both right",
-        "row 3 times exact rates [m⁴/s]", _row(2, EQ_32),
+        "row 3 times exact rates [m⁴/s]", partial(compare.row, 2, EQ_32),
     ),
     Erratum(
         "eq 35, code a44", "−λ4 a² sec²θ, a44 = +a² (tan²θ + 1)",
         "the sign is opposite to df4",
-        "row 4 times exact rates [m²/s]", _row(3, CODE),
+        "row 4 times exact rates [m²/s]", partial(compare.row, 3, CODE),
     ),
     Erratum(
         "eq 37", "+λ3 a b (a²−b²) sin 2ψ", "the sign is opposite to the matrix",
-        "term of λ3 [N m]", _both(partial(_third_term, sign=-1), _third_term),
+        "term of λ3 [N m]", compare.eq_37,
     ),
     Erratum(
         "eq 38, f1 and f2", "ż − ṙ sin(ψ−θ) − ψ̇ r sin(ψ−θ) + θ̇ r cos(ψ−θ)",
         "cosine for sine and back, and signs: not the derivative of eq 10",
-        "rate of f2 of an exact motion [m/s]",
-        _both(equations.eq_38, equations.constraint_rates, 1),
+        "rate of f2 of an exact motion [m/s]", compare.eq_38,
     ),
     Erratum(
         "eq 39, λ2", "λ2 = m (z̈ − g)", "eq 34 gives m (z̈ + g), the normal force",
-        "λ2 [N]", _both(eq_39, multipliers, 1),
+        "λ2 [N]", partial(compare.eq_39, 1, compare.GENERIC),
     ),
     Erratum(
         "eq 39, λ3", "F / (4 a³b³ sin 2ψ (a²−b²))",
         "singular at every quarter turn and for a circle: the equation of r has no such divisor",
-        "λ3 at θ = π/2 − 0.001 [N/m³]", _both(eq_39, multipliers, 2, theta=math.pi / 2 - 1e-3),
+        "λ3 at θ = π/2 − 0.001 [N/m³]", partial(compare.eq_39, 2, math.pi / 2 - 1e-3),
     ),
     Erratum(
         "eq 39, λ4", "denominator 4 a²b²",
         "4 a² follows from eqs 32 and 35, hidden at b = 1 m",
-        "the printed numerator over both, b = 0.8 m [N/m]", _both(
-            lambda q, q_ddot, body: eq_39(q, q_ddot, **body)[3],
-            lambda q, q_ddot, a, body: lambda4_numerator(q, q_ddot, **body) / (4 * a**2), b=0.8,
-        ),
+        "the printed numerator over both, b = 0.8 m [N/m]", compare.lambda4,
     ),
     Erratum(
         "eqs 40, 42", "terms without m, θ̈ or cos²θ, one of them twice",
         "also sinψ for sin(ψ−θ) and for sin²ψ, and the power 3/2 lost: the dimensions do not agree",
-        "F [N m⁵]", _both(eq_40, complete_f),
+        "F [N m⁵]", compare.eq_40,
     ),
     Erratum(
         "eq 32, df4, code", "tan θ",
         "infinite at a quarter turn; times cos²θ the row stays finite",
-        "coefficient of dψ at θ = π/2 [m²]", _both(
-            partial(constraint_matrix, printed=("tan",)),
-            partial(constraint_matrix, printed=()), (3, 3), theta=math.pi / 2,
-        ),
+        "coefficient of dψ at θ = π/2 [m²]", compare.quarter_turn,
     ),
     Erratum(
         "appendix B", "r with Th_p, and (b b sin)² + (a a cos)² under the root",
         "eq 6 needs ψ where the parameter t stands, and the squares are taken twice: "
         "b/a instead of b at θ = 0",
-        "r [m]", _both(equations.appendix_b_radius, contact_distance),
+        "r [m]", compare.appendix_b,
     ),
     Erratum(
         "eqs 45–48", "θ̇ = 4 F d / (m (a²+b²))",
         "the reaction moves the centre as well: right on ice only, rolling needs k² + b²",
-        "θ̇ after 48 N s at 1.5 m [rad/s]", _both(equations.eq_48, equations.struck_speed),
+        "θ̇ after 48 N s at 1.5 m [rad/s]", compare.blow,
     ),
     Erratum(
         "section 4.2.2, Figure 11", "back substitution gives zeros",
         "it shows that the equations were solved, not that they are right",
         "residuals of the code's equations against its gap after 0.25 s [m, N, …]",
-        _back_substitution,
+        compare.back_substitution,
     ),
     Erratum(
         "section 4.2.2, Figure 12", "ψ is discontinuous",
-        "so is the arctan; ψ is not",
-        "ψ at θ = 2 rad [rad]", _both(equations.eq_5, contact_angle, theta=2.0),
+        "so is the arctan; ψ is not", "ψ at θ = 2 rad [rad]", compare.angle,
     ),
     Erratum(
         "Figure 13", "rolls over from θ̇ ≈ 1 rad/s, fastest when tall",
         "it needs more, and is fastest when flat",
-        "θ̇ needed to roll over [rad/s]", _both(
-            lambda: 1.0,
-            lambda a, b, gravity: thresholds(a, b, gravity=gravity).roll_over_speed,
-        ),
+        "θ̇ needed to roll over [rad/s]", compare.roll_over,
     ),
 )  # fmt: skip
 
