@@ -163,13 +163,9 @@ def test_a_turning_point_at_the_start_comes_again() -> None:
     """A body pushed from its equilibrium in the well of a slope, so gently that its inertia is
     constant to rounding, is fastest there: each period after the start, and between two passages of
     1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
-    low, high, incline = 0.0, math.pi / 4, math.tan(0.1)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        ground = rl.geometry.support_slope(middle, a=2.0, b=1.0)
-        steep = ground > rl.geometry.support(middle, a=2.0, b=1.0) * incline
-        low, high = (low, middle) if steep else (middle, high)
-    scene = Scene(2.0, 1.0, theta=low, omega=1e-8, slope=0.1)
+    incline = math.tan(0.1)
+    lying = math.atan(2 * incline / (3 + math.sqrt(9 - 16 * incline**2)))  # h' = h tan(slope)
+    scene = Scene(2.0, 1.0, theta=lying, omega=1e-8, slope=0.1)
     motion = simulate(scene, 20.5 * rl.period(scene), model="rolling")
     again = np.arange(21) * rl.period(scene)
     fastest = motion.when(omega=1e-8)
