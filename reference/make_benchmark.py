@@ -227,10 +227,11 @@ def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[S
     return found[0], apart
 
 
-def neighbours(problem: Problem, times: list[float], name: str, size: Any) -> tuple[Any, ...]:
+def neighbours(
+    problem: Problem, base: Sampler, times: list[float], name: str, size: Any
+) -> tuple[Any, ...]:
     """A changed input on both sides, or on one and unchanged, with the answers."""
-    scene, end = problem.scene, problem.t_end
-    old, base = mpfr(getattr(scene, name)), followed(scene, end, UNIT_ROAD, times)
+    scene, end, old = problem.scene, problem.t_end, mpfr(getattr(problem.scene, name))
     found = []
     for new in (old - size, old + size):
         if name != "restitution" or new <= 1:
@@ -245,12 +246,13 @@ def conditions(problem: Problem, times: list[float], scales: dict[str, float]) -
     scene = problem.scene
     rows, events = Counter[Any](), Counter[int]()
     with UNIT_ROAD.context():
+        base = followed(scene, problem.t_end, UNIT_ROAD, times)
         for name in Scene._fields:
             old = getattr(scene, name)
             if name in ("mass", "inertia") or old is None or (old == 0 and name not in scales):
                 continue
             unit = mpfr(1.0 if name == "theta" else abs(old) or scales[name])
-            sides = neighbours(problem, times, name, unit * UNIT_CHANGE)
+            sides = neighbours(problem, base, times, name, unit * UNIT_CHANGE)
             (low, one), (high, other) = sides
             share = unit / (high - low)
             for k, pair in enumerate(zip(one.samples, other.samples, strict=True)):

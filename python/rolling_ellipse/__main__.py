@@ -48,13 +48,17 @@ def main(arguments: list[str] | None = None) -> int:
     """
     typed = sys.argv[1:] if arguments is None else arguments
     command = typed[0] if typed[:1] in (["explore"], ["benchmark"]) else ""
-    parser = {"": motion_parser, "explore": explore_parser, "benchmark": benchmark_parser}[command]
+    parser, action = {
+        "": (motion_parser, _motion),
+        "explore": (explore_parser, _page),
+        "benchmark": (benchmark_parser, act),
+    }[command]
     options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")  # the summary says until when the model is valid
             warnings.simplefilter("always", StabilityWarning)
-            code, message = {"": _motion, "explore": _page, "benchmark": act}[command](options)
+            code, message = action(options)
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2

@@ -27,12 +27,11 @@ _ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 slip
 def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[str, float]]:
     """Return the kinds and times of the events in rows of states."""
     scene, length, speed = problem.scene, float(problem.scales[0]), float(problem.scales[3])
-    _, z, theta, x_dot, z_dot, omega = states.T
-    height = support(theta, a=scene.a, b=scene.b)
-    slip = x_dot - height * omega
+    gap, slip = gap_and_slip(problem, states)
+    _, _, theta, _, z_dot, omega = states.T
     opening = z_dot - support_slope(theta, a=scene.a, b=scene.b) * omega
     slips = np.where(np.abs(slip) > _LEAST_SLIP * speed, np.sign(slip), _ROLLS)
-    kinds = np.where(z - height > _LEAST_GAP * length, _FLIES, slips).astype(int)
+    kinds = np.where(gap > _LEAST_GAP * length, _FLIES, slips).astype(int)
     pull = scene.gravity * math.cos(scene.slope)
     pushed = np.diff(z_dot) + pull * np.diff(t) > _LEAST_PUSH * speed
     divided = (np.diff(kinds) != 0) | (pushed & (opening[:-1] < 0) & (opening[1:] > 0))
@@ -55,6 +54,13 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
             found.append((change, float(t[start])))
         before, rebounds = kind, False
     return found
+
+
+def gap_and_slip(problem: Problem, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the distance from the ground, and the slip as if the body touched it."""
+    _, z, theta, x_dot, _, omega = states.T
+    height = support(theta, a=problem.scene.a, b=problem.scene.b)
+    return z - height, x_dot - height * omega
 
 
 def _touch(problem: Problem, t: float, state: FloatArray) -> float:

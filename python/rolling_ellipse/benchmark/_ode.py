@@ -107,11 +107,13 @@ class Ode:
                 restitution=scene.restitution, gyration2=scene.gyration2,
             )  # fmt: skip
         speed = float(self.problem.scales[3])
-        opening, late = z_dot - o * omega, _QUIET / float(self.problem.scales[5])
+        opening = z_dot - o * omega
         rebounds = kind == "IMPACT" and opening > _LEAST_REBOUND * speed
         if rebounds or kind == "LIFT_OFF":
             there = np.array([x, h, theta, x_dot, z_dot, omega])
-            quiet = min(late, 0.1 * opening / max(self._weight(there), 1e-9)) if rebounds else late
+            quiet = self._pause
+            if rebounds:
+                quiet = min(quiet, 0.1 * opening / max(self._weight(there), 1e-9))
             return replace(self, mode=FLIGHT, t0=float(t), y0=there, kind=kind, side=0, quiet=quiet)
         slip = x_dot - h * omega
         if kind != "IMPACT" or abs(slip) < _LEAST_REBOUND * speed:
@@ -132,12 +134,17 @@ class Ode:
 
     def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
         """Return the arc of a body on the ground; slip starts against the friction needed."""
-        quiet = _QUIET / float(self.problem.scales[5]) if kind == "SLIP" else 0.0
+        quiet = self._pause if kind == "SLIP" else 0.0
         here = replace(self, mode=ROLLING, t0=t, y0=y, kind=kind, side=0, quiet=quiet)
         if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
             return here
         side = int(np.sign(slip or -here._forces(y)[2])) if self.problem.scene.friction else 0
         return replace(here, mode=SLIDING, side=side)
+
+    @property
+    def _pause(self) -> float:
+        """Time without events after SLIP and LIFT_OFF [s]."""
+        return _QUIET / float(self.problem.scales[5])
 
     @property
     def _gravity(self) -> tuple[float, float]:

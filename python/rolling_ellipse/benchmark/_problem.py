@@ -27,6 +27,11 @@ OUTPUT_RATE = 100  # states a second that a simulator is asked for
 FOLDER = Path(__file__).with_name("problems")
 
 
+def states_of(found: Any) -> FloatArray:
+    """Return the states of a motion's samples, shape (n, 6)."""
+    return np.stack([getattr(found, name) for name in STATE], axis=1)
+
+
 @dataclass(frozen=True)
 class KnownEvent:
     """An event of a problem: its time and the two sides of the jump.
@@ -125,8 +130,7 @@ class Problem(FieldsOnly):
         -------
         ndarray, shape (6,) or (n, 6)
         """
-        found = self.trajectory.sol(np.atleast_1d(array("t", t)))
-        states = np.stack([getattr(found, name) for name in STATE], axis=1)
+        states = states_of(self.trajectory.sol(np.atleast_1d(array("t", t))))
         return states if np.ndim(t) else states[0]
 
     def ode(self, xp: Any = np) -> Ode:

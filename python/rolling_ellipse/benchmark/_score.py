@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,9 @@ from .._ask.check import FloatArray, file_name, positive
 from .._ask.printing import html_table, text_table
 from .._core import Mode
 from .._motion.events import energies
-from ..geometry import support
-from ._events import read_off
-from ._problem import STATE, Problem, problem
+from .._motion.trajectory import Trajectory
+from ._events import gap_and_slip, read_off
+from ._problem import STATE, Problem, problem, states_of
 from ._problem import problems as all_problems
 from ._result import Checked, checked, read
 
@@ -142,7 +143,7 @@ class Scores(tuple[Score, ...]):
         """Return a dict of plain numbers and text for each score."""
         rows = []
         for score in self:
-            row = {name: getattr(score, name) for name in Score.__dataclass_fields__}
+            row = asdict(score)
             row["errors"] = dict(zip(STATE, map(float, score.errors), strict=True))
             rows.append(row | {"error": score.error, "digits": score.digits})
         return rows
@@ -257,7 +258,8 @@ def _scored(one: Problem, setting: float | None, found: Checked, tolerance: floa
     difference = np.abs(found.states[places] - states) / one.scales
     errors = difference.max(axis=0) if rows.size else np.full(6, math.nan)
     over = (difference.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
-    right, why, events = _answer(one, found, law)
+    exact = one.trajectory.sol(found.t)
+    right, why, events = _answer(one, found, exact, law)
     why = "; ".join(text for text in (why, found.missing, found.note) if text)
     passed = right and not found.missing and bool(over <= tolerance)
     answer = RIGHT if right else WRONG
@@ -265,7 +267,7 @@ def _scored(one: Problem, setting: float | None, found: Checked, tolerance: floa
         answer, passed, why = FAILED, False, f"ends at {found.t[-1]:.6g} s; {why}"
     return Score(
         one.id, setting, answer, passed, why, errors, float(over), events,
-        **_losses(one, found.t, found.states),
+        **_losses(one, found.states, exact),
     )  # fmt: skip
 
 
@@ -283,7 +285,9 @@ def _nearest_law(one: Problem, rows: Any, states: FloatArray) -> tuple[str, Floa
     return f"nearest to {first} by a factor of {factor:.3g}", motions[first][rows]
 
 
-def _answer(one: Problem, found: Checked, law: str) -> tuple[bool, str, dict[str, Any]]:
+def _answer(
+    one: Problem, found: Checked, exact: Trajectory, law: str
+) -> tuple[bool, str, dict[str, Any]]:
     """Return whether the answer is right, why not, and the differences of the events."""
     if "law" in one.answer:
         return True, law, {}
@@ -294,13 +298,13 @@ def _answer(one: Problem, found: Checked, law: str) -> tuple[bool, str, dict[str
     expected = [(event.kind.name, event.t) for event in one.events]
     mine = found.events
     if mine is None:  # both motions are read by the same rule, whose error drops out
-        expected = read_off(one, found.t, one.exact(found.t))
+        expected = read_off(one, found.t, states_of(exact))
         mine = tuple(read_off(one, found.t, found.states))
     kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in expected)
     times_off: dict[str, float] = {}
-    for (kind, t), (other, exact) in zip(mine, expected, strict=False):
+    for (kind, t), (other, known) in zip(mine, expected, strict=False):
         if kind == other:
-            times_off[kind] = max(times_off.get(kind, 0.0), abs(t - exact))
+            times_off[kind] = max(times_off.get(kind, 0.0), abs(t - known))
     events: dict[str, dict[str, Any]] = {
         "missed": dict(wanted - kinds), "invented": dict(kinds - wanted), "times": times_off,
     }  # fmt: skip
@@ -313,16 +317,15 @@ def _answer(one: Problem, found: Checked, law: str) -> tuple[bool, str, dict[str
     return right, "" if right else "; ".join(why) or "events in another order", events
 
 
-def _losses(one: Problem, t: FloatArray, states: FloatArray) -> dict[str, float]:
-    """Return energies gained and lost, penetration, hop and slip of rows."""
+def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, float]:
+    """Return energies gained and lost, penetration, hop and slip of rows, and exact samples."""
     scene, length = one.scene, float(one.scales[0])
-    exact = one.trajectory.sol(t)
-    mine = _Columns(**dict(zip(STATE, states.T, strict=True)))
+    mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
     change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / (
         scene.mass * scene.gravity * length
     )
-    height = support(states[:, 2], a=scene.a, b=scene.b)
-    gap, slip = (states[:, 1] - height) / length, np.abs(states[:, 3] - height * states[:, 5])
+    gap, slip = gap_and_slip(one, states)
+    gap, slip = gap / length, np.abs(slip)
     touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING
     return {
         "energy_gained": float(max(change.max(), 0.0)),
@@ -331,13 +334,3 @@ def _losses(one: Problem, t: FloatArray, states: FloatArray) -> dict[str, float]
         "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
         "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
     }
-
-
-@dataclass(frozen=True)
-class _Columns:
-    x: FloatArray
-    z: FloatArray
-    theta: FloatArray
-    x_dot: FloatArray
-    z_dot: FloatArray
-    omega: FloatArray
