@@ -46,6 +46,7 @@ def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.score, {}, results=["no/such/folder"])
     yield TypeError, lambda _: benchmark.score(3)
     yield from wrong(benchmark.gradients()[0].error, {}, value=[1.0, [1.0, 2.0]])
+    yield "problem", lambda _: benchmark.problem("jam").ode()
     yield "states", scored(STATES[:, :5])
     yield TypeError, scored("x")
     yield "t", scored(STATES, t=T[1:])

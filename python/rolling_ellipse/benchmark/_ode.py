@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
 _QUIET = 1e-3  # time without events after SLIP and LIFT_OFF, over sqrt(L/g)
-_LEAST_REBOUND = 1e-8  # over sqrt(g L); slower rebounds are none
+_LEAST_REBOUND = 1e-7  # over sqrt(g L); slower ones are lower than an ulp of z
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,9 @@ class Ode:
 
     >>> arc = problem.ode()
     >>> while True:
-    ...     found = solve_ivp(arc.rhs, (arc.t0, problem.t_end), arc.y0, events=arc.events)
+    ...     found = solve_ivp(
+    ...         arc.rhs, (arc.t0, problem.t_end), arc.y0, events=arc.events, rtol=1e-10, atol=1e-12
+    ...     )
     ...     fired = [k for k, times in enumerate(found.t_events) if times.size]
     ...     if not fired:
     ...         break
@@ -139,7 +141,10 @@ class Ode:
         if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
             return here
         side = int(np.sign(slip or -here._forces(y)[2])) if self.problem.scene.friction else 0
-        return replace(here, mode=SLIDING, side=side)
+        sliding = replace(here, mode=SLIDING, side=side)
+        if sliding._forces(y)[1] < 0 < sliding._weight(y):
+            raise ValueError(f"problem must not jam, got {self.problem.id!r} at t = {t:.6g} s")
+        return sliding
 
     @property
     def _pause(self) -> float:
