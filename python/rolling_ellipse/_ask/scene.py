@@ -16,6 +16,7 @@ from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .reason import WHERE, blow_in_words, reason
 from .records import FieldsOnly, cached_property
+from .xml import to_mjcf, to_sdf
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
 
@@ -238,6 +239,8 @@ class Scene(FieldsOnly, Listed):
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
         return InitialState(**known, reason=reason(self, start))
+
+    to_mjcf, to_sdf = to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
         """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""

@@ -11,6 +11,8 @@ from ._problem import COLUMNS, FOLDER, problems
 
 _README = """\
 <id>.json has a problem and its known answer; <id>.csv waits for your states at its times.
+<id>.xml (MJCF) and <id>.sdf have its body and ground. MJCF has no coefficient of restitution:
+problems with one between 0 and 1 have no <id>.xml. SDF has no velocities: set them at the start.
 Fill the rows of <id>.csv; where you know events, write <id>.events.csv with the columns kind,t.
 SI units, radians; x along the ground (downhill), z away from it, theta clockwise.
 Then: python -m rolling_ellipse benchmark score <this folder>
@@ -18,7 +20,7 @@ Then: python -m rolling_ellipse benchmark score <this folder>
 
 
 def export(folder: Any) -> list[Path]:
-    """Write the scored problems and empty tables of results into a folder.
+    """Write the scored problems, their scenes and empty tables of results into a folder.
 
     Parameters
     ----------
@@ -41,6 +43,12 @@ def export(folder: Any) -> list[Path]:
     written[0].write_text(_README, encoding="utf-8")
     for one in problems():
         written.append(Path(shutil.copy(FOLDER / f"{one.id}.json", place)))
+        texts = {".sdf": one.scene.to_sdf()}
+        if one.scene.restitution in (0, 1):
+            texts[".xml"] = one.scene.to_mjcf()
+        for suffix, text in texts.items():
+            written.append(place / (one.id + suffix))
+            written[-1].write_text(text, encoding="utf-8")
         table = place / f"{one.id}.csv"
         if not table.exists():
             empty = "," * (len(COLUMNS) - 1)

@@ -10,6 +10,7 @@ from typing import Any
 
 from ... import benchmark
 from ..._ask.printing import text_table
+from ...benchmark.adapters import ENGINES, adapter
 from .options import PROGRAM, OneLineParser
 
 _ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
@@ -24,9 +25,12 @@ def benchmark_parser() -> OneLineParser:
     export.add_argument("folder", metavar="DIR")
     score = actions.add_parser("score", help="score the tables of results in a folder")
     score.add_argument("folder", metavar="DIR")
-    run = actions.add_parser("run", help="run mine(problem, times, setting) of a Python module")
-    run.add_argument("mine", metavar="module:function")
-    run.add_argument("--ladder", type=float, nargs="+", default=[None], metavar="SETTING")
+    run = actions.add_parser("run", help="run an engine, or your mine(problem, times, setting)")
+    run.add_argument("mine", metavar="|".join((*ENGINES, "module:function")))
+    run.add_argument(
+        "--ladder", type=float, nargs="+", default=[None], metavar="SETTING",
+        help="settings, of engines time steps [s]",
+    )  # fmt: skip
     for parser in (score, run):
         parser.add_argument("--json", action="store_true", help="print the scores as JSON")
         parser.add_argument("--tags", action="store_true", help="print the tags that are passed")
@@ -54,10 +58,12 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _function(name: str) -> Any:
-    """Import a function named as module:function, also from the current folder."""
+    """Import an adapter, or a function named as module:function, also from the current folder."""
+    if name in ENGINES:
+        return adapter(name)
     module, _, function = name.partition(":")
     if not (module and function):
-        raise ValueError(f"run must have the form module:function, got {name!r}")
+        raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")
     sys.path.insert(0, "")
     found = getattr(import_module(module), function, None)
     if not callable(found):
