@@ -1,27 +1,21 @@
 """Scenes as text for physics engines: MJCF and SDF."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .check import positive
 
-if TYPE_CHECKING:
-    from .scene import Scene
-
+_HERE = Path(__file__).parent
 _LIGHT = 1e-9  # masses of the two links between ground and body in SDF, over that of the body
-_OWN_TIME = 0.02  # time constant of contacts that MuJoCo has by default [s]
 
 
-def to_mjcf(scene: Scene, *, timestep: float = 0.001, contact_steps: float | None = 4.0) -> str:
+def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None = 4.0) -> str:
     """Return the scene as MJCF, the format of MuJoCo, also read by Newton, MJX and Brax.
 
-    The body is an ellipsoid with the semi-axes a, max(a, b), b along x, y, z. Two slides ``x`` and
-    ``z`` and a hinge ``theta`` about y hold it in its plane: as in the package, z points away from
-    the ground and theta turns clockwise, and gravity is tilted by the slope. The key frame
-    ``start`` has position and velocity of `initial_state`, just after the blow. MJCF has no
+    An ellipsoid with the semi-axes a, max(a, b), b along x, y, z is held in its plane by two slides
+    ``x``, ``z`` and a hinge ``theta``: z points away from the ground, theta turns clockwise, and
+    gravity is tilted by the slope. The key frame ``start`` is the `initial_state`. MJCF has no
     coefficient of restitution: a contact is a critically damped spring, for 1 an undamped one.
 
     Parameters
@@ -37,25 +31,22 @@ def to_mjcf(scene: Scene, *, timestep: float = 0.001, contact_steps: float | Non
     ValueError
         If a number is not positive, friction is infinite, or restitution neither 0 nor 1.
     """
-    step = positive("timestep", timestep)
+    step, time, contact, cone = positive("timestep", timestep), 0.02, "", ""
+    if contact_steps is not None:
+        time = step * positive("contact_steps", contact_steps)
+        contact, cone = 'solimp="0.9999 0.9999 0.001 0.5 2"', 'cone="elliptic"'
     if scene.restitution not in (0, 1):
         raise ValueError(f"restitution must be 0 or 1 in MJCF, got {scene.restitution!r}")
-    own = contact_steps is None
-    time = _OWN_TIME if own else step * positive("contact_steps", contact_steps)
-    solref = f"{-4 / time**2!r} 0" if scene.restitution else f"{time!r} 1"
-    contact = f'condim="{3 if scene.friction else 1}" friction="{scene.friction!r} 0 0"'
-    contact += f' solref="{solref}"' + ("" if own else ' solimp="0.9999 0.9999 0.001 0.5 2"')
-    return _filled(
-        "scene.mjcf", scene, step=step, contact=contact, cone="" if own else 'cone="elliptic"'
-    )
+    spring = f"{-4 / time**2!r} 0" if scene.restitution else f"{time!r} 1"
+    contact += f' solref="{spring}" condim="{3 if scene.friction else 1}"'
+    return _filled("scene.mjcf", scene, step=step, contact=contact, cone=cone)
 
 
-def to_sdf(scene: Scene) -> str:
+def to_sdf(scene: Any) -> str:
     """Return the scene as SDF, the format of Gazebo, also read by Drake.
 
-    A world with the ground and the body of `to_mjcf`, hung on a prismatic joint ``x``, another one
-    ``z`` and a revolute one ``theta``, which are 0 in the pose at the start; two links between them
-    have 1e-9 of its mass. SDF has friction and restitution, but no velocities at the start: set
+    The body of `to_mjcf` hangs on prismatic joints ``x``, ``z`` and a revolute one ``theta``, which
+    are 0 at the start; two links between them have 1e-9 of its mass. SDF has no velocities: set
     the joints to x_dot, z_dot, omega of `initial_state`. URDF has no ellipsoid.
 
     Raises
@@ -63,18 +54,19 @@ def to_sdf(scene: Scene) -> str:
     ValueError
         If friction is infinite.
     """
-    return _filled("scene.sdf", scene, restitution=scene.restitution)
+    return _filled("scene.sdf", scene)
 
 
-def _filled(template: str, scene: Scene, **others: Any) -> str:
-    """Return a template with the numbers of body, gravity and start."""
+def gravity(scene: Any) -> tuple[float, float, float]:
+    """Return gravity along x, y, z [m/s^2]."""
+    return scene.gravity * math.sin(scene.slope), 0.0, -scene.gravity * math.cos(scene.slope)
+
+
+def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
-    at, inertia = scene.initial_state, scene.mass * scene.gyration2
-    return Path(__file__).with_name(template).read_text(encoding="utf-8").format(
-        **{name: getattr(at, name) for name in ("x", "z", "theta", "x_dot", "z_dot", "omega")},
-        a=scene.a, b=scene.b, width=max(scene.a, scene.b), friction=scene.friction,
-        mass=scene.mass, inertia=inertia, light_mass=_LIGHT * scene.mass, light=_LIGHT * inertia,
-        along=scene.gravity * math.sin(scene.slope), away=-scene.gravity * math.cos(scene.slope),
-        **others,
+    mass, inertia = scene.mass, scene.mass * scene.gyration2
+    return (_HERE / template).read_text(encoding="utf-8").format(
+        scene=scene, at=scene.initial_state, gravity=gravity(scene), width=max(scene.a, scene.b),
+        inertia=inertia, light=_LIGHT * mass, lightly=_LIGHT * inertia, **others,
     )  # fmt: skip

@@ -10,7 +10,7 @@ from typing import Any
 
 from ... import benchmark
 from ..._ask.printing import text_table
-from ...benchmark.adapters import ENGINES, adapter
+from ...benchmark.adapters import ENGINES
 from .options import PROGRAM, OneLineParser
 
 _ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
@@ -60,7 +60,11 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 def _function(name: str) -> Any:
     """Import an adapter, or a function named as module:function, also from the current folder."""
     if name in ENGINES:
-        return adapter(name)
+        try:
+            return import_module(f"{benchmark.__name__}.adapters.{name}").simulate
+        except ImportError as error:
+            needed = f"pip install {ENGINES[name]}"
+            raise ImportError(f"run must have {name}, by {needed}, got: {error}") from error
     module, _, function = name.partition(":")
     if not (module and function):
         raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")

@@ -1,86 +1,49 @@
 """Adapters of physics engines, which are installed beside the package.
 
-Each module has ``simulate(problem, times, setting)`` for `benchmark.run`, whose setting is the time
-step [s], and ``motion(scene, times, step)`` for scenes; `adapter` finds `simulate` by name.
+Each module has ``simulate(problem, times, setting)`` for `benchmark.run`; the setting is the time
+step [s], and a `Scene` may stand in place of the problem.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from importlib import import_module
+from typing import Any
 
 import numpy as np
 
-from ..._ask.check import FloatArray, choice, positive
+from ..._ask.check import FloatArray, positive
+from ..._ask.scene import Scene
 from .._result import Result
 
-#: Names of the engines, with what pip installs for them.
+#: Names of the modules, with what pip installs for each.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")
-ENGINES["newton"] = "newton"
-STEP = 1e-3  # default time step [s]
+ENGINES["newton"] = "newton[sim]"
+Run = tuple[Callable[[int], Any], Callable[[], Sequence[float]], str]
 
 
-def adapter(name: str) -> Callable[..., Result]:
+def engine(start: Callable[..., Run]) -> Callable[..., Result]:
     """Return `simulate` of an engine.
 
-    Raises
-    ------
-    ValueError
-        If there is no adapter of this name; the message lists all.
-    ImportError
-        If the engine is not installed.
+    ``start(scene, step, **options)`` returns a function that goes on by a number of steps, one that
+    returns the state (and N and F of the last step, if the engine tells them), and a note. A scene
+    that it refuses is not supported.
     """
-    engine = choice("name", name, tuple(ENGINES))
-    try:
-        found: Callable[..., Result] = import_module(f".{engine}", __name__).simulate
-    except ImportError as error:
-        missing = f"{engine} must be installed (pip install {ENGINES[engine]}), got: {error}"
-        raise ImportError(missing) from error
-    return found
 
+    def simulate(problem: Any, times: FloatArray, setting: Any = None, **options: Any) -> Result:
+        step = 1e-3 if setting is None else positive("setting", setting)
+        counts = np.rint(times / step).astype(int)
+        if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):
+            raise ValueError(f"setting must be a step that divides all times, got {step!r}")
+        scene = problem if isinstance(problem, Scene) else problem.scene
+        try:
+            advance, state, note = start(scene, step, **options)
+        except ValueError as error:
+            raise NotImplementedError(str(error)) from error
+        rows = []
+        for steps in np.diff(counts, prepend=0).tolist():
+            if steps:
+                advance(steps)
+            rows.append(state())
+        found = np.array(rows, dtype=float)
+        forces = dict(zip(("normal_force", "friction_force"), found[:, 6:].T, strict=False))
+        return Result(found[:, :6], note=note, **forces)
 
-def need(holds: bool, why: str) -> None:
-    """Raise NotImplementedError, which counts as "not supported", unless a condition holds."""
-    if not holds:
-        raise NotImplementedError(why)
-
-
-def sampled(
-    times: FloatArray,
-    step: float,
-    advance: Callable[[int, int], object],
-    state: Callable[[], Sequence[float]],
-    note: str = "",
-) -> Result:
-    """Return the states of an engine at times.
-
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-        Increasing times [s].
-    step : float
-        Time step [s].
-    advance : callable
-        ``advance(done, count)`` goes on from step number `done` to `count`.
-    state : callable
-        Returns x, z, theta, x_dot, z_dot, omega, and N and F of the last step where it tells them.
-    note : str
-        A word on the result.
-
-    Raises
-    ------
-    ValueError
-        If a time is no multiple of the step.
-    """
-    counts = np.rint(times / positive("setting", step)).astype(int)
-    if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):
-        raise ValueError(f"setting must be a step that divides all times, got {step!r}")
-    rows, done = [], 0
-    for count in counts.tolist():
-        if count > done:
-            advance(done, count)
-        rows.append(state())
-        done = count
-    found = np.array(rows, dtype=float)
-    forces = dict(zip(("normal_force", "friction_force"), found[:, 6:].T, strict=False))
-    return Result(found[:, :6], note=note, **forces)
+    return simulate

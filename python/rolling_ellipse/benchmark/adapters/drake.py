@@ -1,60 +1,41 @@
-"""Drake, with the body of `Scene.to_sdf`.
+"""Drake with the body of `Scene.to_sdf`.
 
-A discrete plant with point contact and Drake's defaults: the "lagged" approximation, which its
-manual prefers since it converges to Coulomb's law; stiffness 1e6 N/m and Hunt-Crossley dissipation
-50 s/m. Dissipation stands in place of a coefficient of restitution. Drake leaves out the gravity
-of an SDF world, which is set here.
+Drake's defaults: point contact of a discrete plant with the "lagged" approximation, which its
+manual prefers since it converges to Coulomb's law; stiffness 1e6 N/m, Hunt-Crossley dissipation
+50 s/m. The dissipation stands in place of a coefficient of restitution.
 """
 
-from __future__ import annotations
-
 import logging
-import math
 
-import numpy as np
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlantConfig
-from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.all import AddMultibodyPlant, DiagramBuilder, MultibodyPlantConfig, Parser, Simulator
 
-from ..._ask.check import FloatArray
 from ..._ask.scene import Scene
-from .._problem import Problem
-from .._result import Result
-from . import STEP, need, sampled
+from ..._ask.xml import gravity
+from . import Run, engine
 
 
-def simulate(problem: Problem, times: FloatArray, setting: float | None = None) -> Result:
-    """Run a problem with a time step [s]."""
-    return motion(problem.scene, times, STEP if setting is None else setting)
-
-
-def motion(scene: Scene, times: FloatArray, step: float) -> Result:
-    """Run a scene."""
-    need(scene.restitution == 0, "Drake has dissipation in place of restitution")
-    builder = DiagramBuilder()
-    config = MultibodyPlantConfig(time_step=step, discrete_contact_approximation="lagged")
-    plant, _ = AddMultibodyPlant(config, builder)
-    logger = logging.getLogger("drake")  # warns of the gravity, and of grounds of soft bodies
-    level = logger.level
-    logger.setLevel(logging.ERROR)
+@engine
+def simulate(scene: Scene, step: float) -> Run:
+    if scene.restitution:
+        raise NotImplementedError("Drake has dissipation in place of restitution")
+    at, builder, logger = scene.initial_state, DiagramBuilder(), logging.getLogger("drake")
+    plant, _ = AddMultibodyPlant(MultibodyPlantConfig(time_step=step), builder)
+    logger.disabled = True  # it warns of a world's gravity, and of grounds for soft bodies
     _, body = Parser(builder).AddModelsFromString(scene.to_sdf(), "sdf")
-    down, into = scene.gravity * math.sin(scene.slope), scene.gravity * math.cos(scene.slope)
-    plant.mutable_gravity_field().set_gravity_vector([down, 0.0, -into])
+    plant.mutable_gravity_field().set_gravity_vector(gravity(scene))
     plant.Finalize()
     simulator = Simulator(builder.Build())
-    logger.setLevel(level)
-    inner = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-    at = scene.initial_state
-    plant.SetVelocities(inner, [at.x_dot, at.z_dot, at.omega])
-    start = np.array([at.x, at.z, at.theta, 0.0, 0.0, 0.0])
-    forces = plant.get_generalized_contact_forces_output_port(body)
+    logger.disabled = False
+    root = simulator.get_mutable_context()
+    context = plant.GetMyMutableContextFromRoot(root)
+    plant.SetVelocities(context, [at.x_dot, at.z_dot, at.omega])
 
-    def advance(done: int, count: int) -> None:
-        simulator.AdvanceTo(count * step)
+    def advance(steps: int) -> None:
+        simulator.AdvanceTo(step * (round(root.get_time() / step) + steps))
 
     def state() -> list[float]:
-        along, away, _ = forces.Eval(inner)
-        return [*(start + plant.GetPositionsAndVelocities(inner)), away, along]
+        x, z, theta, *rates = plant.GetPositionsAndVelocities(context)
+        along, away, _ = plant.get_generalized_contact_forces_output_port(body).Eval(context)
+        return [at.x + x, at.z + z, at.theta + theta, *rates, away, along]
 
-    return sampled(times, step, advance, state)
+    return advance, state, ""

@@ -1,43 +1,30 @@
-"""Newton with its solver SolverMuJoCo, and the body of `Scene.to_mjcf`.
+"""Newton with its solver SolverMuJoCo, which is made for robots, and the body of `Scene.to_mjcf`.
 
-This is Newton's solver for robots; it reads MuJoCo's contact settings, those of `adapters.mujoco`,
-in single precision. The first call compiles for minutes, so that it runs only by its name.
+Contacts are set as in `adapters.mujoco`; numbers have single precision. The first call compiles for
+minutes.
 """
-
-from __future__ import annotations
-
-import math
 
 import newton
 
-from ..._ask.check import FloatArray
 from ..._ask.scene import Scene
-from .._problem import Problem
-from .._result import Result
-from . import STEP, need, sampled
+from ..._ask.xml import gravity
+from . import Run, engine
 
 
-def simulate(problem: Problem, times: FloatArray, setting: float | None = None) -> Result:
-    """Run a problem with a time step [s]."""
-    return motion(problem.scene, times, STEP if setting is None else setting)
-
-
-def motion(scene: Scene, times: FloatArray, step: float) -> Result:
-    """Run a scene."""
-    need(scene.restitution in (0, 1), "MuJoCo's manual has settings for restitution 0 and 1")
-    builder = newton.ModelBuilder()
+@engine
+def simulate(scene: Scene, step: float) -> Run:
+    builder, at = newton.ModelBuilder(), scene.initial_state
     builder.add_mjcf(scene.to_mjcf(timestep=step))
     model = builder.finalize()
-    pull, slope = scene.gravity, scene.slope  # of a tilted gravity the builder keeps the size only
-    model.set_gravity((pull * math.sin(slope), 0.0, -pull * math.cos(slope)))
+    model.set_gravity(gravity(scene))  # of a tilted one the builder keeps the size only
     solver = newton.solvers.SolverMuJoCo(model)
-    at, states, control = scene.initial_state, [model.state(), model.state()], model.control()
+    control, states = model.control(), [model.state(), model.state()]
     states[0].joint_q.assign([at.x, at.z, at.theta])
     states[0].joint_qd.assign([at.x_dot, at.z_dot, at.omega])
     newton.eval_fk(model, states[0].joint_q, states[0].joint_qd, states[0])
 
-    def advance(done: int, count: int) -> None:
-        for _ in range(done, count):
+    def advance(steps: int) -> None:
+        for _ in range(steps):
             states[0].clear_forces()
             solver.step(*states, control, None, step)
             states.reverse()
@@ -45,4 +32,4 @@ def motion(scene: Scene, times: FloatArray, step: float) -> Result:
     def state() -> list[float]:
         return [*states[0].joint_q.numpy(), *states[0].joint_qd.numpy()]
 
-    return sampled(times, step, advance, state)
+    return advance, state, ""
