@@ -1,13 +1,14 @@
 """Make all measurements, pictures and the text that quotes them: python docs/make.py
 
-On a quiet machine, with `pip install '.[test,peers]'`, gfortran (for numbalsoda), g++ and Boost's
-headers; it takes about an hour, and everything is then of one commit and one machine:
+On a quiet machine, with `pip install '.[test,peers,engines]'`, gfortran (for numbalsoda), g++ and
+Boost's headers; it takes about an hour, and everything is then of one commit and one machine:
 
     races      docs/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/batches.json, by benchmarks/bench_batches.py
+    engines    docs/engines.json, by the adapters of rolling_ellipse.benchmark
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
-    text       the marked parts of README.md, from the files of the first two
+    text       the marked parts of README.md and docs/benchmark.md, from those files
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
 works; its figures are not for keeping.
@@ -19,19 +20,25 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import nbformat
 from nbclient import NotebookClient
-from rolling_ellipse import WorkPrecision
+from rolling_ellipse import WorkPrecision, benchmark
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 README = ROOT / "README.md"
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
+ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
+LADDER = [1e-2, 1e-3]  # steps of the engines [s]
 MOTIONS = {"R": "rolling over, {:g} half turns", "L": "rocking, {:g} half swings"}
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
@@ -44,6 +51,28 @@ def races(quick: bool) -> None:
 
 def batches(quick: bool) -> None:
     run(BENCHMARKS / "bench_batches.py", "--save", HERE)
+
+
+def engines(quick: bool) -> None:
+    """Run the engines on the problems; a quick run takes the coarser step only."""
+    import common
+
+    found: dict[str, Any] = {"machine": common.machine(), "engines": {}}
+    for name, adapter in ENGINES.items():
+        module = import_module(f"rolling_ellipse.benchmark.adapters.{adapter}")
+        begin = time.perf_counter()
+        scores = benchmark.run(module.simulate, ladder=LADDER[: 1 if quick else None])
+        found["engines"][name] = {
+            "version": version(adapter),
+            "settings": " ".join(str(module.__doc__).partition("\n\n")[2].split()),
+            "seconds": round(time.perf_counter() - begin, 1),
+            "verdict": scores.verdict(),
+            "scores": scores.records(),
+        }
+    plain = json.dumps(found)  # has NaN, which JSON does not know
+    known = json.loads(plain, parse_constant=lambda name: None)
+    (HERE / "engines.json").write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    text(quick)
 
 
 def pictures(quick: bool) -> None:
@@ -74,11 +103,12 @@ def notebooks(quick: bool) -> None:
 
 
 def text(quick: bool) -> None:
-    README.write_text(quoted(README.read_text(encoding="utf-8")), encoding="utf-8")
+    for path in (README, HERE / "benchmark.md"):
+        path.write_text(quoted(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 STEPS: dict[str, Callable[[bool], None]] = {
-    step.__name__: step for step in (races, batches, pictures, notebooks, text)
+    step.__name__: step for step in (races, batches, engines, pictures, notebooks, text)
 }
 
 # ------------------------------------------------------------------------------ marked parts
@@ -86,13 +116,17 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 def quoted(page: str) -> str:
     """A page with its marked parts made anew."""
-    for name, part in (("speed", speed()), ("batches", throughput())):
+    parts = {"speed": speed, "batches": throughput, "engines": engine_table}
+    found = [name for name in parts if f"<!-- {name}: made by docs/make.py -->\n" in page]
+    if not found:
+        raise ValueError(f"the page must have a mark of {', '.join(parts)}")
+    for name in found:
         begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
         before, _, rest = page.partition(begin)
-        _, found, after = rest.partition(end)
-        if not found:
-            raise ValueError(f"the page must have {begin!r} and {end!r}")
-        page = before + begin + part + end + after
+        _, closed, after = rest.partition(end)
+        if not closed:
+            raise ValueError(f"the page must have {end!r}")
+        page = before + begin + parts[name]() + end + after
     return page
 
 
@@ -140,6 +174,38 @@ def throughput() -> str:
         f"bytes, and {contact['bytes a sample']:.0f}. A pool of {pool['processes']} processes "
         f"wrote {round(pool['motions a second'], -3):,.0f} exact motions a second.\n"
     )
+
+
+def engine_table() -> str:
+    """Settings and verdicts of the engines, and a table of problems and steps."""
+    known = json.loads((HERE / "engines.json").read_text(encoding="utf-8"))
+    on, lines = known["machine"], []
+    cells: dict[str, list[str]] = {}
+    head, seconds = ["problem"], 0.0
+    for name, found in known["engines"].items():
+        lines.append(f"* **{name} {found['version']}.** {found['verdict']} {found['settings']}")
+        steps = {score["setting"]: None for score in found["scores"]}
+        head += [f"{name}, {step:g} s" for step in steps]
+        seconds += found["seconds"]
+        for score in found["scores"]:
+            cells.setdefault(score["problem"], []).append(engine_cell(score))
+    rows = [[f"`{problem}`", *row] for problem, row in cells.items()]
+    table = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
+    stamp = (
+        f"{seconds:.0f} s for all of it on {on['processor']}, {on['date']}; every score is in "
+        "[`engines.json`](engines.json)."
+    )
+    return "\n".join([*table, "", *lines, "", stamp]) + "\n"
+
+
+def engine_cell(score: dict[str, Any]) -> str:
+    """Error over condition, in bold if it passes; or why there is none."""
+    if score["over_condition"] is None:
+        return "–"
+    error = f"{score['over_condition']:.0e}"
+    if score["answer"] != "right":
+        return f"{error}, {score['answer']}"
+    return f"**{error}**" if score["passed"] else error
 
 
 def main() -> None:

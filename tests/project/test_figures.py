@@ -36,8 +36,9 @@ def printed(path: Path) -> str:
     return "".join("".join(output.get("text", "")) for output in outputs)
 
 
-def test_the_figures_of_the_readme_are_those_of_the_data(make: dict[str, Any]) -> None:
-    assert make["quoted"](README) == README, "python docs/make.py text"
+def test_the_figures_of_the_pages_are_those_of_the_data(make: dict[str, Any]) -> None:
+    for page in (README, (DOCS / "benchmark.md").read_text(encoding="utf-8")):
+        assert make["quoted"](page) == page, "python docs/make.py text"
 
 
 def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:

@@ -1,12 +1,15 @@
 """Refusals of `benchmark`: unknown names, and results that are not as they must be."""
 
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rolling_ellipse import benchmark
+import pytest
+from rolling_ellipse import Scene, benchmark
 from rolling_ellipse._show.command.benchmark import act, benchmark_parser
+from rolling_ellipse.benchmark.adapters import engine
 
 from refusals import Row, wrong
 
@@ -39,6 +42,13 @@ def told(*arguments: str) -> Callable[[Path], Any]:
     return lambda _: act(benchmark_parser().parse_args(list(arguments)))
 
 
+def without_mujoco(folder: Path) -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delitem(sys.modules, "rolling_ellipse.benchmark.adapters.mujoco", raising=False)
+        patch.setitem(sys.modules, "mujoco", None)
+        return told("run", "mujoco")(folder)
+
+
 def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.problem, {}, id=["slide", 3])
     yield from wrong(benchmark.problems, {}, tags=[["gpu"]])
@@ -57,6 +67,10 @@ def _rows() -> Iterator[Row]:
     yield "t", written("t,x,z,theta,vx,vz,omega\n0,0,1,0,3,0,0\n", "kind,t\nSTICK,soon\n")
     yield "run", told("run", "exact")
     yield "run", told("run", "json:nothing")
+    yield ImportError, without_mujoco
+    simulate = engine(lambda scene, step: scene.to_sdf())
+    yield from wrong(simulate, {"problem": STICK, "times": T}, setting=[0.0, 0.003])
+    yield NotImplementedError, lambda _: simulate(Scene(2.0, 1.0), T)
 
 
 REFUSALS: list[Row] = list(_rows())

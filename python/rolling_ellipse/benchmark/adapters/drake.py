@@ -1,8 +1,8 @@
 """Drake with the body of `Scene.to_sdf`.
 
-Drake's defaults: point contact of a discrete plant with the "lagged" approximation, which its
-manual prefers since it converges to Coulomb's law; stiffness 1e6 N/m, Hunt-Crossley dissipation
-50 s/m. The dissipation stands in place of a coefficient of restitution.
+Drake's defaults: point contact of a discrete plant with stiffness 1e6 N/m and Hunt-Crossley
+dissipation 50 s/m, in place of a coefficient of restitution; the approximation "lagged", which its
+manual prefers unless impacts must be resolved. The option `approximation` takes another one.
 """
 
 import logging
@@ -15,11 +15,12 @@ from . import Run, engine
 
 
 @engine
-def simulate(scene: Scene, step: float) -> Run:
+def simulate(scene: Scene, step: float, approximation: str = "lagged") -> Run:
     if scene.restitution:
         raise NotImplementedError("Drake has dissipation in place of restitution")
     at, builder, logger = scene.initial_state, DiagramBuilder(), logging.getLogger("drake")
-    plant, _ = AddMultibodyPlant(MultibodyPlantConfig(time_step=step), builder)
+    config = MultibodyPlantConfig(time_step=step, discrete_contact_approximation=approximation)
+    plant, _ = AddMultibodyPlant(config, builder)
     logger.disabled = True  # it warns of a world's gravity, and of grounds for soft bodies
     _, body = Parser(builder).AddModelsFromString(scene.to_sdf(), "sdf")
     plant.mutable_gravity_field().set_gravity_vector(gravity(scene))

@@ -1,0 +1,87 @@
+"""Real engines load MJCF and SDF as the scene means them, and their adapters answer problems."""
+
+import math
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+from rolling_ellipse import Scene, benchmark, flow, geometry
+
+SCENE = Scene(
+    2.0, 0.7, mass=3.0, gravity=9.0, inertia=2.5, slope=0.3, friction=0.6, theta=0.4, omega=1.5,
+    x=1.5, z=4.0, x_dot=-0.5, z_dot=0.25,
+)  # fmt: skip
+GRAVITY = [9.0 * math.sin(0.3), 0.0, -9.0 * math.cos(0.3)]
+HEIGHT, AHEAD = (f(0.4, a=2.0, b=0.7) for f in (geometry.support, geometry.support_slope))
+DEEP = 1e-6  # overlap with which contacts are asked for [m]
+
+
+def adapter(name: str) -> Any:
+    pytest.importorskip({"drake": "pydrake"}.get(name, name))
+    return import_module(f"rolling_ellipse.benchmark.adapters.{name}").simulate
+
+
+def test_mujoco_reads_mjcf() -> None:
+    """The point above the centre moves forwards as theta grows: the Jacobian's last column."""
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(SCENE.to_mjcf(timestep=0.002))
+    data, above = mujoco.MjData(model), np.zeros((3, 3))
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    assert [*data.qpos, *data.qvel] == [1.5, 4.0, 0.4, -0.5, 0.25, 1.5]
+    body = model.body("body")
+    assert [model.opt.timestep, body.mass, body.inertia[1]] == [0.002, 3.0, 2.5]
+    assert model.opt.gravity == pytest.approx(GRAVITY)
+    data.qpos[1] = HEIGHT - DEEP
+    mujoco.mj_forward(model, data)
+    mujoco.mj_jac(model, data, above, None, [1.5, 0.0, data.qpos[1] + 1], body.id)
+    assert above[:, 2] == pytest.approx([1.0, 0.0, 0.0])
+    (contact,) = data.contact
+    assert contact.dist == pytest.approx(-DEEP, abs=1e-12) and contact.friction[0] == 0.6
+    assert contact.pos == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=DEEP)
+
+
+def test_drake_reads_sdf() -> None:
+    """Two links of 1e-9 of the mass move with the body; Drake leaves the gravity out."""
+    drake = pytest.importorskip("pydrake.all")
+    builder = drake.DiagramBuilder()
+    plant, _ = drake.AddMultibodyPlantSceneGraph(builder, 0.001)
+    drake.Parser(builder).AddModelsFromString(SCENE.to_sdf(), "sdf")
+    plant.Finalize()
+    root = builder.Build().CreateDefaultContext()
+    context, body = plant.GetMyContextFromRoot(root), plant.GetBodyByName("body")
+    pose = body.EvalPoseInWorld(context)
+    assert [*plant.GetPositions(context), *pose.translation()] == [0, 0, 0, 1.5, 0, 4]
+    assert pose.rotation().matrix()[:, 2] == pytest.approx([math.sin(0.4), 0.0, math.cos(0.4)])
+    assert np.allclose(plant.CalcMassMatrix(context), np.diag([3.0, 3.0, 2.5]), rtol=3e-9)
+    plant.SetVelocities(context, [-0.5, 0.25, 1.5])
+    moves = body.EvalSpatialVelocityInWorld(context).get_coeffs()
+    assert moves == pytest.approx([0.0, 1.5, 0.0, -0.5, 0.0, 0.25])
+    plant.SetPositions(context, [0.0, HEIGHT - DEEP - 4.0, 0.0])
+    (touch,) = plant.get_geometry_query_input_port().Eval(context).ComputePointPairPenetration()
+    assert touch.depth == pytest.approx(DEEP, abs=1e-12)
+    assert touch.p_WCa == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=DEEP)
+    assert "<gravity>{} {} {}</gravity>".format(*GRAVITY) in SCENE.to_sdf()
+
+
+@pytest.mark.parametrize("name", ["mujoco", "drake", "pymunk"])
+def test_an_adapter_falls_and_lies(name: str) -> None:
+    """Symplectic Euler is off by g t h/2 in z of a fall; an overlap of 0.002 m stays at rest."""
+    simulate, drop = adapter(name), benchmark.problem("hit.drop_stick")
+    t = drop.output_times[:49]  # before it lands
+    off = np.abs(simulate(drop, t, 0.005).states - drop.exact(t))
+    assert np.abs(off - np.outer(9.81 * t * 0.005 / 2, [0, 1, 0, 0, 0, 0])).max() < 1e-12
+    rest = simulate(benchmark.problem("rest.lie"), np.arange(200) / 100)
+    assert np.abs(rest.states - [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]).max() < 2e-3
+    assert rest.normal_force is None or rest.normal_force[-1] == pytest.approx(9.81, rel=1e-6)
+
+
+def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
+    """The error of stiff contacts falls with the step, that of its own contacts does not."""
+    scene = Scene(2.0, 1.0, friction=1.0, theta=0.2, omega=3.2)
+
+    def error(dt: float, contact_steps: float | None = 2.0) -> float:
+        found = adapter("mujoco")(scene, np.array([5.0]), dt, contact_steps=contact_steps)
+        return abs(float(found.states[0, 2]) - flow(5.0, a=2.0, b=1.0, theta=0.2, omega=3.2)[0])
+
+    assert error(1e-3) < 0.5 * error(4e-3) and error(1e-3) < 0.1 * error(1e-3, None)
