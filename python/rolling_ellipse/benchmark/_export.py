@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,10 @@ def export(folder: Any) -> list[Path]:
     written[0].write_text(_README, encoding="utf-8")
     for one in problems():
         written.append(Path(shutil.copy(FOLDER / f"{one.id}.json", place)))
-        texts = {".sdf": one.scene.to_sdf()}
-        if one.scene.restitution in (0, 1):
-            texts[".xml"] = one.scene.to_mjcf()
-        for suffix, text in texts.items():
-            written.append(place / (one.id + suffix))
-            written[-1].write_text(text, encoding="utf-8")
+        for suffix, write in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
+            with suppress(ValueError):  # coefficients of restitution that MJCF has not
+                (place / (one.id + suffix)).write_text(write(), encoding="utf-8")
+                written.append(place / (one.id + suffix))
         table = place / f"{one.id}.csv"
         if not table.exists():
             empty = "," * (len(COLUMNS) - 1)

@@ -27,10 +27,7 @@ def benchmark_parser() -> OneLineParser:
     score.add_argument("folder", metavar="DIR")
     run = actions.add_parser("run", help="run an engine, or your mine(problem, times, setting)")
     run.add_argument("mine", metavar="|".join((*ENGINES, "module:function")))
-    run.add_argument(
-        "--ladder", type=float, nargs="+", default=[None], metavar="SETTING",
-        help="settings, of engines time steps [s]",
-    )  # fmt: skip
+    run.add_argument("--ladder", type=float, nargs="+", default=[None], metavar="SETTING")
     for parser in (score, run):
         parser.add_argument("--json", action="store_true", help="print the scores as JSON")
         parser.add_argument("--tags", action="store_true", help="print the tags that are passed")
@@ -63,8 +60,7 @@ def _function(name: str) -> Any:
         try:
             return import_module(f"{benchmark.__name__}.adapters.{name}").simulate
         except ImportError as error:
-            needed = f"pip install {ENGINES[name]}"
-            raise ImportError(f"run must have {name}, by {needed}, got: {error}") from error
+            raise ImportError(f"{name} needs pip install {ENGINES[name]}: {error}") from error
     module, _, function = name.partition(":")
     if not (module and function):
         raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")

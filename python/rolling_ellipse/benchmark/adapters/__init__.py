@@ -4,7 +4,7 @@ Each module has ``simulate(problem, times, setting)`` for `benchmark.run`; the s
 step [s], and a `Scene` may stand in place of the problem.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from .._result import Result
 #: Names of the modules, with what pip installs for each.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")
 ENGINES["newton"] = "newton[sim]"
-Run = tuple[Callable[[int], Any], Callable[[], Sequence[float]], str]
+Run = tuple[Any, ...]  # of the functions that `engine` tells
 
 
 def engine(start: Callable[..., Run]) -> Callable[..., Result]:
@@ -28,13 +28,14 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
     """
 
     def simulate(problem: Any, times: FloatArray, setting: Any = None, **options: Any) -> Result:
+        """Return the states of a problem, or a scene, at times, with a time step [s]."""
         step = 1e-3 if setting is None else positive("setting", setting)
         counts = np.rint(times / step).astype(int)
         if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):
             raise ValueError(f"setting must be a step that divides all times, got {step!r}")
         scene = problem if isinstance(problem, Scene) else problem.scene
         try:
-            advance, state, note = start(scene, step, **options)
+            advance, state, *note = start(scene, step, **options)
         except ValueError as error:
             raise NotImplementedError(str(error)) from error
         rows = []
@@ -44,6 +45,6 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
             rows.append(state())
         found = np.array(rows, dtype=float)
         forces = dict(zip(("normal_force", "friction_force"), found[:, 6:].T, strict=False))
-        return Result(found[:, :6], note=note, **forces)
+        return Result(found[:, :6], note="".join(note), **forces)
 
     return simulate

@@ -31,12 +31,9 @@ def simulate(scene: Scene, step: float, approximation: str = "lagged") -> Run:
     context = plant.GetMyMutableContextFromRoot(root)
     plant.SetVelocities(context, [at.x_dot, at.z_dot, at.omega])
 
-    def advance(steps: int) -> None:
-        simulator.AdvanceTo(step * (round(root.get_time() / step) + steps))
-
     def state() -> list[float]:
         x, z, theta, *rates = plant.GetPositionsAndVelocities(context)
         along, away, _ = plant.get_generalized_contact_forces_output_port(body).Eval(context)
         return [at.x + x, at.z + z, at.theta + theta, *rates, away, along]
 
-    return advance, state, ""
+    return lambda n: simulator.AdvanceTo(step * (round(root.get_time() / step) + n)), state

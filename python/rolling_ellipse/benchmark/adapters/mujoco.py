@@ -18,8 +18,7 @@ def simulate(scene: Scene, step: float, contact_steps: float | None = 4.0) -> Ru
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-
-    def state() -> list[float]:
-        return [*data.qpos, *data.qvel, *data.qfrc_constraint[1::-1]]
-
-    return lambda steps: mujoco.mj_step(model, data, nstep=steps), state, ""
+    return (
+        lambda steps: mujoco.mj_step(model, data, nstep=steps),
+        lambda: [*data.qpos, *data.qvel, *data.qfrc_constraint[1::-1]],
+    )

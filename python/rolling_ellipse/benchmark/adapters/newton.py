@@ -29,7 +29,4 @@ def simulate(scene: Scene, step: float) -> Run:
             solver.step(*states, control, None, step)
             states.reverse()
 
-    def state() -> list[float]:
-        return [*states[0].joint_q.numpy(), *states[0].joint_qd.numpy()]
-
-    return advance, state, ""
+    return advance, lambda: [*states[0].joint_q.numpy(), *states[0].joint_qd.numpy()]

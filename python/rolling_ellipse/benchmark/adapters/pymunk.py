@@ -21,7 +21,7 @@ _GROUND = [(-1e4, -10.0), (1e4, -10.0), (1e4, 0.0), (-1e4, 0.0)]
 def simulate(scene: Scene, step: float) -> Run:
     if scene.friction == math.inf:
         raise NotImplementedError("friction is finite in pymunk")
-    a, b, at, note = scene.a, scene.b, scene.initial_state, ""
+    a, b, at, note = scene.a, scene.b, scene.initial_state, "circle"
     body = pymunk.Body(scene.mass, scene.mass * scene.gyration2)
     shape: pymunk.Shape = pymunk.Circle(body, a)
     if a != b:
@@ -37,8 +37,8 @@ def simulate(scene: Scene, step: float) -> Run:
     ground = pymunk.Poly(space.static_body, _GROUND)
     ground.friction = ground.elasticity = 1.0
     space.add(ground, body, shape)
-
-    def state() -> list[float]:
-        return [*body.position, -body.angle, *body.velocity, -body.angular_velocity]
-
-    return lambda steps: [space.step(step) for _ in range(steps)], state, note
+    return (
+        lambda steps: [space.step(step) for _ in range(steps)],
+        lambda: [*body.position, -body.angle, *body.velocity, -body.angular_velocity],
+        note,
+    )
