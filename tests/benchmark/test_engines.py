@@ -1,4 +1,4 @@
-"""Real engines load MJCF and SDF as the scene means them, and their adapters answer problems."""
+"""Engines read MJCF and SDF as meant, with contacts 1e-6 m deep; adapters answer problems."""
 
 import math
 from importlib import import_module
@@ -14,7 +14,6 @@ SCENE = Scene(
 )  # fmt: skip
 GRAVITY = [9.0 * math.sin(0.3), 0.0, -9.0 * math.cos(0.3)]
 HEIGHT, AHEAD = (f(0.4, a=2.0, b=0.7) for f in (geometry.support, geometry.support_slope))
-DEEP = 1e-6  # overlap with which contacts are asked for [m]
 
 
 def adapter(name: str) -> Any:
@@ -32,13 +31,13 @@ def test_mujoco_reads_mjcf() -> None:
     body = model.body("body")
     assert [model.opt.timestep, body.mass, body.inertia[1]] == [0.002, 3.0, 2.5]
     assert model.opt.gravity == pytest.approx(GRAVITY)
-    data.qpos[1] = HEIGHT - DEEP
+    data.qpos[1] = HEIGHT - 1e-6
     mujoco.mj_forward(model, data)
     mujoco.mj_jac(model, data, above, None, [1.5, 0.0, data.qpos[1] + 1], body.id)
     assert above[:, 2] == pytest.approx([1.0, 0.0, 0.0])
     (contact,) = data.contact
-    assert contact.dist == pytest.approx(-DEEP, abs=1e-12) and contact.friction[0] == 0.6
-    assert contact.pos == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=DEEP)
+    assert contact.dist == pytest.approx(-1e-6, abs=1e-12) and contact.friction[0] == 0.6
+    assert contact.pos == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=1e-6)
 
 
 def test_drake_reads_sdf() -> None:
@@ -57,10 +56,10 @@ def test_drake_reads_sdf() -> None:
     plant.SetVelocities(context, [-0.5, 0.25, 1.5])
     moves = body.EvalSpatialVelocityInWorld(context).get_coeffs()
     assert moves == pytest.approx([0.0, 1.5, 0.0, -0.5, 0.0, 0.25])
-    plant.SetPositions(context, [0.0, HEIGHT - DEEP - 4.0, 0.0])
+    plant.SetPositions(context, [0.0, HEIGHT - 1e-6 - 4.0, 0.0])
     (touch,) = plant.get_geometry_query_input_port().Eval(context).ComputePointPairPenetration()
-    assert touch.depth == pytest.approx(DEEP, abs=1e-12)
-    assert touch.p_WCa == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=DEEP)
+    assert touch.depth == pytest.approx(1e-6, abs=1e-12)
+    assert touch.p_WCa == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=1e-6)
     assert "<gravity>{} {} {}</gravity>".format(*GRAVITY) in SCENE.to_sdf()
 
 
