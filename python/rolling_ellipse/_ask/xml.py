@@ -6,9 +6,6 @@ from typing import Any
 
 from .check import positive
 
-_HERE = Path(__file__).parent
-_LIGHT = 1e-9  # masses of the two links between ground and body in SDF, over that of the body
-
 
 def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None = 4.0) -> str:
     """Return the scene as MJCF, the format of MuJoCo, also read by Newton, MJX and Brax.
@@ -65,8 +62,8 @@ def gravity(scene: Any) -> tuple[float, float, float]:
 def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
-    mass, inertia = scene.mass, scene.mass * scene.gyration2
-    return (_HERE / template).read_text(encoding="utf-8").format(
+    inertia = scene.mass * scene.gyration2
+    return Path(__file__).with_name(template).read_text(encoding="utf-8").format(
         scene=scene, at=scene.initial_state, gravity=gravity(scene), width=max(scene.a, scene.b),
-        inertia=inertia, light=_LIGHT * mass, lightly=_LIGHT * inertia, **others,
+        inertia=inertia, light=1e-9 * scene.mass, lightly=1e-9 * inertia, **others,
     )  # fmt: skip

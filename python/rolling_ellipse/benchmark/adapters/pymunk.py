@@ -1,6 +1,6 @@
 """pymunk, which is Chipmunk in Python.
 
-It has no ellipse: the body is a polygon of 1024 vertices, or pymunk's circle. Iterations as by
+It has no ellipse: the body is a polygon of 2048 vertices, or pymunk's circle. Iterations as by
 default, since one contact needs no more; an overlap of 0.001 max(a, b) is left, as the default of
 0.1 is meant for pixels. The ground has friction and restitution 1, by which pymunk multiplies.
 """
@@ -13,8 +13,7 @@ from ..._ask.scene import Scene
 from ..._ask.xml import gravity
 from . import Run, engine
 
-VERTICES = 1024
-_GROUND = [(-1e4, -10.0), (1e4, -10.0), (1e4, 0.0), (-1e4, 0.0)]
+VERTICES = 2048
 
 
 @engine
@@ -34,7 +33,7 @@ def simulate(scene: Scene, step: float) -> Run:
     shape.friction, shape.elasticity = scene.friction, scene.restitution
     space = pymunk.Space()
     space.gravity, space.collision_slop = gravity(scene)[::2], 1e-3 * max(a, b)
-    ground = pymunk.Poly(space.static_body, _GROUND)
+    ground = pymunk.Segment(space.static_body, (-1e4, -1.0), (1e4, -1.0), radius=1.0)
     ground.friction = ground.elasticity = 1.0
     space.add(ground, body, shape)
     return (
