@@ -10,6 +10,7 @@ z, theta, x_dot, z_dot, omega.
 >>> benchmark.problem("slide.stick").question
 """
 
+from ._dae import Dae
 from ._export import export
 from ._ode import Ode
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
@@ -17,6 +18,6 @@ from ._result import Result
 from ._score import Score, Scores, run, score
 
 __all__ = [
-    "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export", "gradients",
-    "problem", "problems", "run", "score",
+    "Dae", "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export",
+    "gradients", "problem", "problems", "run", "score",
 ]  # fmt: skip

@@ -14,9 +14,10 @@ import numpy as np
 from .._ask.check import FloatArray, array, choice
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
-from .._core import EventKind
+from .._core import EventKind, Mode
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import simulate
+from ._dae import FORMS, Dae
 from ._ode import Ode, first_arc
 
 FORMAT = "rolling_ellipse.benchmark/1"
@@ -142,6 +143,19 @@ class Problem(FieldsOnly):
             NumPy, or a module with its functions such as ``jax.numpy``.
         """
         return first_arc(self, xp)
+
+    def dae(self, form: str) -> Dae:
+        """Return a motion that rolls all the time as differential-algebraic equations.
+
+        Parameters
+        ----------
+        form : {"index3", "index2", "index1", "ggl"}
+            Order of the constraints, or stabilised ones.
+        """
+        index, rows = FORMS[choice("form", form, tuple(FORMS))]
+        if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
+            raise ValueError(f"problem must roll all the time, got {self.id!r}")
+        return Dae(self, form, index, rows)
 
 
 @dataclass(frozen=True, eq=False)
