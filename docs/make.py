@@ -9,6 +9,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README.md and docs/benchmark.md, from those files
+    dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
 works; its figures are not for keeping.
@@ -107,8 +108,14 @@ def text(quick: bool) -> None:
         path.write_text(quoted(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
+def dae(quick: bool) -> None:
+    import dae_table
+
+    dae_table.write()
+
+
 STEPS: dict[str, Callable[[bool], None]] = {
-    step.__name__: step for step in (races, batches, engines, pictures, notebooks, text)
+    step.__name__: step for step in (races, batches, engines, pictures, notebooks, text, dae)
 }
 
 # ------------------------------------------------------------------------------ marked parts

@@ -41,14 +41,12 @@ class Dae(FieldsOnly):
     form : {"index3", "index2", "index1", "ggl"}
     index : int
         Differentiation index, 2 for "ggl".
-    rows : tuple of int
-        Constraints that are held, in the order of `FORMS`.
     """
 
     problem: Problem
     form: str
     index: int
-    rows: tuple[int, ...]
+    rows: tuple[int, ...]  # see FORMS
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -86,15 +84,11 @@ class Dae(FieldsOnly):
         return np.asarray(y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
-        """Return F, shape (..., n): q' and M v' less their right sides, and the constraints."""
-        scene, y, yp = self.problem.scene, np.moveaxis(y, -1, 0), np.moveaxis(yp, -1, 0)
-        a, b, m, c2 = scene.a, scene.b, scene.mass, (scene.a - scene.b) * (scene.a + scene.b)
-        z, theta, psi, r, x_t, z_t, theta_t, psi_t, r_t = y[1:10]
-        x_tt, z_tt, theta_tt, psi_tt, r_tt = yp[5:10]
+        """Return F, shape (n,) or (m, n): q' and M v' less their right sides, the constraints."""
+        scene, y, yp, mu = self.problem.scene, y.T, yp.T, y.T[14:]
+        a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
+        z, theta, psi, r, _, _, theta_t, psi_t, r_t = y[1:10]
         sin, cos, turn = np.sin(psi - theta), np.cos(psi - theta), psi_t - theta_t
-        h, lead = r * cos, r * sin  # height of the centre over the contact, which is ahead by lead
-        h_t = r_t * cos - lead * turn
-        h_tt = r_tt * cos - lead * (psi_tt - theta_tt) - turn * (2 * r_t * sin + h * turn)
         s = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
         r_c, u = a * b / np.sqrt(s), c2 * np.sin(2 * psi) / s  # r_c: radius of the ellipse at psi
         r_1, r_2 = r_c * u / 2, r_c * (0.75 * u**2 + c2 * np.cos(2 * psi) / s)  # derivatives by psi
@@ -102,28 +96,26 @@ class Dae(FieldsOnly):
         psi_c = theta + np.arctan(c2 * p * q / ((b * p) ** 2 + (a * q) ** 2))
         psi_1 = (a * b) ** 2 / (p * p + q * q)  # derivatives by theta
         psi_2 = -2 * p * q * c2 * (a * a + b * b) / (p * p + q * q) ** 2
-        held = [
-            z - h, r - r_c, psi - psi_c,
-            x_t - h * theta_t, z_t - h_t, r_t - r_1 * psi_t, psi_t - psi_1 * theta_t,
-            x_tt - h_t * theta_t - h * theta_tt, z_tt - h_tt,
-            r_tt - r_1 * psi_tt - r_2 * psi_t**2, psi_tt - psi_1 * theta_tt - psi_2 * theta_t**2,
-        ]  # fmt: skip
+        g = np.zeros((4, 5, *r.shape), y.dtype)
+        g[0, 0] = g[1, 1] = g[2, 4] = g[3, 3] = 1
+        g[0, 2], g[1, 2], g[1, 3], g[1, 4] = -r * cos, -r * sin, r * sin, -cos
+        g[2, 3], g[3, 2] = -r_1, -psi_1
+        bent = np.stack([  # G' v
+            theta_t * (r * sin * turn - r_t * cos), turn * (2 * r_t * sin + r * cos * turn),
+            -r_2 * psi_t**2, -psi_2 * theta_t**2,
+        ])  # fmt: skip
+        along, pull = "ij...,j...->i...", "ij...,i...->j..."
+        rates, bent = np.einsum(along, g, y[5:10]), bent + np.einsum(along, g, yp[5:10])
+        held = [z - r * cos, r - r_c, psi - psi_c, *rates, *bent]
+        masses = scene.mass * np.array([1, 1, scene.gyration2, 0, 0])
+        fall = [np.sin(scene.slope), -np.cos(scene.slope), 0, 0, 0]
+        pushed = (masses * (yp[5:10].T - scene.gravity * np.array(fall))).T
+        pushed = pushed - np.einsum(pull, g, y[10:14])
+        moved = yp[:5] - y[5:10] - np.einsum(pull, g[4 - len(mu) :], mu)
+        return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
-        def pulled(l1: Any, l2: Any, l3: Any, l4: Any) -> list[Any]:
-            """Return G^T lambda."""
-            of_theta, of_psi = -h * l1 - lead * l2 - psi_1 * l4, lead * l2 - r_1 * l3 + l4
-            return [l1, l2, of_theta, of_psi, l3 - cos * l2]
-
-        down, into = scene.gravity * np.sin(scene.slope), scene.gravity * np.cos(scene.slope)
-        moved = m * (x_tt - down), m * (z_tt + into), m * scene.gyration2 * theta_tt, 0 * r, 0 * r
-        lifted = pulled(0, *y[14:]) if len(y) > 14 else [0] * 5
-        found = [rate - v - lift for rate, v, lift in zip(yp[:5], y[5:10], lifted, strict=True)]
-        found += [left - pull for left, pull in zip(moved, pulled(*y[10:14]), strict=True)]
-        return np.stack([*found, *(held[row] for row in self.rows)], axis=-1)
-
-    def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> FloatArray:
+    def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
         """Return dF/dy + cj dF/dy', shape (n, n), exact to rounding by complex steps."""
         step = 1e-30  # no truncation error in doubles, and no cancellation
         steps = 1j * step * np.eye(len(y))
-        found: FloatArray = self.residual(t, y + steps, yp + cj * steps).imag.T / step
-        return found
+        return self.residual(t, y + steps, yp + cj * steps).imag.T / step

@@ -1,0 +1,88 @@
+"""The tables of benchmark_dae.md: SUNDIALS IDA on all forms, and the reference solution."""
+
+import re
+import time
+from pathlib import Path
+
+import numpy as np
+import sksundae
+from rolling_ellipse import benchmark
+
+PAGE = Path(__file__).with_name("benchmark_dae.md")
+NAMES = [
+    "rest.lie", "roll.circle", "roll.rock", "roll.roll", "roll.thin", "brink.back", "brink.over"
+]  # fmt: skip
+Q, Q_V, ALL = "q", "q, v", "all"
+RUNS = [  # form, tolerance, entries in the test of local errors
+    ("index1", 2e-15, Q_V), ("ggl", 3e-14, Q_V), ("index2", 3e-14, Q_V), ("index3", 3e-14, Q_V),
+    ("index3", 1e-8, Q), ("ggl", 3e-14, ALL), ("index2", 3e-14, ALL),
+]  # fmt: skip
+
+
+def scored(problem: benchmark.Problem) -> np.ndarray:
+    """Given times at which states are scored, after the start."""
+    times = problem.times[problem.times > 0]
+    return times[(times < problem.horizon) | (problem.horizon == problem.t_end)]
+
+
+def tested(dae: benchmark.Dae, which: str) -> np.ndarray:
+    """Mask of the entries in the test of local errors."""
+    if which == Q_V:
+        return ~dae.algebraic
+    return np.arange(len(dae.names)) < (5 if which == Q else len(dae.names))
+
+
+def solver():
+    """The function `solve` that the page shows."""
+    names: dict = {}
+    exec(re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)[1], names)
+    return names["solve"]
+
+
+def ida() -> str:
+    """Table of all runs."""
+    lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
+    lines += ["|---|---|---|---|---|---|---|---|---|"]
+    solve = solver()
+    for name in NAMES:
+        problem = benchmark.problem(name)
+        times = np.append(0.0, scored(problem))
+        for form, rtol, which in RUNS:
+            dae = problem.dae(form)
+            begun = time.perf_counter()
+            found = solve(dae, times, rtol, tested(dae, which))
+            seconds = time.perf_counter() - begun
+            t = found.t[-1]
+            off = np.abs(dae.states(found.y) - problem.exact(found.t)) / problem.scales
+            error, said = f"{off.max():.1e}", "done"
+            if not found.success:
+                error, said = "", f"t = {t:.2g} s: {found.message}"
+            row = name, form, rtol, which, error, found.nfev, found.njev, f"{seconds:.2g}", said
+            lines.append(f"| {' | '.join(map(str, row))} |")
+            print(lines[-1], flush=True)
+    versions = f"scikit-sundae {sksundae.__version__}, SUNDIALS {sksundae.SUNDIALS_VERSION}"
+    return "\n".join(lines) + f"\n\n{versions}.\n"
+
+
+def reference() -> str:
+    """Table of the states at the last scored time."""
+    lines = []
+    for name in NAMES:
+        problem = benchmark.problem(name)
+        at = np.flatnonzero(problem.times == scored(problem)[-1])[0]
+        state = dict(zip(("x", "z", "θ", "ẋ", "ż", "ω"), problem.states[at], strict=True))
+        psi, r = problem.dae("index3").exact(problem.times[at])[3:5]
+        forces = {"λ1": problem.friction_force[at], "λ2": problem.normal_force[at]}
+        row = {"problem": name, "t": problem.times[at], **state, "ψ": psi, "r": r, **forces}
+        lines.append([f"{one:.16g}" if isinstance(one, float) else one for one in row.values()])
+    head = [list(row), ["---"] * len(row)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in (*head, *lines))
+
+
+def write() -> None:
+    """Write both tables into the page."""
+    for name, part in (("ida", ida()), ("reference", reference())):
+        page = PAGE.read_text(encoding="utf-8")
+        begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
+        before, after = page.partition(begin)[0], page.partition(end)[2]
+        PAGE.write_text(before + begin + part + end + after, encoding="utf-8")

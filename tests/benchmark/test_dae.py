@@ -1,0 +1,105 @@
+"""The problems that roll all the time as differential-algebraic equations."""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.polynomial.chebyshev import chebpts1
+from numpy.polynomial.polynomial import polyder, polyfit, polyval
+from oracles.paths import ROOT
+from rolling_ellipse import Scene, benchmark
+
+NAMES = [f"roll.{name}" for name in ("circle", "rock", "roll", "thin")]
+NAMES += ["brink.back", "brink.over", "rest.lie"]
+FORMS = ["index3", "index2", "index1", "ggl"]
+PAGE = (ROOT / "docs" / "benchmark_dae.md").read_text(encoding="utf-8")
+UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5, friction=np.inf)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("name", [*NAMES, "uphill"])
+def test_the_exact_motion_and_the_jacobian(name: str, form: str) -> None:
+    """F is 0 but for 8 ulps in each entry of y and y': the exact motion's own and those in F.
+
+    Central differences have errors of step^2/6 = 2e-11 by third derivatives, which for the thin
+    body are some (a/b)^4 of the Jacobian, and roundings of 1e-16/step.
+    """
+    one = benchmark.problem("roll.rock" if name == "uphill" else name)
+    if name == "uphill":
+        one = replace(one, scene=UPHILL, times=np.linspace(0, 0.6, 7))
+    dae, at = one.dae(form), one.trajectory.sol(one.times)
+    y, yp = dae.exact(one.times), np.tile(0 * dae.y0, (one.times.size, 1))
+    assert np.array_equal(dae.states(y), one.exact(one.times)) and y.shape[1] == len(dae.names)
+    yp[:, :5] = y[:, 5:10]
+    yp[:, 5:10] = np.stack([at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot], axis=1)
+    assert np.array_equal(yp[0], dae.yp0) and np.array_equal(y[0], dae.y0)
+    for row in zip(y, yp, dae.residual(one.times, y, yp), strict=True):
+        by_y, both = (dae.jacobian(0.0, *row[:2], cj) for cj in (0.0, 1.0))
+        sizes = abs(by_y) @ abs(row[0]) + abs(both - by_y) @ abs(row[1])
+        assert np.all(abs(row[2]) <= 8 * np.finfo(float).eps * sizes)
+        assert np.array_equal(dae.algebraic, (both == by_y).all(axis=0))
+    rng, steps = np.random.default_rng(33), 1e-5 * np.eye(y.shape[1])
+    y, yp = y[-1] + 0.1 * rng.normal(size=y.shape[1]), yp[-1] + rng.normal(size=y.shape[1])
+    ahead, behind = (dae.residual(0.0, y + s, yp + 0.7 * s) for s in (steps, -steps))
+    jacobian = dae.jacobian(0.0, y, yp, 0.7)
+    assert np.max(abs((ahead - behind).T / 2e-5 - jacobian)) < 1e-6 * np.max(abs(jacobian))
+
+
+def determined(dae: benchmark.Dae, k: int) -> Any:
+    """Mask of the entries of y' that F and its first k derivatives determine, at 1 s.
+
+    In Taylor coefficients along the motion, that number i of F has the derivative
+    A[i-j] + j E[i-j+1] by number j of y, where A = F_y and E = F_y' are fitted around 1 s.
+    """
+    nodes, width = chebpts1(17), 0.05
+    y = dae.exact(1 + width * nodes)
+    yp = polyval(nodes, polyder(polyfit(nodes, y, 12))).T / width
+    by_y, both = (
+        np.array([dae.jacobian(0.0, *row, cj) for row in zip(y, yp, strict=True)])
+        for cj in (0.0, 1 / width)
+    )
+    n, none = y.shape[1], np.zeros((k + 2, y.shape[1] ** 2))  # none: coefficients -1 to -k - 1
+    a, e = (
+        np.vstack([polyfit(nodes, each.reshape(17, -1), 12)[: k + 2], none]).reshape(-1, n, n)
+        for each in (by_y, both - by_y)
+    )
+    numbers = range(1, k + 2)
+    array = np.block([[a[i - j] + j * e[i - j + 1] for j in numbers] for i in range(k + 1)])
+    _, sizes, rows = np.linalg.svd(array)
+    return abs(rows[sizes < 1e-10 * sizes[0], :n]).max(axis=0, initial=0.0) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("name", "form", "least"),
+    [
+        ("roll.rock", "index3", "00000 00022 3331"), ("roll.circle", "index3", "00000 00022 2331"),
+        ("roll.rock", "index2", "00000 00011 2221"), ("roll.rock", "index1", "00000 00000 1111"),
+        ("roll.rock", "ggl", "00000 00011 2221 222"), ("roll.thin", "ggl", "00000 00011 2221 222"),
+    ],
+)  # fmt: skip
+def test_the_index(name: str, form: str, least: str) -> None:
+    """Least number of differentiations that determine each entry of y'; the index is the most."""
+    dae = benchmark.problem(name).dae(form)
+    found = sum((~determined(dae, k)).astype(int) for k in range(dae.index + 1))
+    assert "".join(map(str, found)) == least.replace(" ", "")
+    assert max(found) == dae.index
+
+
+def test_ida() -> None:
+    """The page's program; its table has all problems, which take minutes."""
+    errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)
+    assert {row[:2] for row in errors} == {(name, form) for name in NAMES for form in FORMS[2:]}
+    assert max(float(error) for *_, error in errors) <= 1e-8
+    pytest.importorskip("sksundae")
+    names: dict[str, Any] = {}
+    exec(PAGE.partition("```python\n")[2].partition("```")[0], names)
+    one = benchmark.problem("brink.over")
+    times, states = one.times[one.times < one.horizon], one.states[one.times < one.horizon]
+    for form in FORMS[2:]:
+        dae = one.dae(form)
+        found = names["solve"](dae, times, 3e-14, ~dae.algebraic)
+        assert np.max(abs(dae.states(found.y) - states) / one.scales) < 1e-8
+    found = names["solve"](dae, times, 3e-14, np.ones_like(dae.algebraic))  # errors of multipliers
+    assert not found.success and found.t[-1] < 0.1
