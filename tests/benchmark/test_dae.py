@@ -50,25 +50,24 @@ def test_the_exact_motion_and_the_jacobian(name: str, form: str) -> None:
 def determined(dae: benchmark.Dae, k: int) -> Any:
     """Mask of the entries of y' that F and its first k derivatives determine, at 1 s.
 
-    In Taylor coefficients along the motion, that number i of F has the derivative
+    Number i of the Taylor coefficients of F along the motion has the derivative
     A[i-j] + j E[i-j+1] by number j of y, where A = F_y and E = F_y' are fitted around 1 s.
     """
     nodes, width = chebpts1(17), 0.05
     y = dae.exact(1 + width * nodes)
     yp = polyval(nodes, polyder(polyfit(nodes, y, 12))).T / width
-    by_y, both = (
-        np.array([dae.jacobian(0.0, *row, cj) for row in zip(y, yp, strict=True)])
-        for cj in (0.0, 1 / width)
-    )
-    n, none = y.shape[1], np.zeros((k + 2, y.shape[1] ** 2))  # none: coefficients -1 to -k - 1
-    a, e = (
-        np.vstack([polyfit(nodes, each.reshape(17, -1), 12)[: k + 2], none]).reshape(-1, n, n)
-        for each in (by_y, both - by_y)
-    )
-    numbers = range(1, k + 2)
+    rows, n, numbers = list(zip(y, yp, strict=True)), y.shape[1], range(1, k + 2)
+
+    def fitted(cj: float) -> Any:
+        """Coefficients of F_y + cj F_y'; those of negative number, from the end, are 0."""
+        values = [dae.jacobian(0.0, *row, cj).ravel() for row in rows]
+        found = polyfit(nodes, np.array(values), 12)[: k + 2]
+        return np.vstack([found, np.zeros((k + 2, n * n))]).reshape(-1, n, n)
+
+    a, e = fitted(0.0), fitted(1 / width) - fitted(0.0)
     array = np.block([[a[i - j] + j * e[i - j + 1] for j in numbers] for i in range(k + 1)])
-    _, sizes, rows = np.linalg.svd(array)
-    return abs(rows[sizes < 1e-10 * sizes[0], :n]).max(axis=0, initial=0.0) < 1e-4
+    _, sizes, directions = np.linalg.svd(array)
+    return abs(directions[sizes < 1e-10 * sizes[0], :n]).max(axis=0, initial=0.0) < 1e-4
 
 
 @pytest.mark.parametrize(

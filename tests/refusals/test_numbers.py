@@ -172,11 +172,14 @@ def test_numbers_of_every_kind() -> None:
     numbers: list[Any] = [
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
         Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),
+        type("Index", (), {"__index__": lambda self: 2})(),
     ]  # fmt: skip
     for two in numbers:
         assert rl.Scene(two, 1.0) == rl.Scene(2.0, 1.0)
         assert type(rl.Scene(two, 1.0).a) is float
         assert rl.flow(**{**FLOW, "a": two}) == rl.flow(**FLOW)
+        for blow in (report.eq_48, report.struck_speed):
+            assert blow(two, 1.5, **AXES, mass=1.0) == blow(2.0, 1.5, **AXES, mass=1.0)
     assert rl.Scene(True, 1.0).a == 1.0
     assert MOTION.scene_at(Fraction(1, 2)) == MOTION.scene_at(0.5)  # type: ignore[arg-type]
     times = [0.25, 0.5]

@@ -238,16 +238,6 @@ def test_eq_48_is_right_on_ice_only() -> None:
     assert on_ice.initial_state.omega == close(found.printed)
 
 
-def test_a_blow_is_whatever_has_a_number() -> None:
-    class Index:
-        def __index__(self) -> int:
-            return 48
-
-    for blow in (Index(), np.float32(48), np.array(48)):
-        assert report.eq_48(blow, 1.5, a=2.0, b=1.0, mass=10.0) == close(5.76)  # type: ignore[arg-type]
-        assert report.struck_speed(blow, 1.5, a=2.0, b=1.0, mass=10.0) == close(3.2)  # type: ignore[arg-type]
-
-
 def test_back_substitution_sees_nothing() -> None:
     found = numbers("section 4.2.2, Figure 11")
     assert found.printed < 1e-7  # tolerance 1e-12 a step, 10 kg, accelerations up to 1e3
@@ -268,8 +258,6 @@ def test_psi_is_discontinuous_by_its_branch() -> None:
     found, at = numbers("section 4.2.2, Figure 12"), Exact(2.0)
     assert found.right == close(at.psi) and found.gap == close(-math.pi)
     theta = np.linspace(-10, 10, 4001)
-    # d psi/d theta is at most a^2/b^2
-    assert np.max(np.abs(np.diff(rl.geometry.contact_angle(theta, **SHAPE)))) < 4.01 * 0.005
     assert np.max(np.abs(np.diff(report.eq_5(theta, **SHAPE)))) > 3.1
 
 

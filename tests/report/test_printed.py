@@ -7,7 +7,7 @@ import pytest
 import rolling_ellipse as rl
 from numpy.typing import ArrayLike
 from oracles.margins import told
-from oracles.report import BODY, Q_DOT, SHAPE, Q, off_by, start
+from oracles.report import BODY, Q_DOT, SHAPE, Q, start
 from rolling_ellipse import report
 
 # ----------------------------------------------------------------------------------- the simulation
@@ -141,24 +141,20 @@ def test_exact_starts_are_consistent_and_others_are_not(
 
 
 def test_the_reports_own_start_is_refused_by_name() -> None:
-    """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit."""
+    """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit.
+
+    test_corrected.py has what right rows say of it.
+    """
     q, q_dot = [0, 1, 0, 0, 1], [0, 1, 1, 1.5, 0]
-    violated = r"f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s$"
-    with pytest.raises(ValueError, match=violated):
-        run(q, q_dot, 1.0, printed=())
     code = "f1 as printed = 0.5 m/s; rate of f2 as printed = 1 m/s; rate of f4 as printed = 5.5"
     with pytest.raises(ValueError, match=code):
         run(q, q_dot, 1.0)
-    with pytest.raises(ValueError, match=r"f2 = 0.5 m; f3 = 0.25 m; f4 = -0.3 rad$"):
-        run(*off_by(0.5, 0.25, -0.3), 1.0, printed=())
 
 
 def test_motion_says_what_it_is() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 0.1], printed=())
     assert repr(motion).startswith("<PrintedMotion: 2 samples, t = 0 ... 0.1 s, as printed: none")
-    energy = 0.5 * (q_dot[0] ** 2 + q_dot[1] ** 2 + 1.25 * 4.0) + 9.81 * q[1]
-    assert motion.energy[0] == pytest.approx(energy, rel=1e-14)
 
 
 def test_as_many_states_everywhere() -> None:

@@ -69,8 +69,8 @@ class Dae(FieldsOnly):
     def yp0(self) -> FloatArray:
         """Derivative of y there, shape (n,); 0 for multipliers, whose derivatives are not in F."""
         at = self.problem.trajectory.sol(np.zeros(1))
-        v_dot = np.stack([at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot], axis=1)
-        return np.append(np.hstack([at.q_dot, v_dot]), np.zeros(len(self.rows)))
+        v_dot = [at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot]
+        return np.hstack([at.q_dot[0], *v_dot, np.zeros(len(self.rows))])
 
     def exact(self, t: Any) -> FloatArray:
         """Return the exact y at times, shape (n,) or (m, n); see `Problem.exact`."""
@@ -108,9 +108,8 @@ class Dae(FieldsOnly):
         rates, bent = np.einsum(along, g, y[5:10]), bent + np.einsum(along, g, yp[5:10])
         held = [z - r * cos, r - r_c, psi - psi_c, *rates, *bent]
         masses = scene.mass * np.array([1, 1, scene.gyration2, 0, 0])
-        fall = [np.sin(scene.slope), -np.cos(scene.slope), 0, 0, 0]
-        pushed = (masses * (yp[5:10].T - scene.gravity * np.array(fall))).T
-        pushed = pushed - np.einsum(pull, g, y[10:14])
+        fall = scene.gravity * np.array([np.sin(scene.slope), -np.cos(scene.slope), 0, 0, 0])
+        pushed = (masses * (yp[5:10].T - fall)).T - np.einsum(pull, g, y[10:14])
         moved = yp[:5] - y[5:10] - np.einsum(pull, g[4 - len(mu) :], mu)
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
