@@ -58,8 +58,8 @@ def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.gradients()[0].error, {}, value=[1.0, [1.0, 2.0]])
     yield "problem", lambda _: benchmark.problem("jam").ode()
     yield from wrong(benchmark.problem("roll.rock").dae, {}, form=["index0", 3])
-    for name in ("slide.slope", "slide.stick", "leave.slip_then_lift", "hit.drop_stick", "jam"):
-        yield "problem", lambda _, name=name: benchmark.problem(name).dae("ggl")
+    slips = ["slide.slope", "slide.stick", "leave.slip_then_lift", "hit.drop_stick", "jam"]
+    yield from wrong(lambda problem: benchmark.problem(problem).dae("ggl"), {}, problem=slips)
     yield "states", scored(STATES[:, :5])
     yield TypeError, scored("x")
     yield "t", scored(STATES, t=T[1:])

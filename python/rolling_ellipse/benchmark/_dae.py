@@ -32,15 +32,14 @@ class Dae(FieldsOnly):
 
     M v' = weight + G^T lambda with M = diag(m, m, I, 0, 0), where G v are f1 and the rates of f2,
     f3, f4. "index3" holds f1, f2, f3, f4; "index2" holds G v, and "index1" its rate; "ggl" holds
-    G v, f2, f3, f4 with q' = v + G^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl.
-    Math. 12 (1985) 77). f1 holds velocities: alone it would have index 2, not 3.
+    G v, f2, f3, f4 with q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J.
+    Comput. Appl. Math. 12 (1985) 77). f1 holds velocities: alone it would have index 2, not 3.
 
     Attributes
     ----------
     problem : Problem
-    form : {"index3", "index2", "index1", "ggl"}
-    index : int
-        Differentiation index, 2 for "ggl".
+    form, index : str, int
+        "index3", "index2", "index1" or "ggl", and its differentiation index: 3, 2, 1 or 2.
     """
 
     problem: Problem
@@ -74,9 +73,9 @@ class Dae(FieldsOnly):
 
     def exact(self, t: Any) -> FloatArray:
         """Return the exact y at times, shape (n,) or (m, n); see `Problem.exact`."""
-        found = self.problem.trajectory.sol(np.atleast_1d(array("t", t)))
-        mu = np.zeros((found.t.size, len(self.rows) - 4))
-        y = np.hstack([found.q, found.q_dot, found.multipliers, mu])
+        at = self.problem.trajectory.sol(np.atleast_1d(array("t", t)))
+        mu = np.zeros((at.t.size, len(self.rows) - 4))
+        y = np.hstack([at.q, at.q_dot, at.multipliers, mu])
         return y if np.ndim(t) else y[0]
 
     def states(self, y: Any) -> FloatArray:
@@ -115,6 +114,5 @@ class Dae(FieldsOnly):
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
         """Return dF/dy + cj dF/dy', shape (n, n), exact to rounding by complex steps."""
-        step = 1e-30  # no truncation error in doubles, and no cancellation
-        steps = 1j * step * np.eye(len(y))
-        return self.residual(t, y + steps, yp + cj * steps).imag.T / step
+        steps = 1e-30j * np.eye(len(y))  # no truncation error in doubles, and no cancellation
+        return self.residual(t, y + steps, yp + cj * steps).imag.T / 1e-30

@@ -69,13 +69,6 @@ def _at(theta: float, b: float = _B) -> _Exact:
 GENERIC, SECOND, THIRD = 0.7, 2.0, 4.0  # theta [rad] in the quadrants 1, 2 and 3
 
 
-def velocity() -> Comparison:
-    at = _at(GENERIC)
-    q, q_dot = at.q, at.q_dot
-    slip = q_dot[0] - q[4] * np.cos(q[3] - q[2]) * q_dot[2]
-    return Comparison(float(_equations.f1(q, q_dot)), float(slip))
-
-
 def cases() -> Comparison:
     lead = _equations.case_lead(THIRD, a=_A, b=_B)
     return Comparison(float(lead), support_slope(THIRD, a=_A, b=_B))
