@@ -1,9 +1,13 @@
-"""The tables of benchmark_dae.md: SUNDIALS IDA on all forms, and the reference solution."""
+"""The tables of benchmark_dae.md: SUNDIALS IDA on all forms, and the reference solution.
+
+make.py has the folder of `common` on the path.
+"""
 
 import re
 import time
 from pathlib import Path
 
+import common
 import numpy as np
 import sksundae
 from rolling_ellipse import benchmark
@@ -60,8 +64,9 @@ def ida() -> str:
             row = name, form, rtol, which, error, found.nfev, found.njev, f"{seconds:.2g}", said
             lines.append(f"| {' | '.join(map(str, row))} |")
             print(lines[-1], flush=True)
+    on = common.machine()
     versions = f"scikit-sundae {sksundae.__version__}, SUNDIALS {sksundae.SUNDIALS_VERSION}"
-    return "\n".join(lines) + f"\n\n{versions}.\n"
+    return "\n".join(lines) + f"\n\n{versions}, on {on['processor']}, {on['date']}.\n"
 
 
 def reference() -> str:

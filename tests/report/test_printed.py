@@ -1,5 +1,6 @@
 """The equations as printed: their motion, their consistent starts, their refusals."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -160,25 +161,18 @@ def test_motion_says_what_it_is() -> None:
 def test_as_many_states_everywhere() -> None:
     """Leading axes of states broadcast, or a refusal names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
-    four = np.zeros((3, 4))
-    said = r"^arguments must broadcast together, got shapes q \(2, 5\), "
-    axes: dict[str, Any] = {"a": 2.0, "b": 1.0}
-    for call in (
-        lambda q, other: report.f1(q, other),
-        lambda q, other: report.eq_38(q, other, **axes),
-        lambda q, other: report.constraint_rates(q, other, **axes),
-        lambda q, other: rl.constraints(q, other, **axes).gap,
-        lambda q, other: report.consistent_rates(q, other[:, 0], **axes),
-        lambda q, other: report.eqs_33_to_37(q, other, four[: len(other)], **BODY),
-        lambda q, other: report.equations_of_motion(q, other, four[: len(other)], **BODY),
-        *(
-            lambda q, other, name=name: getattr(report, name)(q, other, **BODY)
-            for name in (
-                "eq_39", "eq_40", "eq_41", "eq_42", "lambda4_numerator", "multipliers", "complete_f"
-            )
-        ),
-    ):  # fmt: skip
-        with pytest.raises(ValueError, match=said):
+    of_body = (report.eq_39, report.eq_40, report.eq_41, report.eq_42, report.lambda4_numerator,
+               report.multipliers, report.complete_f)  # fmt: skip
+    calls: list[Any] = [
+        report.f1, lambda q, other: rl.constraints(q, other, **SHAPE).gap,
+        *(partial(call, **SHAPE) for call in (report.eq_38, report.constraint_rates)),
+        lambda q, other: report.consistent_rates(q, other[:, 0], **SHAPE),
+        *(lambda q, other, call=call: call(q, other, other[:, :4], **BODY)
+          for call in (report.eqs_33_to_37, report.equations_of_motion)),
+        *(partial(call, **BODY) for call in of_body),
+    ]  # fmt: skip
+    for call in calls:
+        with pytest.raises(ValueError, match=r"broadcast together, got shapes q \(2, 5\), "):
             call(two, three)
         assert len(call(two, one)) == len(call(one, two)) == 2
 
