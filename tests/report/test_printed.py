@@ -120,25 +120,17 @@ def test_exact_starts_are_consistent_and_others_are_not(
         q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
         if printed:
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
-        options: dict[str, Any] = {
-            "a": a,
-            "b": b,
-            "equations": "printed",
-            "printed": printed,
-            "max_steps": 1,
-        }
-        motion = report.simulate(q, q_dot, 0.0, **options)
-        assert isinstance(motion, report.PrintedMotion)
-        assert motion.start.violations == ()
+        options: dict[str, Any] = {"a": a, "b": b, "printed": printed, "max_steps": 1}
+        assert run(q, q_dot, 0.0, **options).start.violations == ()
         for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is noticed
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
             with pytest.raises(ValueError, match="must meet the constraints"):
-                report.simulate(moved, q_dot, 0.0, **options)
+                run(moved, q_dot, 0.0, **options)
         faster = q_dot.copy()
         faster[0] += 1e-9
         with pytest.raises(ValueError, match="f1"):
-            report.simulate(q, faster, 0.0, **options)
+            run(q, faster, 0.0, **options)
 
 
 def test_the_reports_own_start_is_refused_by_name() -> None:
