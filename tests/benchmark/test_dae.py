@@ -35,6 +35,8 @@ def test_the_exact_motion_and_the_jacobian(name: str, form: str) -> None:
     yp[:, :5] = y[:, 5:10]
     yp[:, 5:10] = np.stack([at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot], axis=1)
     assert np.array_equal(yp[0], dae.yp0) and np.array_equal(y[0], dae.y0)
+    given = [dae.residual(0.0, kind(y[-1]), kind(yp[-1])) for kind in (list, np.array)]
+    assert np.array_equal(*given)
     for row in zip(y, yp, dae.residual(one.times, y, yp), strict=True):
         by_y, both = (dae.jacobian(0.0, *row[:2], cj) for cj in (0.0, 1.0))
         sizes = abs(by_y) @ abs(row[0]) + abs(both - by_y) @ abs(row[1])

@@ -84,7 +84,7 @@ class Dae(FieldsOnly):
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
         """Return F, shape (n,) or (m, n): q' and M v' less their right sides, the constraints."""
-        scene, y, yp, mu = self.problem.scene, y.T, yp.T, y.T[14:]
+        scene, y, yp = self.problem.scene, np.asarray(y).T, np.asarray(yp).T
         a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
         z, theta, psi, r, _, _, theta_t, psi_t, r_t = y[1:10]
         sin, cos, turn = np.sin(psi - theta), np.cos(psi - theta), psi_t - theta_t
@@ -95,7 +95,7 @@ class Dae(FieldsOnly):
         psi_c = theta + np.arctan(c2 * p * q / ((b * p) ** 2 + (a * q) ** 2))
         psi_1 = (a * b) ** 2 / (p * p + q * q)  # derivatives by theta
         psi_2 = -2 * p * q * c2 * (a * a + b * b) / (p * p + q * q) ** 2
-        g = np.zeros((4, 5, *r.shape), y.dtype)
+        g = np.zeros_like(cos, shape=(4, 5, *r.shape))
         g[0, 0] = g[1, 1] = g[2, 4] = g[3, 3] = 1
         g[0, 2], g[1, 2], g[1, 3], g[1, 4] = -r * cos, -r * sin, r * sin, -cos
         g[2, 3], g[3, 2] = -r_1, -psi_1
@@ -109,7 +109,7 @@ class Dae(FieldsOnly):
         masses = scene.mass * np.array([1, 1, scene.gyration2, 0, 0])
         fall = scene.gravity * np.array([np.sin(scene.slope), -np.cos(scene.slope), 0, 0, 0])
         pushed = (masses * (yp[5:10].T - fall)).T - np.einsum(pull, g, y[10:14])
-        moved = yp[:5] - y[5:10] - np.einsum(pull, g[4 - len(mu) :], mu)
+        moved = yp[:5] - y[5:10] - np.einsum(pull, g[18 - len(y) :], y[14:])
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
