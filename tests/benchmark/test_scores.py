@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles import arcs
 from rolling_ellipse import benchmark, simulate
 from rolling_ellipse.__main__ import main
 from rolling_ellipse.benchmark._events import read_off
-from rolling_ellipse.benchmark._problem import STATE
+from rolling_ellipse.benchmark._problem import states_of
 
 IDS = [one.id for one in benchmark.problems()]
+BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.needs}
 # A simulator fails if its error is above a millionth of the condition number. The changes below are
 # 1e-3 at least of one input, whose share of the condition number is above a thousandth.
 TOLERANCE = 1e-6
@@ -23,17 +25,12 @@ WITH_SLIP = {
 }  # fmt: skip
 
 
-def motion(scene: Any, t: Any) -> Any:
-    found = simulate(scene, t)
-    return np.stack([getattr(found, name) for name in STATE], axis=1)
-
-
 def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
     """A simulator that solves another scene, whose changes are functions of the scene."""
 
     def mine(one: Any, t: Any, setting: Any) -> Any:
         given = {name: change(one.scene) for name, change in changes.items()}
-        return motion(one.scene.replace(**given), t)
+        return states_of(simulate(one.scene.replace(**given), t))
 
     return mine
 
@@ -59,18 +56,35 @@ BROKEN = {
         {*IDS} - {"rest.lie", "hit.bounce_flat", "roll.circle"},
     ),
     "friction 1 % too large": (changed(friction=lambda scene: 1.01 * scene.friction), WITH_SLIP),
-    "restitution ignored": (
-        no_bounce,
-        {"hit.bounce", "hit.bounce_flat", "hit.drop_slip_e", "hit.settle", "law.which"},
-    ),
+    "restitution ignored": (no_bounce, BOUNCES),
     "g = 9.8": (changed(gravity=lambda scene: 9.8), {*IDS} - {"rest.lie", "roll.circle"}),
     "states half a step late": (late, {*IDS} - {"rest.lie"}),
     "energy grows by 0.1 % a second": (gaining, {*IDS} - {"rest.lie"}),
-}
+    "restitution of half a step later": (
+        arcs.broken(arcs.Faulty, hit=arcs.half_a_step_late), BOUNCES,
+    ),
+    # all other bodies that bounce come down at 1.9 m/s or more
+    "no restitution below 0.5 m/s": (
+        arcs.broken(arcs.Faulty, hit=arcs.dull_below_threshold), {"hit.settle"},
+    ),
+    # collisions with friction; hit.bounce and hit.bounce_flat have none
+    "no friction in a collision": (
+        arcs.broken(arcs.Faulty, hit=arcs.frictionless),
+        {"hit.drop_stick", "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which",
+         "leave.slip_then_lift"},
+    ),
+    "sticky ground": (arcs.broken(arcs.Sticky), {"leave.slip_then_lift"}),
+    # the slip of law.which ends within its collision: the cone then gives Newton's law
+    "convex friction": (
+        arcs.broken(arcs.Hopping, hit=arcs.convex), WITH_SLIP - {"law.which"},
+    ),
+}  # fmt: skip
 
 
 def exact(one: Any, t: Any, setting: Any = None) -> Any:
-    return one.exact(t)
+    motion = one.trajectory.sol(t)
+    forces = {"normal_force": motion.normal_force, "friction_force": motion.friction_force}
+    return benchmark.Result(states_of(motion), **forces)
 
 
 def test_the_exact_motion_is_perfect() -> None:
@@ -84,14 +98,50 @@ def test_the_exact_motion_is_perfect() -> None:
         assert score.passed and score.answer == "right" and score.digits > 12, score.problem
         assert score.over_condition < 4.4e-16, score.problem
         assert max(score.energy_gained, score.energy_lost, score.penetration, score.hop) < 1e-12
+        forces = score.cone_excess, score.normal_force_error, score.friction_force_error
+        assert 0 <= max(forces) < 1e-12 and "degrees" not in score.reason
     assert found.wrong == [] and "18 of 18 answers are right. 18 pass" in found.verdict()
 
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
+    """Energy shows the loss of bounces that are over before the next given time."""
     mine, expected = BROKEN[name]
     found = benchmark.run(mine, tolerance=TOLERANCE)
-    assert {score.problem for score in found if not score.passed} == expected
+    caught = {s.problem for s in found if not s.passed or s.energy_lost > TOLERANCE}
+    assert caught == expected
+    assert name != "convex friction" or found[IDS.index("slide.stick")].hop > 1e-3
+
+
+def test_forces_are_scored_where_they_are_given() -> None:
+    """Over m g = 9.81 N, with friction 0.2; the normal force of one row is missing."""
+    one = benchmark.problem("slide.stick")
+    right = exact(one, one.output_times)
+    normal, friction = right.normal_force + 0.981, right.friction_force - 0.0981
+    deepest = 1e3 - right.normal_force.min()
+    normal[10], normal[11], friction[11] = math.nan, 1.0, 1.962  # N = 1 allows 0.2 N
+    for given, expected in (
+        ({}, [math.nan] * 3), ({"normal_force": -normal[10:11].repeat(501)}, [math.nan] * 3),
+        ({"normal_force": normal, "friction_force": friction}, [1.762 / 9.81, 0.1, 0.01]),
+        ({"normal_force": right.normal_force - 1e3}, [deepest / 9.81, 1e3 / 9.81, math.nan]),
+    ):  # fmt: skip
+        found = benchmark.score({one.id: benchmark.Result(right.states, **given)})
+        mine = found[IDS.index(one.id)]
+        forces = [mine.cone_excess, mine.normal_force_error, mine.friction_force_error]
+        assert forces == pytest.approx(expected, nan_ok=True)
+
+
+def test_angles_in_degrees_are_said() -> None:
+    """And scored as they are; a body that does not turn has no such angle."""
+    degrees = benchmark.run(lambda one, t, _: one.exact(t) * [1, 1, 180 / np.pi, 1, 1, 180 / np.pi])
+    assert {s.problem for s in degrees if "degrees" not in s.reason} == {
+        "hit.bounce_flat",
+        "rest.lie",
+    }
+    assert (
+        "theta looks like degrees; omega looks like degrees"
+        in degrees[IDS.index("slide.stick")].reason
+    )
 
 
 def test_events_are_read_off_the_states() -> None:
@@ -163,8 +213,10 @@ def test_files_written_and_scored(tmp_path: Path) -> None:
         header = "t,x,z,theta,vx,vz,omega"
         np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
     benchmark.export(tmp_path)  # leaves the results
+    (tmp_path / "roll.thin.csv").write_text("")
     found = benchmark.score(tmp_path)
-    assert [score.problem for score in found if not score.passed] == ["roll.rock"]
+    unlike = [(score.problem, score.answer) for score in found if not score.passed]
+    assert unlike == [("roll.rock", "failed"), ("roll.thin", "not supported")]
     short = found[IDS.index("roll.rock")]
     assert found.wrong == ["roll.rock"] and short.answer == "failed" and short.digits > 12
     assert short.reason == "ends at 0.5 s; 39 of 41 given times are missing"
@@ -200,7 +252,7 @@ def test_gradients_are_those_of_the_exact_motion() -> None:
         states = []
         for k in range(-3, 4):
             near = scene.replace(**{known.wrt: getattr(scene, known.wrt) + 1e-3 * k})
-            states.append(motion(near, [known.t])[0])
+            states.append(states_of(simulate(near, [known.t]))[0])
         differences = np.array([-1, 9, -45, 0, 45, -9, 1]) @ np.array(states) / 60e-3
         assert known.error(differences) < 1e-10, known
         assert known.error(1.01 * known.value) == pytest.approx(0.01)

@@ -26,11 +26,11 @@ def scored(states: Any, **others: Any) -> Callable[[Path], Any]:
     return lambda _: benchmark.score({STICK.id: benchmark.Result(states, **others)})
 
 
-def written(text: str, events: str = "") -> Callable[[Path], Any]:
+def written(text: str, events: str = "", name: str = "slide.stick.csv") -> Callable[[Path], Any]:
     """Score a file, and a file of events."""
 
     def call(folder: Path) -> Any:
-        (folder / "slide.stick.csv").write_text(text)
+        (folder / name).write_text(text)
         if events:
             (folder / "slide.stick.events.csv").write_text(events)
         return benchmark.score(folder)
@@ -53,7 +53,9 @@ def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.problem, {}, id=["slide", 3])
     yield from wrong(benchmark.problems, {}, tags=[["gpu"]])
     yield from wrong(benchmark.run, {"mine": exact}, tolerance=[0.0, np.nan], tags=[["gpu"]])
-    yield from wrong(benchmark.score, {}, results=["no/such/folder"])
+    yield from wrong(benchmark.score, {}, results=["no/such/folder", {"jam": STATES}])
+    yield "results", written("", name="roll.rok.csv")
+    yield "results", written("", name="roll.rock.CSV")
     yield TypeError, lambda _: benchmark.score(3)
     yield from wrong(benchmark.gradients()[0].error, {}, value=[1.0, [1.0, 2.0]])
     yield "problem", lambda _: benchmark.problem("jam").ode()
@@ -65,6 +67,8 @@ def _rows() -> Iterator[Row]:
     yield "t", scored(STATES, t=T[1:])
     yield "t", scored(STATES, t=T[::-1])
     yield "events", scored(STATES, events=[("HOP", 1.0)])
+    yield "normal_force", scored(STATES, normal_force=T[1:])
+    yield TypeError, scored(STATES, friction_force="x")
     yield "z", written("t,x\n0,0\n")
     yield "x_dot", written("t,x,z,theta,vx,vz,omega\n0,0,1,0,fast,0,0\n")
     yield "t", written("t,x,z,theta,vx,vz,omega\n0,0,1,0,3,0,0\n", "kind,t\nSTICK,soon\n")

@@ -15,7 +15,8 @@ from ._export import export
 from ._ode import Ode
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
 from ._result import Result
-from ._score import Score, Scores, run, score
+from ._score import Score
+from ._scores import Scores, run, score
 
 __all__ = [
     "Dae", "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export",

@@ -50,6 +50,7 @@ class Checked:
 
     t: FloatArray
     states: FloatArray
+    forces: FloatArray  # N and F, shape (2, n); NaN where none are given
     events: tuple[tuple[str, float], ...] | None
     missing: str = ""
     note: str = ""
@@ -88,7 +89,21 @@ def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
     usable = np.isfinite(states).all(axis=1) & (t >= 0) & (t <= problem.t_end)
     given = np.isin(problem.times.round(9), t[usable].round(9))
     missing = "" if given.all() else f"{(~given).sum()} of {given.size} given times are missing"
-    return Checked(t[usable], states[usable], _events(problem, result.events), missing, result.note)
+    forces = np.stack([_force(problem, result, name, len(states)) for name in COLUMNS[7:]])
+    events = _events(problem, result.events)
+    return Checked(t[usable], states[usable], forces[:, usable], events, missing, result.note)
+
+
+def _force(problem: Problem, result: Result, name: str, count: int) -> FloatArray:
+    if (given := getattr(result, name)) is None:
+        return np.full(count, np.nan)
+    force = array(f"{name} of {problem.id}", given)
+    if force.shape != (count,):
+        raise ValueError(
+            f"{name} of {problem.id} must have one number for each row of states, got shape "
+            f"{force.shape} for {count} rows"
+        )
+    return force
 
 
 def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | None:
@@ -105,7 +120,7 @@ def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
     Rows without a time are left out. Two rows at one time are the sides of a jump: the second is
-    kept. Columns beyond those known are left out, too.
+    kept. Columns beyond those known are left out, too. An empty file has no rows.
 
     Raises
     ------
@@ -114,7 +129,9 @@ def read(problem: Problem, path: Path) -> Result:
     """
     with path.open(newline="", encoding="utf-8-sig") as file:
         rows = [row for row in csv.reader(file) if any(entry.strip() for entry in row)]
-    names = [SYNONYMS.get(name.strip(), name.strip()) for name in (rows[0] if rows else [])]
+    if not rows:
+        return Result(np.empty((0, len(STATE))))
+    names = [SYNONYMS.get(name.strip(), name.strip()) for name in rows[0]]
     for name in COLUMNS[:7]:
         if name not in names:
             raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")

@@ -1,30 +1,26 @@
-"""Scores of a simulator on the problems with known answers."""
+"""The score of one result: answer, errors over condition, events, energies, contact and forces."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, file_name, positive
-from .._ask.printing import html_table, text_table
+from .._ask.check import FloatArray
 from .._core import Mode
 from .._motion.events import energies
 from .._motion.trajectory import Trajectory
 from ._events import gap_and_slip, read_off
-from ._problem import STATE, Problem, problem, states_of
-from ._problem import problems as all_problems
-from ._result import Checked, checked, read
+from ._problem import STATE, Problem, states_of
+from ._result import Checked
 
 TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
 RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
-_HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
+_UNLIKE = 0.01  # share of an error that is left once degrees are converted
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +52,12 @@ class Score:
     penetration, hop, slip : float
         Deepest overlap with the ground; largest distance from it while the exact body touches it;
         both over L. Largest slip while the exact body rolls, over sqrt(g L).
+    cone_excess, normal_force_error, friction_force_error : float
+        Of forces in the result, over m g: largest excess of abs(F) over friction times N and of
+        -N over 0, in all rows (with infinite friction that of -N); largest errors at the given
+        times before the horizon. NaN without forces.
+    tolerance : float
+        Largest `over_condition` that passes.
     """
 
     problem: str
@@ -71,6 +73,10 @@ class Score:
     penetration: float = math.nan
     hop: float = math.nan
     slip: float = math.nan
+    cone_excess: float = math.nan
+    normal_force_error: float = math.nan
+    friction_force_error: float = math.nan
+    tolerance: float = TOLERANCE
 
     @property
     def error(self) -> float:
@@ -89,185 +95,29 @@ class Score:
         return (self.problem, setting, self.answer, *known, passed, self.reason)
 
 
-class Scores(tuple[Score, ...]):
-    """Scores in order; prints as a table."""
-
-    __slots__ = ()
-
-    @property
-    def wrong(self) -> list[str]:
-        """Ids of problems with a wrong answer or without any, at the last setting of each."""
-        last = {score.problem: score for score in self}
-        return [name for name, score in last.items() if score.answer in (WRONG, FAILED)]
-
-    def order(self, problem: str) -> tuple[float, str]:
-        """Return the fitted order of the error of a problem, and whether smaller settings help.
-
-        The order is the slope of log error over log setting, NaN for less than two settings. In
-        words: "yes", "plateau at <error>" or "worse".
-        """
-        rows = [s for s in self if s.problem == problem and s.setting and 0 < s.error < math.inf]
-        rows.sort(key=lambda score: -float(score.setting or 0))
-        if len(rows) < 2:
-            return math.nan, ""
-        errors = [score.error for score in rows]
-        slope = np.polyfit(np.log([float(s.setting or 1) for s in rows]), np.log(errors), 1)[0]
-        if errors[-1] > 1.1 * errors[0]:
-            return float(slope), "worse"
-        flat = errors[-1] > errors[-2] / 1.5
-        return float(slope), f"plateau at {errors[-1]:.1e}" if flat else "yes"
-
-    def verdict(self) -> str:
-        """Return three sentences: answers, accuracy, and the effect of the setting."""
-        last = list({score.problem: score for score in self}.values())
-        count = Counter(score.answer for score in last)
-        said = f"{count[RIGHT]} of {len(last)} answers are right"
-        if self.wrong:
-            said += f"; wrong: {', '.join(self.wrong)}"
-        if count[UNSUPPORTED]:
-            said += f"; not supported: {count[UNSUPPORTED]}"
-        known = [score for score in last if math.isfinite(score.error)]
-        if not known:
-            return f"{said}. No state can be compared."
-        worst = max(known, key=lambda score: score.over_condition)
-        passed = sum(score.passed for score in last)
-        exact = f"{passed} pass; the largest error over condition is {worst.over_condition:.1e}"
-        trends = Counter(self.order(score.problem)[1].split(" ")[0] for score in known)
-        trends.pop("", None)
-        words = {"yes": "better", "plateau": "no better", "worse": "worse"}
-        helped = ", ".join(f"{n} become {words[name]}" for name, n in trends.items())
-        ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
-        return f"{said}. {exact}, in {worst.problem}.{ladder}"
-
-    def records(self) -> list[dict[str, Any]]:
-        """Return a dict of plain numbers and text for each score."""
-        rows = []
-        for score in self:
-            row = asdict(score)
-            row["errors"] = dict(zip(STATE, map(float, score.errors), strict=True))
-            rows.append(row | {"error": score.error, "digits": score.digits})
-        return rows
-
-    def to_dataframe(self) -> Any:
-        """Return the scores as a pandas DataFrame, a row each."""
-        import pandas
-
-        return pandas.json_normalize(self.records(), sep="_")
-
-    def __repr__(self) -> str:
-        return text_table([_HEAD, *(score._row() for score in self)]) + f"\n{self.verdict()}"
-
-    def _repr_html_(self) -> str:
-        return html_table(self.verdict(), [score._row() for score in self], _HEAD)
-
-
-def run(
-    mine: Callable[[Problem, FloatArray, Any], Any],
-    *,
-    problems: Sequence[Problem] | None = None,
-    tags: Iterable[str] | None = None,
-    ladder: Iterable[float | None] = (None,),
-    tolerance: float = TOLERANCE,
-) -> Scores:
-    """Run a simulator on problems, and score it.
-
-    Parameters
-    ----------
-    mine : callable
-        ``mine(problem, times, setting)`` returns states of shape (n, 6) at the times, or a
-        `Result`. It raises NotImplementedError for a problem that it does not support.
-    problems : sequence of Problem, optional
-        Default: all that are scored.
-    tags : iterable of str, optional
-        Abilities of the simulator; problems that need others are "not supported".
-    ladder : iterable of float
-        Settings, such as steps [s], from coarse to fine.
-    tolerance : float
-        Largest error over condition number that passes.
-
-    Returns
-    -------
-    Scores
-
-    Raises
-    ------
-    ValueError
-        If a tag is unknown, or a result has a wrong shape; the message names the problem.
-    """
-    tolerance, settings = positive("tolerance", tolerance), list(ladder)
-    chosen = all_problems() if problems is None else list(problems)
-    able = {one.id for one in all_problems(tags)}
-    found = []
-    for one in chosen:
-        for setting in settings:
-            if tags is not None and one.id not in able:
-                found.append(Score(one.id, setting, UNSUPPORTED, reason="needs other abilities"))
-                continue
-            times = one.output_times
-            try:
-                result = mine(one, times, setting)
-            except NotImplementedError as error:
-                found.append(Score(one.id, setting, UNSUPPORTED, reason=str(error)))
-                continue
-            with np.errstate(over="ignore", invalid="ignore"):  # states may be huge
-                found.append(_scored(one, setting, checked(one, result, times), tolerance))
-    return Scores(found)
-
-
-def score(results: Mapping[str, Any] | Any, *, tolerance: float = TOLERANCE) -> Scores:
-    """Score results that are there already.
-
-    Parameters
-    ----------
-    results : mapping or path
-        Results by the ids of their problems, or the folder of their files ``<id>.csv``. A problem
-        without a result is "not supported".
-    tolerance : float
-        Largest error over condition number that passes.
-
-    Raises
-    ------
-    ValueError
-        If there is no such problem or folder, or a result is not as it must be.
-    """
-    if not isinstance(results, Mapping):
-        folder = Path(file_name("results", results))
-        if not folder.is_dir():
-            raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
-        paths = {one: folder / f"{one.id}.csv" for one in all_problems()}
-        found = {one.id: read(one, path) for one, path in paths.items() if path.exists()}
-        # A table whose rows are all empty waits for its result
-        results = {name: one for name, one in found.items() if np.isfinite(one.states).any()}
-    known = {problem(name).id: result for name, result in results.items()}
-
-    def given(one: Problem, times: FloatArray, setting: Any) -> Any:
-        if one.id not in known:
-            raise NotImplementedError("no result")
-        return known[one.id]
-
-    return run(given, tolerance=tolerance)
-
-
-def _scored(one: Problem, setting: float | None, found: Checked, tolerance: float) -> Score:
+def scored(one: Problem, setting: float | None, found: Checked, tolerance: float) -> Score:
+    """Return the score of the usable rows of a result."""
     if not found.t.size:
         return Score(one.id, setting, FAILED, reason="no row is finite and within its time")
     rows, places = np.nonzero(one.times[:, None].round(9) == found.t.round(9))
-    scored = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
-    rows, places = rows[scored], places[scored]
+    early = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
+    rows, places = rows[early], places[early]
     law, states = _nearest_law(one, rows, found.states[places])
     difference = np.abs(found.states[places] - states) / one.scales
     errors = difference.max(axis=0) if rows.size else np.full(6, math.nan)
     over = (difference.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
     exact = one.trajectory.sol(found.t)
     right, why, events = _answer(one, found, exact, law)
-    why = "; ".join(text for text in (why, found.missing, found.note) if text)
+    units = _units(found.states[places], states)
+    why = "; ".join(text for text in (why, units, found.missing, found.note) if text)
     passed = right and not found.missing and bool(over <= tolerance)
     answer = RIGHT if right else WRONG
     if found.t[-1] < (1 - 1e-9) * one.t_end:
         answer, passed, why = FAILED, False, f"ends at {found.t[-1]:.6g} s; {why}"
     return Score(
         one.id, setting, answer, passed, why, errors, float(over), events,
-        **_losses(one, found.states, exact),
+        **_losses(one, found.states, exact), **_forces(one, found.forces, rows, places),
+        tolerance=tolerance,
     )  # fmt: skip
 
 
@@ -334,3 +184,27 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
         "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
         "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
     }
+
+
+def _units(states: FloatArray, exact: FloatArray) -> str:
+    """Say which angles are a hundred times nearer to the exact ones if taken for degrees."""
+    said = []
+    for name in ("theta", "omega"):
+        mine, right = states[:, STATE.index(name)], exact[:, STATE.index(name)]
+        error, converted = (np.abs(a - right).max(initial=0) for a in (mine, np.radians(mine)))
+        if converted < _UNLIKE * error:
+            said.append(f"{name} looks like degrees")
+    return "; ".join(said)
+
+
+def _forces(one: Problem, forces: FloatArray, rows: Any, places: Any) -> dict[str, float]:
+    """Return the excess over the cone of friction and the errors of N and F, over m g."""
+    normal, friction = forces
+    outside, weight = -normal, one.scene.mass * one.scene.gravity
+    if math.isfinite(one.scene.friction):
+        outside = np.fmax(outside, np.abs(friction) - one.scene.friction * normal)
+    exact = np.stack([one.normal_force[rows], one.friction_force[rows]])
+    errors = np.fmax.reduce(np.abs(forces[:, places] - exact), axis=1, initial=math.nan)
+    excess = np.maximum(0.0, np.fmax.reduce(outside, initial=math.nan))
+    names = ("cone_excess", "normal_force_error", "friction_force_error")
+    return dict(zip(names, (float(x / weight) for x in (excess, *errors)), strict=True))
