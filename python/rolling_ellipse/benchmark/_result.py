@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -44,20 +44,8 @@ class Result:
     note: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class Checked:
-    """The rows of a result that can be scored, and what is wrong with the others."""
-
-    t: FloatArray
-    states: FloatArray
-    forces: FloatArray  # N and F, shape (2, n); NaN where none are given
-    events: tuple[tuple[str, float], ...] | None
-    missing: str = ""
-    note: str = ""
-
-
-def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
-    """Return the usable rows of a result.
+def checked(problem: Problem, mine: Any, times: FloatArray) -> tuple[Result, str]:
+    """Return the usable rows of a result, and what is missing; forces that are not given are NaN.
 
     Raises
     ------
@@ -65,21 +53,15 @@ def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
         If its arrays are no numbers, have wrong shapes, times do not increase, or an event has no
         such kind. The message names the problem and the argument.
     """
-    result = found if isinstance(found, Result) else Result(found)
+    result = mine if isinstance(mine, Result) else Result(mine)
     states = array(f"states of {problem.id}", result.states)
     if states.ndim != 2 or states.shape[1] != len(STATE):
         columns = ", ".join(STATE)
         raise ValueError(
             f"states of {problem.id} must have shape (n, 6) for {columns}, got {states.shape}"
         )
-    t = times if result.t is None else array(f"t of {problem.id}", result.t)
-    if t.shape != states.shape[:1]:
-        if result.t is not None or len(states) > len(t):
-            raise ValueError(
-                f"t of {problem.id} must have one time for each row of states, "
-                f"got shapes {t.shape} and {states.shape}"
-            )
-        t = t[: len(states)]  # a simulation that ended early
+    count = len(states)
+    t = _column(f"t of {problem.id}", times[:count] if result.t is None else result.t, count)
     grows = np.diff(t) > 0
     if not grows.all():
         k = int(np.argmin(grows))
@@ -87,23 +69,24 @@ def checked(problem: Problem, found: Any, times: FloatArray) -> Checked:
             f"t of {problem.id} must increase from row to row, got {t[k + 1]!s} after {t[k]!s}"
         )
     usable = np.isfinite(states).all(axis=1) & (t >= 0) & (t <= problem.t_end)
-    given = np.isin(problem.times.round(9), t[usable].round(9))
-    missing = "" if given.all() else f"{(~given).sum()} of {given.size} given times are missing"
-    forces = np.stack([_force(problem, result, name, len(states)) for name in COLUMNS[7:]])
-    events = _events(problem, result.events)
-    return Checked(t[usable], states[usable], forces[:, usable], events, missing, result.note)
+    there = np.isin(problem.times.round(9), t[usable].round(9))
+    missing = "" if there.all() else f"{(~there).sum()} of {there.size} given times are missing"
+    found = {"t": t[usable], "states": states[usable], "events": _events(problem, result.events)}
+    for name in COLUMNS[7:]:
+        given = getattr(result, name)
+        values = np.full(count, np.nan) if given is None else given
+        found[name] = _column(f"{name} of {problem.id}", values, count)[usable]
+    return replace(result, **found), missing
 
 
-def _force(problem: Problem, result: Result, name: str, count: int) -> FloatArray:
-    if (given := getattr(result, name)) is None:
-        return np.full(count, np.nan)
-    force = array(f"{name} of {problem.id}", given)
-    if force.shape != (count,):
+def _column(name: str, values: Any, count: int) -> FloatArray:
+    found = array(name, values)
+    if found.shape != (count,):
         raise ValueError(
-            f"{name} of {problem.id} must have one number for each row of states, got shape "
-            f"{force.shape} for {count} rows"
+            f"{name} must have one number for each of {count} rows of states, "
+            f"got shape {found.shape}"
         )
-    return force
+    return found
 
 
 def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | None:

@@ -16,7 +16,7 @@ from .._motion.events import energies
 from .._motion.trajectory import Trajectory
 from ._events import gap_and_slip, read_off
 from ._problem import STATE, Problem, states_of
-from ._result import Checked
+from ._result import Result
 
 TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
 RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
@@ -95,7 +95,9 @@ class Score:
         return (self.problem, setting, self.answer, *known, passed, self.reason)
 
 
-def scored(one: Problem, setting: float | None, found: Checked, tolerance: float) -> Score:
+def scored(
+    one: Problem, setting: float | None, found: Result, missing: str, tolerance: float
+) -> Score:
     """Return the score of the usable rows of a result."""
     if not found.t.size:
         return Score(one.id, setting, FAILED, reason="no row is finite and within its time")
@@ -109,14 +111,14 @@ def scored(one: Problem, setting: float | None, found: Checked, tolerance: float
     exact = one.trajectory.sol(found.t)
     right, why, events = _answer(one, found, exact, law)
     units = _units(found.states[places], states)
-    why = "; ".join(text for text in (why, units, found.missing, found.note) if text)
-    passed = right and not found.missing and bool(over <= tolerance)
+    why = "; ".join(text for text in (why, units, missing, found.note) if text)
+    passed = right and not missing and bool(over <= tolerance)
     answer = RIGHT if right else WRONG
     if found.t[-1] < (1 - 1e-9) * one.t_end:
         answer, passed, why = FAILED, False, f"ends at {found.t[-1]:.6g} s; {why}"
     return Score(
         one.id, setting, answer, passed, why, errors, float(over), events,
-        **_losses(one, found.states, exact), **_forces(one, found.forces, rows, places),
+        **_losses(one, found.states, exact), **_forces(one, found, rows, places),
         tolerance=tolerance,
     )  # fmt: skip
 
@@ -136,7 +138,7 @@ def _nearest_law(one: Problem, rows: Any, states: FloatArray) -> tuple[str, Floa
 
 
 def _answer(
-    one: Problem, found: Checked, exact: Trajectory, law: str
+    one: Problem, found: Result, exact: Trajectory, law: str
 ) -> tuple[bool, str, dict[str, Any]]:
     """Return whether the answer is right, why not, and the differences of the events."""
     if "law" in one.answer:
@@ -197,14 +199,14 @@ def _units(states: FloatArray, exact: FloatArray) -> str:
     return "; ".join(said)
 
 
-def _forces(one: Problem, forces: FloatArray, rows: Any, places: Any) -> dict[str, float]:
+def _forces(one: Problem, found: Result, rows: Any, places: Any) -> dict[str, float]:
     """Return the excess over the cone of friction and the errors of N and F, over m g."""
-    normal, friction = forces
-    outside, weight = -normal, one.scene.mass * one.scene.gravity
+    outside, weight = -found.normal_force, one.scene.mass * one.scene.gravity
     if math.isfinite(one.scene.friction):
-        outside = np.fmax(outside, np.abs(friction) - one.scene.friction * normal)
-    exact = np.stack([one.normal_force[rows], one.friction_force[rows]])
-    errors = np.fmax.reduce(np.abs(forces[:, places] - exact), axis=1, initial=math.nan)
-    excess = np.maximum(0.0, np.fmax.reduce(outside, initial=math.nan))
-    names = ("cone_excess", "normal_force_error", "friction_force_error")
-    return dict(zip(names, (float(x / weight) for x in (excess, *errors)), strict=True))
+        limit = one.scene.friction * found.normal_force
+        outside = np.fmax(outside, np.abs(found.friction_force) - limit)
+    largest = {"cone_excess": np.maximum(0.0, np.fmax.reduce(outside, initial=math.nan))}
+    for name in ("normal_force", "friction_force"):
+        error = np.abs(getattr(found, name)[places] - getattr(one, name)[rows])
+        largest[f"{name}_error"] = np.fmax.reduce(error, initial=math.nan)
+    return {name: float(value / weight) for name, value in largest.items()}

@@ -142,7 +142,7 @@ def run(
                 found.append(Score(one.id, setting, UNSUPPORTED, reason=str(error)))
                 continue
             with np.errstate(over="ignore", invalid="ignore"):  # states may be huge
-                found.append(scored(one, setting, checked(one, result, times), tolerance))
+                found.append(scored(one, setting, *checked(one, result, times), tolerance))
     return Scores(found)
 
 
@@ -180,14 +180,11 @@ def _read_folder(results: Any, names: tuple[str, ...]) -> dict[str, Result]:
     folder = Path(file_name("results", results))
     if not folder.is_dir():
         raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
-    tables = sorted(path.name for path in folder.iterdir() if path.suffix.lower() == ".csv")
-    for table in tables:
-        if table.removesuffix(".csv").removesuffix(".events") not in names:
+    for path in sorted(folder.iterdir()):
+        name = path.name.removesuffix(".csv").removesuffix(".events")
+        if path.suffix.lower() == ".csv" and name not in names:
             valid = ", ".join(names)
-            raise ValueError(f"results must have tables named by {valid}, got {table!r}")
-    found = {
-        one.id: read(one, folder / f"{one.id}.csv")
-        for one in all_problems()
-        if f"{one.id}.csv" in tables
-    }
+            raise ValueError(f"results must have tables named by {valid}, got {path.name!r}")
+    paths = {one: folder / f"{one.id}.csv" for one in all_problems()}
+    found = {one.id: read(one, path) for one, path in paths.items() if path.exists()}
     return {name: one for name, one in found.items() if np.isfinite(one.states).any()}
