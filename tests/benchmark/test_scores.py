@@ -6,8 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from rolling_ellipse import EventKind, Mode, benchmark, impacts, simulate
 from rolling_ellipse.__main__ import main
 from rolling_ellipse.benchmark._events import gap_and_slip, read_off
@@ -250,6 +252,32 @@ def test_what_is_not_supported_is_not_wrong() -> None:
     assert {s.problem for s in tagged if s.answer == "right"} == {
         one.id for one in benchmark.problems(["stiction", "non-round"])
     }
+
+
+def test_the_picture_says_what_is_right(tmp_path: Path) -> None:
+    """Marks have the shape of their answers; digits or the answer stand beside each row."""
+
+    def mine(one: Any, t: Any, h: float) -> Any:
+        if "flight" in one.needs:
+            raise NotImplementedError
+        return one.exact(t) * (h if one.id == "rest.lie" else 1 + h)
+
+    scores = benchmark.run(mine, ladder=[0.1, 1e-5])
+    chart = scores.plot(tmp_path / "scores.png")
+    assert (tmp_path / "scores.png").stat().st_size > 1e4 and plt.get_fignums() == []
+    rows = [text.get_text() for text in chart.ax.get_yticklabels()]
+    assert rows[:5] == ["roll.circle", "roll.rock", "roll.roll", "roll.thin", "brink.back"]
+    beside = dict(zip(rows, [text.get_text() for text in chart.ax.texts], strict=True))
+    for score in scores:
+        mark: Any = chart.marks[score.problem, score.setting]
+        assert mark.get_marker() == {"right": "o", "wrong": "X", "not supported": ""}[score.answer]
+        shown = math.isnan(score.over_condition) or mark.get_xdata()[0] == score.over_condition
+        assert shown and mark.get_ydata()[0] == rows.index(score.problem)
+    for name, answer in {score.problem: score.answer for score in scores}.items():
+        assert beside[name].endswith("digits" if answer == "right" else answer)
+    assert chart.ax.get_title("left").replace("\n", " ") == scores.verdict().split(". ")[0] + "."
+    ax = Figure().add_subplot()
+    assert benchmark.run(mine, problems=[benchmark.problem("hit.settle")]).plot(ax=ax).ax is ax
 
 
 def test_files_written_and_scored(tmp_path: Path) -> None:

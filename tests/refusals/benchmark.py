@@ -57,6 +57,8 @@ def _rows() -> Iterator[Row]:
     yield "results", written("", name="roll.rok.csv")
     yield "results", written("", name="roll.rock.CSV")
     yield TypeError, lambda _: benchmark.score(3)
+    yield "scores", lambda _: benchmark.Scores().plot()
+    yield from wrong(benchmark.run(exact, problems=[STICK]).plot, {}, path=[""], figsize=[3])
     yield from wrong(benchmark.gradients()[0].error, {}, value=[1.0, [1.0, 2.0]])
     yield "problem", lambda _: benchmark.problem("jam").ode()
     yield from wrong(benchmark.problem("roll.rock").dae, {}, form=["index0", 3])

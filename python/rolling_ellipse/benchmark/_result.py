@@ -71,7 +71,11 @@ def checked(problem: Problem, mine: Any, times: FloatArray) -> tuple[Result, str
     usable = np.isfinite(states).all(axis=1) & (t >= 0) & (t <= problem.t_end)
     there = np.isin(problem.times.round(9), t[usable].round(9))
     missing = "" if there.all() else f"{(~there).sum()} of {there.size} given times are missing"
-    found = {"t": t[usable], "states": states[usable], "events": _events(problem, result.events)}
+    found: dict[str, Any] = {
+        "t": t[usable],
+        "states": states[usable],
+        "events": _events(problem, result.events),
+    }
     for name in COLUMNS[7:]:
         given = getattr(result, name)
         values = np.full(count, np.nan) if given is None else given

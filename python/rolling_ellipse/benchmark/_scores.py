@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,11 @@ from ._problem import STATE, Problem
 from ._problem import problems as all_problems
 from ._result import Result, checked, read
 from ._score import FAILED, RIGHT, TOLERANCE, UNSUPPORTED, WRONG, Score, scored
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .._pictures.benchmark import ScoresChart
 
 _HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
 
@@ -70,6 +75,42 @@ class Scores(tuple[Score, ...]):
         helped = ", ".join(f"{n} become {words[name]}" for name, n in trends.items())
         ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
         return f"{said}. {exact}, in {worst.problem}.{ladder}"
+
+    def plot(
+        self,
+        path: Any = None,
+        *,
+        ax: Axes | None = None,
+        figsize: tuple[float, float] | None = None,
+    ) -> ScoresChart:
+        """Draw error over condition number of each problem, on a logarithmic axis.
+
+        A line joins the settings of a problem, pale to dark. Crosses are wrong answers, squares
+        failed ones; both have the word beside them. On the right are the digits of the last
+        setting. Errors below 1e-17 and above 1000 are drawn there.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write, in any format of matplotlib. A new figure is then closed in pyplot.
+        ax : matplotlib Axes, optional
+            Where to draw; default: in a new pyplot figure.
+        figsize : (float, float), optional
+            Width and height of the new figure [inch].
+
+        Returns
+        -------
+        ScoresChart
+            The artists.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If there is no score, or an argument is not as above.
+        """
+        from .._pictures.benchmark import draw
+
+        return draw(self, path, ax=ax, figsize=figsize)
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dict of plain numbers and text for each score."""

@@ -1,0 +1,78 @@
+"""Scores of a simulator: error over condition number, a row for each problem."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from .._ask.check import file_name
+from .axes import Artists, axes_of, close, picture
+from .labels import size_in_points
+from .legends import name_curves
+from .palette import palette_of
+
+if TYPE_CHECKING:  # _scores.py imports this file
+    from ..benchmark import Scores
+
+_FAMILIES = ("roll", "brink", "slide", "leave", "hit", "law", "rest", "jam")
+_SHAPES = {"right": "o", "wrong": "X", "failed": "s"}
+
+
+@dataclass(frozen=True, repr=False)
+class ScoresChart(Artists):
+    """Artists of `Scores.plot`; keys are the id of a problem and a setting."""
+
+    ax: Axes
+    marks: dict[tuple[str, float | None], Line2D]
+
+
+@picture
+def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChart:
+    """Draw the scores; see `Scores.plot`."""
+    if not scores:
+        raise ValueError("scores must be of at least one problem, got none")
+    name, own = None if path is None else file_name("path", path), ax is None
+    family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
+    rows = sorted(family, key=family.__getitem__)
+    ax = axes_of(ax, (7.2, 1.3 + 0.24 * len(rows)), figsize)
+    palette, tolerance = palette_of(ax), scores[0].tolerance
+    settings = list(dict.fromkeys(score.setting for score in scores))
+    shades = dict(zip(settings, palette.times(np.linspace(1, 0, len(settings))[::-1]), strict=True))
+    how: dict[str, Any] = {"ls": "", "ms": 6.5, "mec": palette.text, "mew": 0.5}
+    chart = ScoresChart(ax, {})
+    for y, problem in enumerate(rows):
+        if family[problem] % 2 == 0:
+            ax.axhspan(y - 0.5, y + 0.5, color=palette.shade(0.06), lw=0, zorder=0)
+        found = [score for score in scores if score.problem == problem]
+        at = np.clip([score.over_condition for score in found], 1e-17, 1e3)
+        ax.plot(at, [y] * len(at), color=palette.grey, lw=0.8)
+        for x, score in zip(at, found, strict=True):
+            look = {"marker": _SHAPES.get(score.answer, ""), "color": shades[score.setting]} | how
+            (chart.marks[problem, score.setting],) = ax.plot(x, y, **look)
+        told = f"{max(score.digits, 0):.1f} digits" if score.answer == "right" else score.answer
+        color = palette.grey if score.answer == "not supported" else palette.text
+        ax.text(1.01, y, told, va="center", color=color, transform=ax.get_yaxis_transform())
+    marks = {f"setting {s:g}": ("o", shades[s]) for s in settings if s is not None}
+    marks |= {s.answer: (_SHAPES[s.answer], palette.grey) for s in scores if s.answer in _SHAPES}
+    handles = [Line2D([], [], marker=m, color=c, label=w, **how) for w, (m, c) in marks.items()]
+    handles.append(ax.axvline(tolerance, zorder=1, color=palette.grey, ls="--"))
+    handles[-1].set_label(f"tolerance {tolerance:g}")
+    name_curves(ax, handles)
+    ax.set(xscale="log", ylim=(len(rows) - 0.5, -0.5), yticks=range(len(rows)), yticklabels=rows)
+    ax.set_xlabel("error over condition number")
+    ax.tick_params(axis="y", length=0)
+    ax.spines[["left", "right", "top"]].set_visible(False)
+    legend: Any = ax.get_legend()
+    title = fill(f"{scores.verdict().partition('. ')[0]}.", int(size_in_points(ax)[0] / 5.5))
+    above = legend.get_window_extent().height * 72 / ax.figure.dpi
+    ax.set_title(title, loc="left", fontsize="medium", pad=above + 4)
+    if name is not None:
+        chart.savefig(name)
+        if own:
+            close(chart.figure)
+    return chart
