@@ -7,6 +7,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     batches    docs/batches.json, by benchmarks/bench_batches.py
     engines    docs/engines.json, by the adapters of rolling_ellipse.benchmark
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
+    problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README.md and docs/benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA
@@ -80,6 +81,10 @@ def pictures(quick: bool) -> None:
     run(HERE / "make_pictures.py")
 
 
+def problems(quick: bool) -> None:
+    run(HERE / "make_problems.py")
+
+
 def run(*command: str | Path) -> None:
     subprocess.run([sys.executable, *map(str, command)], check=True)
 
@@ -115,7 +120,8 @@ def dae(quick: bool) -> None:
 
 
 STEPS: dict[str, Callable[[bool], None]] = {
-    step.__name__: step for step in (races, batches, engines, pictures, notebooks, text, dae)
+    step.__name__: step
+    for step in (races, batches, engines, pictures, problems, notebooks, text, dae)
 }
 
 # ------------------------------------------------------------------------------ marked parts

@@ -14,6 +14,11 @@
 ``drop``        dropped from 1 m above touching at 0.5 rad, friction 1
 ``bounce``      the same, elastic and without friction
 ==============  ====================================================================================
+
+They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are its
+``slide.stick`` and ``leave.slip_then_lift``. There, rocking, rolling and the circle have finite
+friction, which every simulator has; the thin body (10:1), the brink (a thousandth above or below)
+and the drops and bounces (round heights) are such that rounding does not decide the answer.
 """
 
 from __future__ import annotations

@@ -61,6 +61,17 @@ def test_the_chart_shows_the_data() -> None:
     assert source == hashlib.sha256(RACE.read_bytes()).hexdigest(), "python docs/make.py pictures"
 
 
+def test_the_pages_of_problems_are_those_of_their_data() -> None:
+    made = runpy.run_path(str(DOCS / "make_problems.py"))
+    table = (DOCS / "benchmark.md").read_text(encoding="utf-8")
+    assert made["with_table"](table) == table, "python docs/make.py problems"
+    pages, folder = made["pages"](), DOCS / "problems"
+    assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 20
+    for name, page in pages.items():
+        assert (folder / f"{name}.md").read_text(encoding="utf-8") == page, name
+    assert sum((folder / f"{name}.png").stat().st_size for name in pages) < 1.5e6
+
+
 def test_the_notebook_shows_the_data() -> None:
     assert WorkPrecision.load(RACE).verdict() in printed(NOTEBOOK), "python docs/make.py notebooks"
 

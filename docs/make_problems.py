@@ -1,0 +1,214 @@
+"""Make a page for each problem of `benchmark`, and their table; a step of `make.py`.
+
+Pages are docs/problems/<id>.md with a picture each; the table is the marked part of benchmark.md.
+All numbers are those of the files in python/rolling_ellipse/benchmark/problems, digit by digit.
+"""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from rolling_ellipse import benchmark
+
+HERE = Path(__file__).resolve().parent
+FOLDER = HERE / "problems"
+DATA = HERE.parent / "python" / "rolling_ellipse" / "benchmark" / "problems"
+FIELDS = {  # fields of a scene, with their units
+    "a": "m", "b": "m", "mass": "kg", "inertia": "kg m²", "gravity": "m/s²", "slope": "rad",
+    "friction": "", "restitution": "", "x": "m", "z": "m", "theta": "rad", "x_dot": "m/s",
+    "z_dot": "m/s", "omega": "rad/s",
+}  # fmt: skip
+STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
+PHASE = ("brink.back", "brink.over", "roll.rock", "roll.thin")
+FORCES = ("slide.stick",)
+ALONG = {"hit.ball": 6.0, "hit.bounce": 6.0, "hit.bounce_flat": 12.0}  # speed in pictures [m/s]
+SHOWN = {  # numbers of positions, and last times [s]
+    "hit.ball": (7, None), "hit.bounce": (14, 2.6), "hit.bounce_flat": (13, 2.4228),
+    "hit.drop_slip": (6, None), "hit.drop_slip_e": (6, None), "hit.drop_stick": (6, 2.0),
+    "hit.settle": (13, None), "law.which": (6, None), "rest.lie": (2, None), "jam": (1, None),
+    "leave.slip_then_lift": (11, None), "slide.reverse": (8, None), "slide.slope": (9, None),
+}  # fmt: skip
+ORDER = ("roll", "brink", "slide", "leave", "hit", "law", "rest", "jam")
+
+
+def main() -> None:
+    import make_pictures  # found beside this file, which tests load from elsewhere
+
+    FOLDER.mkdir(exist_ok=True)
+    for name, text in pages().items():
+        (FOLDER / f"{name}.md").write_text(text, encoding="utf-8")
+        make_pictures.save(picture(name), f"problems/{name}.png")
+    page = HERE / "benchmark.md"
+    page.write_text(with_table(page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+# ------------------------------------------------------------------------------ text
+
+
+def problems() -> dict[str, Any]:
+    """The files of all problems, by family; numbers are kept as they are written."""
+    found = {
+        path.stem: json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
+        for path in sorted(DATA.glob("*.json"))
+    }
+    return dict(sorted(found.items(), key=lambda one: ORDER.index(one[0].partition(".")[0])))
+
+
+def pages() -> dict[str, str]:
+    """The texts of the pages, by problem."""
+    return {name: page(data) for name, data in problems().items()}
+
+
+def with_table(text: str) -> str:
+    """The page of the benchmark with its table of problems made anew."""
+    begin, end = "<!-- problems: made by docs/make.py -->\n", "<!-- end of problems -->\n"
+    before, _, rest = text.partition(begin)
+    _, found, after = rest.partition(end)
+    if not found:
+        raise ValueError(f"the page must have {begin!r} and {end!r}")
+    rows = [
+        (f"[`{name}`](problems/{name}.md)", data["question"], ", ".join(data["needs"]),
+         data["t_end"], worst(data) if data["scored"] else "not scored")
+        for name, data in problems().items()
+    ]  # fmt: skip
+    head = ("problem", "question", "needs", "T [s]", "largest condition")
+    return f"{before}{begin}{table(head, rows)}{end}{after}"
+
+
+def table(head: tuple[str, ...], rows: list[Any]) -> str:
+    lines = [head, ("---",) * len(head), *rows]
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+
+def worst(data: Any) -> str:
+    return f"{max(map(float, data['condition'])):.3g}"
+
+
+def page(data: Any) -> str:
+    name, scene = data["id"], data["scene"]
+    given = [(f"`{field}`", scene[field], unit) for field, unit in FIELDS.items()]
+    seen = "angular velocity over angle" if name in PHASE else "the body at even times"
+    seen = "its forces over time" if name in FORCES else seen
+    parts = [
+        f"# `{name}`: {data['title']}\n\n**{data['question']}**\n\n"
+        f"![{data['title']}: {seen}]({name}.png)\n",
+    ]
+    if name in ALONG:
+        parts.append(
+            f"(Drawn moving along at {ALONG[name]:g} m/s, which changes nothing else: the ground\n"
+            "has no friction. The problem itself has x_dot = 0.)\n"
+        )
+    parts += [
+        "Frame, units and file format are those of [the benchmark](../benchmark.md);"
+        " all numbers are in\n"
+        f"`python/rolling_ellipse/benchmark/problems/{name}.json`.\n",
+        f"## Data\n\n{table(('given', 'value', 'unit'), given)}",
+        f"A simulator needs: {', '.join(data['needs'])}. The motion ends at {data['t_end']} s.\n",
+        f"## Answer\n\n{answer(data)}",
+    ]
+    if data["events"]:
+        rows = [
+            (k, event["kind"], event["t"], event["condition"])
+            for k, event in enumerate(data["events"], 1)
+        ]
+        parts.append(table(("", "event", "t [s]", "condition"), rows))
+    parts.append(last_state(data))
+    if data["scored"]:
+        parts.append(error(data))
+    for row in data.get("gradients", []):
+        parts.append(
+            f"## Known derivative\n\nWith respect to `{row['wrt']}`, at t = {row['t']} s:\n\n"
+            + table(STATE, [row["value"]])
+        )
+    return "\n".join(parts)
+
+
+def answer(data: Any) -> str:
+    """The answer in words."""
+    right = data["answer"]
+    if "over" in right:
+        turned = "exceeds" if right["over"] else "never exceeds"
+        word = "It passes over the tip" if right["over"] else "It never passes over the tip"
+        if data["scene"]["a"] == data["scene"]["b"]:
+            word = "It has, as the last state shows"
+        return f"{word}. A simulator is right if abs(theta) {turned} pi/2.\n"
+    if "law" in right:
+        return (
+            f"Any of {', '.join(right['law'])} is right; the score names the law whose states are\n"
+            "nearest, and by which factor. States below are by Stronge's law, the package's own.\n"
+        )
+    if "status" in right:
+        return (
+            "Neither sliding nor flight can go on, and rolling would need another velocity: the\n"
+            "package ends the motion with the status JAMMED. This problem is shown, not scored.\n"
+        )
+    if not right["events"]:
+        return "No event takes place. A simulator is right if it has none.\n"
+    return "A simulator is right if it has these events, in this order:\n"
+
+
+def compared(data: Any) -> list[tuple[Any, float]]:
+    """Rows that are compared, each with its condition number."""
+    rows = zip(data["states"], map(float, data["condition"]), strict=True)
+    end = float(data["horizon"])
+    return [row for row in rows if float(row[0][0]) < end or end == float(data["t_end"])]
+
+
+def last_state(data: Any) -> str:
+    """The last state that is compared, with all digits."""
+    (row, _), count = compared(data)[-1], len(compared(data))
+    named = zip((f"`{name}`" for name in data["columns"][1:]), row[1:], strict=True)
+    said = f"The state at t = {row[0]} s, the last of {count} that are compared:"
+    return f"{said}\n\n{table(('variable', 'value'), list(named))}"
+
+
+def error(data: Any) -> str:
+    """The definition of the error of a state, with the scales of this problem."""
+    early_worst = max(condition for _, condition in compared(data))
+    length = max(float(data["scene"][axis]) for axis in "ab")
+    gravity = float(data["scene"]["gravity"])
+    near = 0.02 * math.sqrt(length / gravity)
+    scales = [
+        ("x, z", "L = max(a, b)", f"{length:g} m"), ("theta", "1", "1 rad"),
+        ("x_dot, z_dot", "sqrt(g L)", f"{math.sqrt(gravity * length):.6g} m/s"),
+        ("omega", "sqrt(g/L)", f"{math.sqrt(gravity / length):.6g} rad/s"),
+    ]  # fmt: skip
+    early = (
+        "to the end" if data["horizon"] == data["t_end"] else
+        f"before the horizon, {data['horizon']} s, from which on the condition number is above 1000"
+    )  # fmt: skip
+    return (
+        f"## Error\n\nStates are compared {early},\nat times further than {near:.3g} s from all "
+        "events. The error of a state is its largest difference by\nthe scales below; the score "
+        f"divides it by the condition number of its time, here {early_worst:.3g} at most.\n\n"
+        + table(("variables", "scale", "here"), scales)
+    )
+
+
+# ------------------------------------------------------------------------------ pictures
+
+
+def picture(name: str) -> Figure:
+    """The motion in the phase plane, by its forces, or as positions over the ground."""
+    one = benchmark.problem(name)
+    motion = one.trajectory
+    chart: Any
+    if name in PHASE:
+        chart = rl.plot_phase(motion)
+    elif name in FORCES:
+        chart = rl.plot_forces(motion)
+    else:
+        if name in ALONG:
+            motion = rl.simulate(one.scene.replace(x_dot=ALONG[name]), one.output_times)
+        count, t_end = SHOWN.get(name, (13, None))
+        chart = rl.plot_strobe(motion, count=count, t_end=t_end)
+    plt.close(chart.figure)
+    return chart.figure
+
+
+if __name__ == "__main__":
+    main()
