@@ -12,8 +12,7 @@ from matplotlib.lines import Line2D
 
 from .._ask.check import file_name
 from .axes import Artists, axes_of, close, picture
-from .labels import size_in_points
-from .legends import name_curves
+from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 
 if TYPE_CHECKING:  # _scores.py imports this file
@@ -40,7 +39,7 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
     rows = sorted(family, key=family.__getitem__)
     ax = axes_of(ax, (7.2, 1.3 + 0.24 * len(rows)), figsize)
-    palette, tolerance = palette_of(ax), scores[0].tolerance
+    palette, limit = palette_of(ax), scores[0].tolerance
     settings = list(dict.fromkeys(score.setting for score in scores))
     shades = dict(zip(settings, palette.times(np.linspace(1, 0, len(settings))[::-1]), strict=True))
     how: dict[str, Any] = {"ls": "", "ms": 6.5, "mec": palette.text, "mew": 0.5}
@@ -60,17 +59,13 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     marks = {f"setting {s:g}": ("o", shades[s]) for s in settings if s is not None}
     marks |= {s.answer: (_SHAPES[s.answer], palette.grey) for s in scores if s.answer in _SHAPES}
     handles = [Line2D([], [], marker=m, color=c, label=w, **how) for w, (m, c) in marks.items()]
-    handles.append(ax.axvline(tolerance, zorder=1, color=palette.grey, ls="--"))
-    handles[-1].set_label(f"tolerance {tolerance:g}")
-    name_curves(ax, handles)
+    line: dict[str, Any] = {"color": palette.grey, "ls": "--", "label": f"tolerance {limit:g}"}
+    name_curves(ax, [*handles, ax.axvline(limit, zorder=1, **line)])
     ax.set(xscale="log", ylim=(len(rows) - 0.5, -0.5), yticks=range(len(rows)), yticklabels=rows)
     ax.set_xlabel("error over condition number")
     ax.tick_params(axis="y", length=0)
     ax.spines[["left", "right", "top"]].set_visible(False)
-    legend: Any = ax.get_legend()
-    title = fill(f"{scores.verdict().partition('. ')[0]}.", int(size_in_points(ax)[0] / 5.5))
-    above = legend.get_window_extent().height * 72 / ax.figure.dpi
-    ax.set_title(title, loc="left", fontsize="medium", pad=above + 4)
+    title_beside_legend(ax, fill(f"{scores.verdict().partition('. ')[0]}.", 76))
     if name is not None:
         chart.savefig(name)
         if own:

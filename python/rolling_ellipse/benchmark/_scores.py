@@ -85,28 +85,18 @@ class Scores(tuple[Score, ...]):
     ) -> ScoresChart:
         """Draw error over condition number of each problem, on a logarithmic axis.
 
-        A line joins the settings of a problem, pale to dark. Crosses are wrong answers, squares
-        failed ones; both have the word beside them. On the right are the digits of the last
-        setting. Errors below 1e-17 and above 1000 are drawn there.
+        Marks of several settings are joined, pale to dark. The column on the right has the digits
+        of the last one, or its answer. Errors below 1e-17 and above 1000 are drawn there.
 
         Parameters
         ----------
-        path : path, optional
-            File to write, in any format of matplotlib. A new figure is then closed in pyplot.
-        ax : matplotlib Axes, optional
-            Where to draw; default: in a new pyplot figure.
-        figsize : (float, float), optional
-            Width and height of the new figure [inch].
+        path, ax, figsize
+            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_forces`, with their errors.
 
         Returns
         -------
         ScoresChart
             The artists.
-
-        Raises
-        ------
-        ValueError, TypeError
-            If there is no score, or an argument is not as above.
         """
         from .._pictures.benchmark import draw
 
@@ -114,12 +104,12 @@ class Scores(tuple[Score, ...]):
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dict of plain numbers and text for each score."""
-        rows = []
-        for score in self:
-            row = asdict(score)
-            row["errors"] = dict(zip(STATE, map(float, score.errors), strict=True))
-            rows.append(row | {"error": score.error, "digits": score.digits})
-        return rows
+        return [
+            asdict(score)
+            | {"errors": dict(zip(STATE, map(float, score.errors), strict=True))}
+            | {"error": score.error, "digits": score.digits}
+            for score in self
+        ]
 
     def to_dataframe(self) -> Any:
         """Return the scores as a pandas DataFrame, a row each."""
