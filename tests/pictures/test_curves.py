@@ -20,20 +20,16 @@ OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 # ------------------------------------------------------------------------------------ every picture
 
 
-def test_every_motion_has_its_name(
+def test_every_motion_has_its_name_unless_it_is_alone(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
-    ax = new_axes()
+    ax, alone = new_axes(), new_axes()
+    picture(several[0], ax=alone, labels=["mine"])
+    assert "mine" not in legend_of(alone)
     picture(several, ax=ax, labels=["one", "two", "three"])
     assert legend_of(ax)[:3] == ["one", "two", "three"]
     with pytest.raises(ValueError, match="labels"):
         picture(several, ax=new_axes(), labels=["one"])
-
-
-def test_one_motion_needs_no_name(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    ax = new_axes()
-    picture(report, ax=ax, labels=["mine"])
-    assert "mine" not in legend_of(ax)
 
 
 def test_many_motions_are_named_now_and_then(

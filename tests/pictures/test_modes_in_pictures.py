@@ -238,7 +238,7 @@ def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -
 # ------------------------------------------------------------------------ over the ground
 
 
-def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory) -> None:
+def test_strobe_shows_the_paths_and_the_contact_where_there_is_one(motion: rl.Trajectory) -> None:
     shown = rl.plot_strobe(motion, ax=new_axes(), count=37, t_end=3.0)
     at = motion.sol(np.linspace(0.0, 3.0, 37))
     contacts, slides = (
@@ -261,10 +261,12 @@ def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory)
         np.asarray(shown.skid_path.get_xdata()),
         np.asarray(shown.contact_path.get_xdata()),
     )
+    assert np.array_equal(np.asarray(shown.centre_path.get_data()), [path.x, path.z])
     sliding = path.mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(skid), ~sliding)
     assert np.array_equal(skid[sliding], path.contact_x[sliding])
-    assert np.array_equal(np.isnan(contact), path.mode == rl.Mode.FLIGHT)
+    touching = np.where(path.mode == rl.Mode.FLIGHT, np.nan, path.contact_x)
+    assert np.array_equal(contact, touching, equal_nan=True)
     assert ("sliding" in legend_of(shown.ax)) == bool(sliding.any())
 
 

@@ -116,10 +116,6 @@ def test_regions_are_told_apart_in_grey() -> None:
     assert len(reached) == 4 and np.min(np.diff(reached)) > 1 / 6
 
 
-def test_the_picture_is_an_image_in_vector_files() -> None:
-    assert phase_map().cells.get_rasterized()
-
-
 # ---------------------------------------------------------------------------------- marks
 
 
@@ -277,8 +273,8 @@ def test_any_resolution(resolution: int) -> None:
         assert codes_of(shown)[0, 0] == rl.classify(a=2.0, b=1.0, omega=middle, friction=1.0)
 
 
-def test_without_axes_it_opens_a_figure() -> None:
+def test_without_axes_it_opens_a_figure_with_an_image_also_in_vector_files() -> None:
     shown = rl.plot_phase_map(resolution=4)
-    assert shown.ax.figure is plt.gcf()
+    assert shown.cells.get_rasterized() and shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"
     plt.close(figure_of(shown.ax))

@@ -142,14 +142,6 @@ def test_the_kind_of_energy_picture_is_a_choice(several: list[rl.Trajectory]) ->
     assert len(rl.plot_energy(several[0], ax=new_axes(), kind="error").error) == 1
 
 
-def test_an_energy_without_any_error_is_said_to_be_0() -> None:
-    still = rl.simulate(rl.Scene(2.0, 1.0), 1.0)
-    ax = rl.plot_energy([still, still], ax=new_axes(), labels=["one", "two"]).ax
-    legend = ax.get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == ["one = 0", "two = 0"]
-
-
 # ------------------------------------------------------------------------------------ forces
 
 
@@ -388,16 +380,6 @@ def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Tra
         expected = body.get_patch_transform().transform((1.0, 0.0))
         assert np.allclose(np.asarray(hand.get_xydata())[0], centre_of(body), rtol=0, atol=0)
         assert np.allclose(end, expected, rtol=1e-13, atol=1e-12 * trajectory.scene.a)
-
-
-def test_strobe_paths_are_the_trajectory(report: rl.Trajectory) -> None:
-    shown = rl.plot_strobe(report, ax=new_axes())
-    path = sampling.between(report, 0.0, 6.0, 6.0)
-    assert np.array_equal(
-        np.asarray(shown.centre_path.get_xydata()), np.column_stack([path.x, path.z])
-    )
-    assert np.array_equal(np.asarray(shown.contact_path.get_xdata()), path.contact_x)
-    assert np.all(np.asarray(shown.contact_path.get_ydata()) == 0)
 
 
 def test_strobe_stops_a_long_roll_after_three_turns() -> None:

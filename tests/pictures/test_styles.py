@@ -133,16 +133,6 @@ def test_properties_of_lines_are_taken(
         picture(several[0], ax=new_axes(), nonsense=1)
 
 
-def test_a_legend_made_anew_follows_restyled_artists(several: list[rl.Trajectory]) -> None:
-    ax = new_axes()
-    shown = rl.plot_phase(several, ax=ax, labels=["a", "b", "c"])
-    shown.motions[1].set_color("lime")
-    legend = ax.legend()
-    texts = [text.get_text() for text in legend.get_texts()]
-    handle = legend.legend_handles[texts.index("b")]
-    assert isinstance(handle, Line2D) and handle.get_color() == "lime"
-
-
 def test_the_size_of_the_style_is_taken_where_none_is_given() -> None:
     motion = rl.simulate(rl.scenes.report, 2.0)
     for draw in (rl.plot, rl.plot_forces, rl.plot_phase, rl.plot_strobe, rl.plot_error):

@@ -19,8 +19,6 @@ from ._result import Result, checked, read
 from ._score import FAILED, RIGHT, TOLERANCE, UNSUPPORTED, WRONG, Score, scored
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .._pictures.benchmark import ScoresChart
 
 _HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
@@ -76,13 +74,7 @@ class Scores(tuple[Score, ...]):
         ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
         return f"{said}. {exact}, in {worst.problem}.{ladder}"
 
-    def plot(
-        self,
-        path: Any = None,
-        *,
-        ax: Axes | None = None,
-        figsize: tuple[float, float] | None = None,
-    ) -> ScoresChart:
+    def plot(self, path: Any = None, *, ax: Any = None, figsize: Any = None) -> ScoresChart:
         """Draw error over condition number of each problem, on a logarithmic axis.
 
         Marks of several settings are joined, pale to dark. The column on the right has the digits
