@@ -93,13 +93,6 @@ def test_every_sample_lies_in_the_shade_of_its_mode(motion: rl.Trajectory) -> No
     assert legend_of(shown.ax)[3:] == names + COUNTED.get(motion.scene, [])
 
 
-def test_shades_begin_and_end_at_the_events(jump: rl.Trajectory) -> None:
-    slip, lift_off, impact = (event.t for event in jump.events)
-    sliding, flight = shades_of(rl.plot_energy(jump, ax=new_axes()).marks)
-    assert boxes_of(sliding) == [(slip, pytest.approx(lift_off, abs=1e-15), 0, 1)]
-    assert boxes_of(flight) == [(lift_off, pytest.approx(impact, abs=1e-15), 0, 1)]
-
-
 def test_modes_are_told_apart_in_grey(jump: rl.Trajectory) -> None:
     settling = rl.simulate(SCENES["settling"], 6.0)
     shades = [
