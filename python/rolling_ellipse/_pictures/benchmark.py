@@ -53,7 +53,8 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
         for x, score in zip(at, found, strict=True):
             look = {"marker": _SHAPES.get(score.answer, ""), "color": shades[score.setting]} | how
             (chart.marks[problem, score.setting],) = ax.plot(x, y, **look)
-        told = f"{max(score.digits, 0):.1f} digits" if score.answer == "right" else score.answer
+        counts = score.answer == "right" and score.over_condition >= 0
+        told = f"{max(score.digits, 0):.1f} digits" if counts else score.answer
         color = palette.grey if score.answer == "not supported" else palette.text
         ax.text(1.01, y, told, va="center", color=color, transform=ax.get_yaxis_transform())
     marks = {f"setting {s:g}": ("o", shades[s]) for s in settings if s is not None}
@@ -65,7 +66,8 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     ax.set_xlabel("error over condition number")
     ax.tick_params(axis="y", length=0)
     ax.spines[["left", "right", "top"]].set_visible(False)
-    title_beside_legend(ax, fill(f"{scores.verdict().partition('. ')[0]}.", 76))
+    letters = max(20, int(12 * ax.get_window_extent().width / ax.figure.dpi))
+    title_beside_legend(ax, fill(f"{scores.verdict().partition('. ')[0]}.", letters))
     if name is not None:
         chart.savefig(name)
         if own:

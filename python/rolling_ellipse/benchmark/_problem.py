@@ -20,7 +20,6 @@ from .._verbs.simulate import simulate
 from ._dae import FORMS, Dae
 from ._ode import Ode, first_arc
 
-FORMAT = "rolling_ellipse.benchmark/1"
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
 NEEDS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")

@@ -110,8 +110,10 @@ def scored(
     over = (difference.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
     exact = one.trajectory.sol(found.t)
     right, why, events = _answer(one, found, exact, law)
-    units = _units(found.states[places], states)
-    why = "; ".join(text for text in (why, units, missing, found.note) if text)
+    converted = np.abs(np.radians(found.states[places]) - states) / one.scales
+    degrees = converted.max(axis=0, initial=0) < _UNLIKE * errors
+    units = [f"{STATE[k]} looks like degrees" for k in (2, 5) if degrees[k]]
+    why = "; ".join(text for text in (why, *units, missing, found.note) if text)
     passed = right and not missing and bool(over <= tolerance)
     answer = RIGHT if right else WRONG
     if found.t[-1] < (1 - 1e-9) * one.t_end:
@@ -186,17 +188,6 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
         "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
         "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
     }
-
-
-def _units(states: FloatArray, exact: FloatArray) -> str:
-    """Say which angles are a hundred times nearer to the exact ones if taken for degrees."""
-    said = []
-    for name in ("theta", "omega"):
-        mine, right = states[:, STATE.index(name)], exact[:, STATE.index(name)]
-        error, converted = (np.abs(a - right).max(initial=0) for a in (mine, np.radians(mine)))
-        if converted < _UNLIKE * error:
-            said.append(f"{name} looks like degrees")
-    return "; ".join(said)
 
 
 def _forces(one: Problem, found: Result, rows: Any, places: Any) -> dict[str, float]:

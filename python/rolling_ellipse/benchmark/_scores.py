@@ -75,7 +75,7 @@ class Scores(tuple[Score, ...]):
         return f"{said}. {exact}, in {worst.problem}.{ladder}"
 
     def plot(self, path: Any = None, *, ax: Any = None, figsize: Any = None) -> ScoresChart:
-        """Draw error over condition number of each problem, on a logarithmic axis.
+        """Draw error over condition number, a row for each problem, and return the artists.
 
         Marks of several settings are joined, pale to dark. The column on the right has the digits
         of the last one, or its answer. Errors below 1e-17 and above 1000 are drawn there.
@@ -84,11 +84,6 @@ class Scores(tuple[Score, ...]):
         ----------
         path, ax, figsize
             As in `rolling_ellipse.plot` and `rolling_ellipse.plot_forces`, with their errors.
-
-        Returns
-        -------
-        ScoresChart
-            The artists.
         """
         from .._pictures.benchmark import draw
 
