@@ -15,10 +15,9 @@
 ``bounce``      the same, elastic and without friction
 ==============  ====================================================================================
 
-They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are its
-``slide.stick`` and ``leave.slip_then_lift``. There, rocking, rolling and the circle have finite
-friction, which every simulator has; the thin body (10:1), the brink (a thousandth above or below)
-and the drops and bounces (round heights) are such that rounding does not decide the answer.
+They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are two
+of those; others have finite friction, round heights, or are farther from limits, so that any
+simulator can be set up and rounding does not decide (docs/benchmark.md compares them).
 """
 
 from __future__ import annotations

@@ -217,18 +217,13 @@ def test_own_events_are_compared_with_the_exact_ones() -> None:
 
 
 def test_a_ladder_has_an_order_and_a_trend() -> None:
-    def second_order(one: Any, t: Any, h: float) -> Any:
-        return one.exact(t) + h**2
-
-    def stuck(one: Any, t: Any, h: float) -> Any:
-        return one.exact(t) + 1e-3
-
     chosen = [benchmark.problem("roll.rock")]
-    found = benchmark.run(second_order, problems=chosen, ladder=[1e-2, 5e-3, 1e-3])
+    ladder = [1e-2, 5e-3, 1e-3]
+    found = benchmark.run(lambda one, t, h: one.exact(t) + h**2, problems=chosen, ladder=ladder)
     order, trend = found.order("roll.rock")
     assert order == pytest.approx(2, abs=1e-6) and trend == "yes"
     assert "1 become better" in found.verdict()
-    found = benchmark.run(stuck, problems=chosen, ladder=[1e-2, 1e-3])
+    found = benchmark.run(lambda one, t, h: one.exact(t) + 1e-3, problems=chosen, ladder=ladder)
     assert found.order("roll.rock")[1].startswith("plateau at")
 
 

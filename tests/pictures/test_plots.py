@@ -284,16 +284,13 @@ def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
-def test_no_separatrix_for_a_circle_or_on_a_slope() -> None:
-    circle = rl.simulate(rl.scenes.circle, 2.0)
-    downhill = rl.simulate(rl.scenes.slope, 1.0)
-    for motion in (circle, downhill):
-        shown = rl.plot_phase(motion, ax=new_axes())
+def test_one_separatrix_for_each_body_but_none_for_a_circle_or_on_a_slope(
+    report: rl.Trajectory,
+) -> None:
+    for scene in (rl.scenes.circle, rl.scenes.slope):
+        shown = rl.plot_phase(rl.simulate(scene, 1.0), ax=new_axes())
         assert shown.separatrices == () and shown.equilibria == ()
         assert legend_of(shown.ax) == []
-
-
-def test_one_separatrix_for_each_body(report: rl.Trajectory) -> None:
     same = rl.simulate(rl.scenes.rocking, 1.0)
     other = rl.simulate(rl.Scene(1.5, 1.0, omega=1.0), 1.0)
     assert len(rl.plot_phase([report, same], ax=new_axes()).separatrices) == 1
