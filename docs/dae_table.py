@@ -52,7 +52,7 @@ def ida() -> str:
         problem = benchmark.problem(name)
         times = np.append(0.0, scored(problem))
         for form, rtol, which in RUNS:
-            dae = problem.dae(form)
+            dae = problem.dae(form.removeprefix("index"))
             begun = time.perf_counter()
             found = solve(dae, times, rtol, tested(dae, which))
             seconds = time.perf_counter() - begun
@@ -76,7 +76,7 @@ def reference() -> str:
         problem = benchmark.problem(name)
         at = np.flatnonzero(problem.times == scored(problem)[-1])[0]
         state = dict(zip(("x", "z", "θ", "ẋ", "ż", "ω"), problem.states[at], strict=True))
-        psi, r = problem.dae("index3").exact(problem.times[at])[3:5]
+        psi, r = problem.dae(3).exact(problem.times[at])[3:5]
         forces = {"λ1": problem.friction_force[at], "λ2": problem.normal_force[at]}
         row = {"problem": name, "t": problem.times[at], **state, "ψ": psi, "r": r, **forces}
         lines.append([f"{one:.16g}" if isinstance(one, float) else one for one in row.values()])

@@ -71,7 +71,7 @@ def with_table(text: str) -> str:
     if not found:
         raise ValueError(f"the page must have {begin!r} and {end!r}")
     rows = [
-        (f"[`{name}`](problems/{name}.md)", data["question"], ", ".join(data["needs"]),
+        (f"[`{name}`](problems/{name}.md)", data["question"], ", ".join(data["tags"]),
          data["t_end"], worst(data) if data["scored"] else "not scored")
         for name, data in problems().items()
     ]  # fmt: skip
@@ -107,7 +107,7 @@ def page(data: Any) -> str:
         " all numbers are in\n"
         f"`python/rolling_ellipse/benchmark/problems/{name}.json`.\n",
         f"## Data\n\n{table(('given', 'value', 'unit'), given)}",
-        f"A simulator needs: {', '.join(data['needs'])}. The motion ends at {data['t_end']} s.\n",
+        f"A simulator needs: {', '.join(data['tags'])}. The motion ends at {data['t_end']} s.\n",
         f"## Answer\n\n{answer(data)}",
     ]
     if data["events"]:

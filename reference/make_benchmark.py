@@ -283,7 +283,7 @@ def doubles(row: list[Any]) -> list[float]:
     return [float(one) if abs(one) > AGREEMENT else 0.0 for one in row]
 
 
-def needs(scene: Scene, found: Sampler) -> list[str]:
+def tags(scene: Scene, found: Sampler) -> list[str]:
     """Abilities that a simulator needs: "spin" is one that is not that of rolling."""
     has = {
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
@@ -321,7 +321,7 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
 
     data: dict[str, Any] = {
         "format": "rolling_ellipse.benchmark/1", "id": name, "title": problem.title,
-        "question": problem.question, "needs": needs(scene, found),
+        "question": problem.question, "tags": tags(scene, found),
         "scored": name not in ("jam", "hit.ball"),
         "scene": body | {"inertia": scene.mass * (scene.a**2 + scene.b**2) / 4} | start,
         "t_end": end, "horizon": wild[0] if wild else end,

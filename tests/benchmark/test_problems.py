@@ -107,7 +107,7 @@ def test_the_files_are_small_and_of_one_form() -> None:
     assert sum(path.stat().st_size for path in FOLDER.glob("*.json")) <= 200_000
     for name, data in PROBLEMS.items():
         assert (data["id"], data["format"]) == (name, "rolling_ellipse.benchmark/1")
-        assert data["columns"] == ["t", *COLUMNS] and data["needs"] == sorted(data["needs"])
+        assert data["columns"] == ["t", *COLUMNS] and data["tags"] == sorted(data["tags"])
         rows = list(zip(data["states"], data["condition"], strict=True))
         assert all(len(row) == 9 and condition >= 1 for row, condition in rows)
         wild = [row[0] for row, condition in rows if condition > 1000]

@@ -17,7 +17,7 @@ from rolling_ellipse.benchmark._problem import STATE, states_of
 from rolling_ellipse.geometry import support_slope
 
 IDS = [one.id for one in benchmark.problems()]
-BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.needs}
+BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.tags}
 # A simulator fails if its error is above a millionth of the condition number. The changes below are
 # 1e-3 at least of one input, whose share of the condition number is above a thousandth.
 TOLERANCE = 1e-6
@@ -136,7 +136,7 @@ def score_of(one: benchmark.Problem, result: Any) -> benchmark.Score:
 
 def rolls_only(one: Any, t: Any, h: Any) -> Any:
     """A simulator without flight, whose errors grow with h, and which rocks over the tips."""
-    if "flight" in one.needs:
+    if "flight" in one.tags:
         raise NotImplementedError("bodies stay on the ground")
     return one.exact(t) * (10 if one.id == "roll.rock" else 1 + h)
 

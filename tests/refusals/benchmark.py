@@ -61,9 +61,9 @@ def _rows() -> Iterator[Row]:
     yield from wrong(benchmark.run(exact, problems=[STICK]).plot, {}, path=[""], figsize=[3])
     yield from wrong(benchmark.gradients()[0].error, {}, value=[1.0, [1.0, 2.0]])
     yield "problem", lambda _: benchmark.problem("jam").ode()
-    yield from wrong(benchmark.problem("roll.rock").dae, {}, form=["index0", 3])
     slips = ["slide.slope", "slide.stick", "leave.slip_then_lift", "hit.drop_stick", "jam"]
     yield from wrong(lambda problem: benchmark.problem(problem).dae("ggl"), {}, problem=slips)
+    yield from wrong(benchmark.problem("roll.roll").dae, {}, index=[0, "ida"])
     yield "states", scored(STATES[:, :5])
     yield TypeError, scored("x")
     yield "t", scored(STATES, t=T[1:])

@@ -22,7 +22,7 @@ from ._ode import Ode, first_arc
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
-NEEDS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
+TAGS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
 OUTPUT_RATE = 100  # states a second that a simulator is asked for
 FOLDER = Path(__file__).with_name("problems")
 
@@ -63,7 +63,7 @@ class Problem(FieldsOnly):
     Attributes
     ----------
     id, title, question : str
-    needs : tuple of str
+    tags : tuple of str
         Abilities that a simulator needs: "flight", "non-round", "restitution", "slope", "spin",
         "stiction".
     scored : bool
@@ -90,7 +90,7 @@ class Problem(FieldsOnly):
     id: str
     title: str
     question: str
-    needs: tuple[str, ...]
+    tags: tuple[str, ...]
     scored: bool
     scene: Scene
     t_end: float
@@ -143,17 +143,23 @@ class Problem(FieldsOnly):
         """
         return first_arc(self, xp)
 
-    def dae(self, form: str) -> Dae:
+    def dae(self, index: int | str = 1) -> Dae:
         """Return a motion that rolls all the time as differential-algebraic equations.
 
         Parameters
         ----------
-        form : {"index3", "index2", "index1", "ggl"}
-            Order of the constraints, or stabilised ones.
+        index : {1, 2, 3, "ggl"}
+            Index, or the stabilised form of index 2.
+
+        Raises
+        ------
+        ValueError
+            If the motion does not roll all the time, or there is no such form.
         """
         if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
             raise ValueError(f"problem must roll all the time, got {self.id!r}")
-        return Dae(self, form, *FORMS[choice("form", form, tuple(FORMS))])
+        form = choice("index", index if index == "ggl" else f"index{index}", tuple(FORMS))
+        return Dae(self, form, *FORMS[form])
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +217,7 @@ def _made(name: str) -> Problem:
     laws = {law: np.array(states)[:, 1:7] for law, states in data.get("laws", {}).items()}
     return Problem(
         **{key: data[key] for key in ("id", "title", "question", "scored", "answer")},
-        needs=tuple(data["needs"]), scene=Scene(**given),
+        tags=tuple(data["tags"]), scene=Scene(**given),
         t_end=float(data["t_end"]), horizon=float(data["horizon"]),
         scales=np.array(data["scales"], dtype=float), times=rows[:, 0], states=rows[:, 1:7],
         normal_force=rows[:, 7], friction_force=rows[:, 8], condition=np.array(data["condition"]),
@@ -249,9 +255,9 @@ def problems(tags: Iterable[str] | None = None) -> list[Problem]:
     ValueError
         If there is no such tag.
     """
-    able = NEEDS if tags is None else [choice("tags", tag, NEEDS) for tag in tags]
+    able = TAGS if tags is None else [choice("tags", tag, TAGS) for tag in tags]
     found = [problem(name) for name in _read()]
-    return [one for one in found if one.scored and set(one.needs) <= set(able)]
+    return [one for one in found if one.scored and set(one.tags) <= set(able)]
 
 
 def gradients() -> list[Gradient]:

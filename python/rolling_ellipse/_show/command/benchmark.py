@@ -37,7 +37,7 @@ def benchmark_parser() -> OneLineParser:
 def act(options: argparse.Namespace) -> tuple[int, str]:
     """Do what is asked for, and return the exit code and the text: 1 if an answer is wrong."""
     if options.action == "list":
-        rows = [(one.id, one.question, ", ".join(one.needs)) for one in benchmark.problems()]
+        rows = [(one.id, one.question, ", ".join(one.tags)) for one in benchmark.problems()]
         return 0, text_table([("problem", "question", "needs"), *rows])
     if options.action == "export":
         return 0, f"written           {len(benchmark.export(options.folder))} files"
@@ -73,5 +73,5 @@ def _function(name: str) -> Any:
 
 def _passed_tags(scores: benchmark.Scores) -> list[str]:
     """Return the tags whose problems all pass."""
-    failed = {tag for s in scores if not s.passed for tag in benchmark.problem(s.problem).needs}
-    return sorted({tag for one in benchmark.problems() for tag in one.needs} - failed)
+    failed = {tag for s in scores if not s.passed for tag in benchmark.problem(s.problem).tags}
+    return sorted({tag for one in benchmark.problems() for tag in one.tags} - failed)
