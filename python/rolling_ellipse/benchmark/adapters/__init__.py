@@ -44,6 +44,7 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
                 advance(steps)
             rows.append(state())
         found = np.array(rows, dtype=float)
+        found[counts == 0, 6:] = np.nan  # no step was made yet
         forces = dict(zip(("normal_force", "friction_force"), found[:, 6:].T, strict=False))
         return Result(found[:, :6], note="".join(note), **forces)
 
