@@ -4,8 +4,9 @@ The chart of speed against accuracy is drawn from `peers_R_10.37.json`, whose di
 """
 
 import hashlib
+import json
 import warnings
-from dataclasses import replace
+from dataclasses import fields, replace
 from io import BytesIO
 from pathlib import Path
 
@@ -16,9 +17,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Ellipse
 from PIL import Image, PngImagePlugin
 from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM
+from rolling_ellipse.benchmark import Score, Scores
 
 HERE = Path(__file__).parent
 RACE = HERE / "peers_R_10.37.json"
+ENGINES = HERE / "engines.json"
 METHODS = {
     "rk4, 0.02 s": {"method": "rk4", "step": 0.02},
     "dop853, rtol 1e-10": {"method": "dop853"},
@@ -38,6 +41,8 @@ def main() -> None:
     friction()
     save(methods(), "methods.png")
     save(speed(), "speed.png", RACE)
+    for name, figure in engines().items():
+        save(figure, f"engine_{name}.png", ENGINES)
     save(stability(), "stability.png")
     save(phase_map(), "phase_map.png")
     save(strobe(), "strobe.png")
@@ -68,6 +73,22 @@ def speed() -> Figure:
     figure = chart.ax.figure
     assert isinstance(figure, Figure)
     return figure
+
+
+def engines() -> dict[str, Figure]:
+    """Scores of each engine, from the file of their runs."""
+    drawn = {}
+    for name, found in json.loads(ENGINES.read_text(encoding="utf-8"))["engines"].items():
+        scores = []
+        for row in found["scores"]:
+            known = {key: np.nan if value is None else value for key, value in row.items()}
+            known |= {"errors": np.array([*row["errors"].values()], dtype=float)}
+            scores.append(Score(**{each.name: known[each.name] for each in fields(Score)
+                                   if each.name in known}))  # fmt: skip
+        figure = Figure(figsize=(7.2, 5.6), layout="constrained")
+        Scores(scores).plot(ax=figure.add_subplot())
+        drawn[name.lower()] = figure
+    return drawn
 
 
 def stability() -> Figure:

@@ -55,10 +55,12 @@ def test_every_race_of_the_data_is_quoted(make: dict[str, Any]) -> None:
     assert rows == len(list(DOCS.glob("peers_*.json"))) > 0
 
 
-def test_the_chart_shows_the_data() -> None:
-    with Image.open(DOCS / "speed.png") as picture:
+@pytest.mark.parametrize("name", ["speed", "engine_mujoco", "engine_drake", "engine_pymunk"])
+def test_the_chart_shows_the_data(name: str) -> None:
+    with Image.open(DOCS / f"{name}.png") as picture:
         source = picture.info["Source"]
-    assert source == hashlib.sha256(RACE.read_bytes()).hexdigest(), "python docs/make.py pictures"
+    data = (RACE if name == "speed" else DOCS / "engines.json").read_bytes()
+    assert source == hashlib.sha256(data).hexdigest(), "python docs/make.py pictures"
 
 
 def test_the_pages_of_problems_are_those_of_their_data() -> None:
