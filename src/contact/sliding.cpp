@@ -253,8 +253,12 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     const double slip = slip_velocity(state, at);
     const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega);
     if (!weightless) return continuation_at(scene, state, at, slip, may_roll);
-    // A weightless body flies on its way up to the tip: c falls there, since h'' is least on it.
-    if (at.dh * state.omega > 0 && !is_equilibrium(at)) return {Mode::flight};
+    // A weightless body flies on its way up to the tip: c falls there, since h'' is least on it. On
+    // a slope N = h h' (g sin(alpha) - h' omega^2)/D of rolling may hold it nevertheless.
+    if (at.dh * state.omega > 0 && !is_equilibrium(at)) {
+        const Continuation now = continuation_at(scene, state, at, slip, may_roll);
+        return scene.slope != 0 && now.mode == Mode::rolling ? now : Continuation{Mode::flight};
+    }
     State later = state;
     later.theta += std::copysign(turn_of_grazing, state.omega);
     Continuation next =

@@ -2,8 +2,8 @@
 
 The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. A body
 that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed before and
-after. At an angle with c = 0 it leaves while it turns towards the tip, and stays while it turns
-away.
+after. At an angle with c = 0 on level ground it leaves while it turns towards the tip, and stays
+while it turns away.
 """
 
 import math
@@ -117,3 +117,19 @@ def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
     assert np.all(np.abs(h - fallen)[sliding] <= 32 * EPS * 75.0)
     spin = weightless_spin(75.0, 50.0, scene.theta, 1.0)
     assert moving.omega[1] == pytest.approx(spin, rel=1e-2)
+
+
+def test_a_slope_may_hold_a_weightless_start_on_its_way_to_the_tip() -> None:
+    """Where c = 0, N of rolling is h h' (g sin(alpha) - h' omega^2)/D (physics 18, 19)."""
+    rng, held = np.random.default_rng(125), 0
+    for _ in range(200):
+        a, b, slope = rng.uniform(1.5, 3.0), 1.0, rng.uniform(-1.4, 1.4)
+        theta = tip(a, b) + rng.uniform(-0.3, 0.3)
+        s, c = math.sin(theta), math.cos(theta)
+        lead = (a * a - b * b) * s * c / math.hypot(a * s, b * c)
+        omega = math.copysign(weightless_spin(a, b, theta, 9.81 * math.cos(slope)), lead)
+        press = lead * (9.81 * math.sin(slope) - lead * omega**2)
+        found = Scene(a, b, theta=theta, omega=omega, slope=slope).initial_state.mode
+        assert found is (Mode.ROLLING if press > 0 else Mode.FLIGHT)
+        held += press > 0
+    assert held > 50
