@@ -28,8 +28,7 @@ from ._equations import (
     f4,
     struck_speed,
 )
-from ._errata import Erratum, errata, errata_table
-from ._errata_numbers import Comparison
+from ._errata import Comparison, Erratum, errata, errata_table
 from ._motion import PrintedMotion
 from ._multipliers import complete_f, eq_39, eq_40, eq_41, eq_42, lambda4_numerator, multipliers
 from ._rows import CODE, EQ_32, MATRIX, MISPRINTS, consistent_rates, constraint_matrix
