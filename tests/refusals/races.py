@@ -79,6 +79,5 @@ REFUSALS: list[Row] = [
     ("highlight", result(lambda found: found.plot(highlight=[]))),
     ("highlight", result(lambda found: found.plot(highlight=3))),  # type: ignore[arg-type]
     ("ax", result(lambda found: found.plot(by="library", ax=WRONG))),
-    (KeyError, result(lambda found: found.runs[0].errors["x"])),
     *(("path", damaged(*each)) for each in DAMAGED),
 ]  # fmt: skip

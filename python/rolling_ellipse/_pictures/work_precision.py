@@ -17,7 +17,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, NullLocator
 
 from .._ask.check import choice, shown
-from .._verbs.work_precision.run import ERRORS, OF_STATES, Run, require_quantity
+from .._verbs.work_precision.run import ERRORS, OF_STATES, QUANTITIES, Run
 from .._verbs.work_precision.verdict import EQUAL, Gaps, gaps
 from .axes import Artists, axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
@@ -75,7 +75,7 @@ def draw(
 ) -> WorkPrecisionChart:  # fmt: skip
     """Draw the runs; see `WorkPrecision.plot`."""
     choice("x", x, ERRORS)
-    require_quantity("y", y)
+    choice("y", y, QUANTITIES)
     runs = found.of(t_end)
     if tags is not None:
         chosen = _chosen("tags", tags, runs)

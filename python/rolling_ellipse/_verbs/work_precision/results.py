@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..._ask.check import number, shown
+from ..._ask.check import choice, file_name, number, shown
 from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
+from ..._motion.export.atomic import replacing
+from ..._motion.export.strict import OBJECT, parsed, restored
 from ..._motion.export.tables import required
-from . import files
-from .run import ERRORS, NOT_RUN, Reference, Run, by_name, require_quantity
-from .verdict import Gaps, gaps, verdict
+from .run import ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, record
+from .verdict import DECADES, Gaps, gaps, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
     from ..._pictures.work_precision import WorkPrecisionChart
 
-DECADES = tuple(10.0**-k for k in range(2, 15))
+_SCHEMA = 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -73,17 +75,14 @@ class WorkPrecision:
 
         An error of the state below the reference's own error counts as the latter.
         """
-        able = self._able(at, x, y, t_end)
-        return min(able, key=lambda run: run.value(y), default=None)
+        return min(self._able(at, x, y, t_end), key=lambda run: run.value(y), default=None)
 
     def least(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
         """Return by name the least `y` of each method that reaches an error of at most `at`."""
-        found: dict[str, float] = {}
-        for run in self._able(at, x, y, t_end):
-            found[run.name] = min(found.get(run.name, math.inf), run.value(y))
-        return found
+        able = by_name(self._able(at, x, y, t_end))
+        return {name: min(run.value(y) for run in runs) for name, runs in able.items()}
 
     def not_run(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
@@ -93,7 +92,7 @@ class WorkPrecision:
         They have not reached it, and were not run at all settings for want of time.
         """
         reached = self.least(at, x=x, y=y, t_end=t_end)
-        late = dict.fromkeys(run.name for run in self.of(t_end) if run.status == NOT_RUN)
+        late = by_name(run for run in self.of(t_end) if run.status == NOT_RUN)
         return tuple(name for name in late if name not in reached)
 
     def unbeaten(
@@ -123,7 +122,7 @@ class WorkPrecision:
         The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
-        return verdict(self, self.judged_by(t_end), DECADES)
+        return verdict(self, self.judged_by(t_end))
 
     def gaps(self, *, t_end: float | None = None) -> Gaps:
         """Return the table of the runs that failed, were refused or were not run, with reasons.
@@ -174,18 +173,23 @@ class WorkPrecision:
     def to_dataframe(self) -> DataFrame:
         """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each run."""
         pandas = required("pandas", "to_dataframe")
-        rows = [asdict(run) | dict(run.errors) | {"tags": " ".join(run.tags)} for run in self.runs]
-        frame: DataFrame = pandas.DataFrame(rows).drop(columns="errors")
+        errors = ({name: run.value(name) for name in ERRORS} for run in self.runs)
+        rows = [asdict(run) | {"tags": " ".join(run.tags)} for run in self.runs]
+        frame: DataFrame = pandas.DataFrame(map(dict.__or__, rows, errors)).drop(columns="errors")
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of JSON, which appears whole or not at all."""
-        files.write(self, path)
+        name = file_name("path", path)
+        text = json.dumps(self._about(), indent=1, allow_nan=False)
+        self._restored(text.encode())
+        with replacing(name) as new:
+            new.write_text(text + "\n", encoding="utf-8")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
         """Read a file written by `save`; ValueError if it is damaged or another file."""
-        return files.read(cls, path)
+        return restored(path, cls._restored, OBJECT)
 
     def __repr__(self) -> str:
         answers = sum(run.completed for run in self.runs)
@@ -208,9 +212,8 @@ class WorkPrecision:
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
         if not number("at", at) > 0:
             raise ValueError(f"at must be positive, got {at!r}")
-        if require_quantity("x", x) not in ERRORS:
-            raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
-        require_quantity("y", y)
+        choice("x", x, ERRORS)
+        choice("y", y, QUANTITIES)
         floor = self.judged_by(t_end).limits(x)[0]
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
@@ -222,3 +225,21 @@ class WorkPrecision:
             listed = ", ".join(map(repr, ends))
             raise ValueError(f"t_end must be one of {listed}, got {shown(t_end)}")
         return self.references[-1 if t_end is None else ends.index(t_end)]
+
+    def _about(self) -> dict[str, Any]:
+        about: dict[str, Any] = plain({"schema": _SCHEMA, **asdict(self)})
+        return about
+
+    @classmethod
+    def _restored(cls, content: bytes) -> WorkPrecision:
+        """Return the race of a text, if `save` would write the same text for it."""
+        about = parsed("the file", content.decode("utf-8"))
+        if (schema := about.get("schema")) != _SCHEMA:
+            raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
+        found = record(cls, {name: about[name] for name in about.keys() - {"schema"}})
+        ends = {each.t_end for each in found.references}
+        if not ends or ends != {run.t_end for run in found.runs}:
+            raise ValueError("runs must be there, and end where the references do")
+        if json.dumps(found._about(), sort_keys=True) != json.dumps(about, sort_keys=True):
+            raise ValueError("it must hold what save writes, in its types")
+        return found

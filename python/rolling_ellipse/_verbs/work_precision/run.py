@@ -1,26 +1,31 @@
-"""Runs of a race, their errors, and the reference that judges them."""
+"""Runs of a race, their errors, the reference that judges them, and their values in JSON.
+
+JSON has no NaN and no infinite numbers: they are null and the text "inf".
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
 
-from ..._ask.check import choice
+from ..._motion.export.strict import field_names, require_names, scene_of
 
 COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
 ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
 OF_STATES = ERRORS[:4]
-_FIGURES = (
-    "setting", "time", "samples_time", "setup", "spread", "steps", "rejected", "evaluations",
-    "t_end",
+QUANTITIES = (
+    *ERRORS, "setting", "time", "samples_time", "setup", "spread", "steps", "rejected",
+    "evaluations", "t_end",
 )  # fmt: skip
+
+_Record = TypeVar("_Record")
 
 
 @dataclass(frozen=True)
-class Errors(Mapping[str, float]):
-    """Errors of a run, as attributes and items; NaN where a run has no such answer.
+class Errors:
+    """Errors of a run; NaN where a run has no such answer.
 
     The error of a state is the largest of those of theta [rad], of omega over the largest |omega|
     of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
@@ -39,18 +44,6 @@ class Errors(Mapping[str, float]):
     def largest(self) -> float:
         return self.final if math.isnan(self.linf) else max(self.final, self.linf)
 
-    def __getitem__(self, name: str) -> float:
-        if name not in ERRORS:
-            raise KeyError(name)
-        value: float = getattr(self, name)
-        return value
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(ERRORS)
-
-    def __len__(self) -> int:
-        return len(ERRORS)
-
 
 @dataclass(frozen=True)
 class Run:
@@ -60,9 +53,7 @@ class Run:
     model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
     method: str
     stabilization: str
-    setting: float = (
-        math.nan
-    )  # relative tolerance, or step [s]; NaN of a contender without settings
+    setting: float = math.nan  # relative tolerance, or step [s]; NaN of a contender without any
     errors: Errors = Errors()
     time: float = math.nan  # least of a call that returns the state at the end [s]
     setup: float = math.nan  # cost of a new scene, with the first call's longer time [s]
@@ -83,7 +74,7 @@ class Run:
 
     def value(self, quantity: str) -> float:
         """Return one of its errors or figures by name."""
-        return float(self.errors[quantity] if quantity in ERRORS else getattr(self, quantity))
+        return float(getattr(self.errors if quantity in ERRORS else self, quantity))
 
 
 @dataclass(frozen=True)
@@ -118,6 +109,42 @@ def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
     return found
 
 
-def require_quantity(name: str, value: Any) -> str:
-    """Return the name of a quantity of runs, or raise ValueError."""
-    return choice(name, value, (*ERRORS, *_FIGURES))
+def plain(value: Any) -> Any:
+    """Return nested records, as of `asdict`, in the values of JSON."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    if isinstance(value, dict):
+        return {name: plain(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(each) for each in value]
+    return value
+
+
+def record(kind: type[_Record], found: Any) -> _Record:
+    """Return a dataclass of this kind out of what `plain` makes of it."""
+    require_names(f"a {kind.__name__}", found, field_names(kind))
+    return kind(**{each.name: _value(str(each.type), found[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
+
+
+_RECORDS: dict[str, Any] = {kind.__name__: kind for kind in (Errors, Run, Reference)}
+
+
+def _value(kind: str, value: Any) -> Any:
+    """Return the value of a field of this type."""
+    if kind in _RECORDS:
+        return record(_RECORDS[kind], value)
+    if kind == "Scene":
+        return scene_of({name: _unbounded(each) for name, each in value.items()})
+    if kind.startswith("dict"):
+        return {name: _value("str", each) for name, each in value.items()}
+    if kind.startswith("tuple"):
+        return tuple(_value(kind.split("[")[1].split(",")[0], each) for each in value)
+    if kind == "float":
+        value = math.nan if value is None else _unbounded(value)
+    if type(value).__name__ != kind or (kind != "str" and value < 0):
+        raise ValueError(f"values must be of type {kind} and not negative, got {value!r}")
+    return value
+
+
+def _unbounded(value: Any) -> Any:
+    return math.inf if value == "inf" else value

@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
     from .results import WorkPrecision
 
+DECADES = tuple(10.0**-k for k in range(2, 15))
 EQUAL = 1.2  # ratio of times that count as equal
 _POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
 
 
-def verdict(found: WorkPrecision, reference: Reference, decades: Sequence[float]) -> str:
+def verdict(found: WorkPrecision, reference: Reference) -> str:
     """Return who is fastest at each decade, who reached nothing, and who was not run."""
     runs = found.of(reference.t_end)
     floor, attainable = reference.limits("largest")
@@ -37,10 +38,10 @@ def verdict(found: WorkPrecision, reference: Reference, decades: Sequence[float]
         f"To t = {reference.t_end:.6g} s, judged by {reference.name}{known}, at the sample times "
         f"and the end{but}:"
     ]
-    table = {decade: found.least(decade, t_end=reference.t_end) for decade in decades}
-    reached = [decade for decade in decades if table[decade]]
+    table = {decade: found.least(decade, t_end=reference.t_end) for decade in DECADES}
+    reached = [decade for decade in DECADES if table[decade]]
     lines += _leaders(found, runs, {decade: table[decade] for decade in reached})
-    if none := [decade for decade in decades if decade not in reached]:
+    if none := [decade for decade in DECADES if decade not in reached]:
         why = ", which the reference could not tell" if none[0] < floor else ""
         lines.append(f"nobody has reached an error {_span(none)}{why}")
     return "\n".join([*lines, *_without_answer(runs)])
