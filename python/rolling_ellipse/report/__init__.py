@@ -10,36 +10,17 @@ broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. Every
 ValueError naming the argument if a shape or a number is out of its range.
 """
 
-from ._equations import (
-    appendix_b_r_x,
-    appendix_b_radius,
-    case_lead,
-    case_sign,
-    constraint_rates,
-    contact_x,
-    eq_5,
-    eq_38,
-    eq_48,
-    eqs_33_to_37,
-    equations_of_motion,
-    f1,
-    f2,
-    f3,
-    f4,
-    struck_speed,
-)
+from . import _equations
+from ._equations import *  # noqa: F403
 from ._errata import Comparison, Erratum, errata, errata_table
 from ._motion import PrintedMotion
-from ._multipliers import complete_f, eq_39, eq_40, eq_41, eq_42, lambda4_numerator, multipliers
 from ._rows import CODE, EQ_32, MATRIX, MISPRINTS, consistent_rates, constraint_matrix
 from ._simulate import simulate
 from ._start import InconsistentStartWarning, Start
 
 __all__ = [
     "CODE", "EQ_32", "MATRIX", "MISPRINTS", "Comparison", "Erratum", "InconsistentStartWarning",
-    "PrintedMotion", "Start", "appendix_b_r_x", "appendix_b_radius", "case_lead", "case_sign",
-    "complete_f", "consistent_rates", "constraint_matrix", "constraint_rates", "contact_x", "eq_5",
-    "eq_38", "eq_39", "eq_40", "eq_41", "eq_42", "eq_48", "eqs_33_to_37", "equations_of_motion",
-    "errata", "errata_table", "f1", "f2", "f3", "f4", "lambda4_numerator", "multipliers",
-    "simulate", "struck_speed",
+    "PrintedMotion", "Start", "consistent_rates", "constraint_matrix", "errata", "errata_table",
+    "simulate",
 ]  # fmt: skip
+__all__ += _equations.__all__

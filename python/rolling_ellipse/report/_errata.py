@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from importlib.resources import files
 from inspect import signature
 from typing import Any, NamedTuple
 
@@ -17,7 +19,6 @@ from .._verbs.classify import thresholds
 from .._verbs.simulate import simulate
 from ..geometry import contact_angle, contact_distance, support, support_slope
 from . import _equations as equations
-from ._multipliers import complete_f, eq_39, eq_40, lambda4_numerator, multipliers
 from ._rows import CODE, EQ_32, consistent_rates, constraint_matrix
 from ._simulate import simulate as follow
 
@@ -105,12 +106,16 @@ def _row(row: int, printed: tuple[str, ...]) -> Callable[[], Comparison]:
 def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: Any) -> Any:
     """Return the term of lambda3 in the equation of psi, eq 37 [N m]."""
     coefficient = constraint_matrix(q, a=a, b=b, printed=())[2, 3]
-    return sign * coefficient * multipliers(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)[2]
+    return (
+        sign
+        * coefficient
+        * equations.multipliers(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)[2]
+    )
 
 
 def _fourth(power: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: Any) -> Any:
     """Return lambda4 with the denominator 4 a^2 b^power."""
-    numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
+    numerator = equations.lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     return numerator / (4 * a**2 * b**power)
 
 
@@ -127,100 +132,32 @@ def _roll_over() -> Comparison:
     return Comparison(1.0, thresholds(_BODY["a"], _BODY["b"]).roll_over_speed)
 
 
-_ERRATA = (
-    Erratum(
-        "eqs 9, 10, f1", "velocity of the geometric contact point is zero",
-        "that keeps x + r sin(ψ−θ) where it is, and the ellipse cannot advance; rolling is "
-        "ẋ = r cos(ψ−θ) θ̇, and in the plane it is integrable",
-        "f1 of an exact motion [m/s]", _both(equations.f1, partial(_rate, 0)),
+#: The comparison of each row of errata.json, by its place in the report.
+_COMPARISONS: dict[str, Callable[[], Comparison]] = {
+    "eqs 9, 10, f1": _both(equations.f1, partial(_rate, 0)),
+    "section 2.2, cases 1 and 2": _both(equations.case_lead, support_slope, theta=4.0),
+    "eq 32, df2, row 2": _row(1, ("df2", "tan")),
+    "eq 32, df3": _row(2, EQ_32),
+    "eq 35, code a44": _row(3, CODE),
+    "eq 37": _both(partial(_moment, -1), partial(_moment, 1)),
+    "eq 38, f1 and f2": _both(equations.eq_38, equations.constraint_rates, 1),
+    "eq 39, λ2": _both(equations.eq_39, equations.multipliers, 1),
+    "eq 39, λ3": _both(equations.eq_39, equations.multipliers, 2, theta=math.pi / 2 - 1e-3),
+    "eq 39, λ4": _both(partial(_fourth, 2), partial(_fourth, 0), b=0.8),
+    "eqs 40, 42": _both(equations.eq_40, equations.complete_f),
+    "eq 32, df4, code": _both(
+        constraint_matrix, partial(constraint_matrix, printed=()), (3, 3), theta=math.pi / 2
     ),
-    Erratum(
-        "section 2.2, cases 1 and 2", "sign of r sin(ψ−θ) by quadrant",
-        "it mends the arctan in the second quadrant only; h′ is one smooth expression",
-        "x_C − x_G at θ = 4 rad [m]", _both(equations.case_lead, support_slope, theta=4.0),
-    ),
-    Erratum(
-        "eq 32, df2, row 2", "−r sin(ψ−θ) dψ + r sin(ψ−θ) dθ",
-        "both signs are wrong: d(−r cos(ψ−θ)) gives +r sin(ψ−θ) (dψ − dθ)",
-        "row 2 times exact rates [m/s]", _row(1, ("df2", "tan")),
-    ),
-    Erratum(
-        "eq 32, df3", "2 (…) dr − a b (a²−b²) sin²ψ dψ",
-        "the exponent 3/2 is missing and sin²ψ stands for sin 2ψ; the matrix has both right",
-        "row 3 times exact rates [m⁴/s]", _row(2, EQ_32),
-    ),
-    Erratum(
-        "eq 35, code a44", "−λ4 a² sec²θ, a44 = +a² (tan²θ + 1)",
-        "the sign is opposite to df4",
-        "row 4 times exact rates [m²/s]", _row(3, CODE),
-    ),
-    Erratum(
-        "eq 37", "+λ3 a b (a²−b²) sin 2ψ", "the sign is opposite to the matrix",
-        "term of λ3 [N m]", _both(partial(_moment, -1), partial(_moment, 1)),
-    ),
-    Erratum(
-        "eq 38, f1 and f2", "ż − ṙ sin(ψ−θ) − ψ̇ r sin(ψ−θ) + θ̇ r cos(ψ−θ)",
-        "cosine for sine and back, and signs: not the derivative of eq 10",
-        "rate of f2 of an exact motion [m/s]",
-        _both(equations.eq_38, equations.constraint_rates, 1),
-    ),
-    Erratum(
-        "eq 39, λ2", "λ2 = m (z̈ − g)", "eq 34 gives m (z̈ + g), the normal force",
-        "λ2 [N]", _both(eq_39, multipliers, 1),
-    ),
-    Erratum(
-        "eq 39, λ3", "F / (4 a³b³ sin 2ψ (a²−b²))",
-        "singular at every quarter turn and for a circle: the equation of r has no such divisor",
-        "λ3 at θ = π/2 − 0.001 [N/m³]",
-        _both(eq_39, multipliers, 2, theta=math.pi / 2 - 1e-3),
-    ),
-    Erratum(
-        "eq 39, λ4", "denominator 4 a²b²",
-        "4 a² follows from eqs 32 and 35, hidden at b = 1 m",
-        "the printed numerator over both, b = 0.8 m [N/m]",
-        _both(partial(_fourth, 2), partial(_fourth, 0), b=0.8),
-    ),
-    Erratum(
-        "eqs 40, 42", "terms without m, θ̈ or cos²θ, one of them twice",
-        "also sinψ for sin(ψ−θ) and for sin²ψ, and the power 3/2 lost: the dimensions do not agree",
-        "F [N m⁵]", _both(eq_40, complete_f),
-    ),
-    Erratum(
-        "eq 32, df4, code", "tan θ",
-        "infinite at a quarter turn; times cos²θ the row stays finite",
-        "coefficient of dψ at θ = π/2 [m²]",
-        _both(
-            constraint_matrix, partial(constraint_matrix, printed=()), (3, 3), theta=math.pi / 2
-        ),
-    ),
-    Erratum(
-        "appendix B", "r with Th_p, and (b b sin)² + (a a cos)² under the root",
-        "eq 6 needs ψ where the parameter t stands, and the squares are taken twice: "
-        "b/a instead of b at θ = 0",
-        "r [m]", _both(equations.appendix_b_radius, contact_distance),
-    ),
-    Erratum(
-        "eqs 45–48", "θ̇ = 4 F d / (m (a²+b²))",
-        "the reaction moves the centre as well: right on ice only, rolling needs k² + b²",
-        "θ̇ after 48 N s at 1.5 m [rad/s]", _both(equations.eq_48, equations.struck_speed),
-    ),
-    Erratum(
-        "section 4.2.2, Figure 11", "back substitution gives zeros",
-        "it shows that the equations were solved, not that they are right",
-        "residuals of the code's equations against its gap after 0.25 s [m, N, …]",
-        _back_substitution,
-    ),
-    Erratum(
-        "section 4.2.2, Figure 12", "ψ is discontinuous",
-        "so is the arctan; ψ is not", "ψ at θ = 2 rad [rad]",
-        _both(equations.eq_5, contact_angle, theta=2.0),
-    ),
-    Erratum(
-        "Figure 13", "rolls over from θ̇ ≈ 1 rad/s, fastest when tall",
-        "it needs more, and is fastest when flat",
-        "θ̇ needed to roll over [rad/s]", _roll_over,
-    ),
-)  # fmt: skip
+    "appendix B": _both(equations.appendix_b_radius, contact_distance),
+    "eqs 45–48": _both(equations.eq_48, equations.struck_speed),
+    "section 4.2.2, Figure 11": _back_substitution,
+    "section 4.2.2, Figure 12": _both(equations.eq_5, contact_angle, theta=2.0),
+    "Figure 13": _roll_over,
+}
+_ERRATA = tuple(
+    Erratum(**row, evaluate=_COMPARISONS[row["where"]])
+    for row in json.loads(files(__package__).joinpath("errata.json").read_text(encoding="utf-8"))
+)
 
 
 def errata() -> tuple[Erratum, ...]:

@@ -69,9 +69,16 @@ def _prepared_flow(scene: Scene, t_end: float, _: float) -> Any:
 class _Simulation:
     advice = ""
 
-    def __init__(self, scene: Scene, t_end: float, arguments: dict[str, Any]) -> None:
+    def __init__(
+        self, arguments: dict[str, Any], ladder: str | None, scene: Scene, t_end: float,
+        setting: float,
+    ) -> None:  # fmt: skip
         self.scene = replace(scene)  # a new scene, so that its own set-up is timed again
-        self.settings = tuple((DEFAULTS.__getstate__() | arguments).values())
+        how: dict[str | None, dict[str, float]] = {
+            None: {}, TOLERANCES: {"rtol": setting, "atol": setting / _RELATIVE},
+            STEPS: {"step": setting},
+        }  # fmt: skip
+        self.settings = tuple((DEFAULTS.__getstate__() | arguments | how[ladder]).values())
         self.times = np.array([t_end])
 
     def __call__(self) -> tuple[float, float, float]:
@@ -105,37 +112,46 @@ def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
 def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
-    if scene.slope:
-        return ("contact", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
-    if not rolls:  # "exact" shows that a model without slip has no answer
-        return ("contact", "exact")
-    return ("flow", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
+    if scene.slope or rolls:
+        return ("contact" if scene.slope else "flow", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
+    return ("contact", "exact")  # "exact" shows that a model without slip has no answer
 
 
 def _own(spec: Any) -> Contender:
     """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
-    if spec == "flow":
-        run = Run("flow", "rolling", "exact", "", tags=("own", "exact"))
-        return Contender(run, None, _prepared_flow)
     if isinstance(spec, str):
-        return _simulation(spec, _named(spec))
-    if not isinstance(spec, Mapping) or not all(isinstance(key, str) for key in spec):
+        name, arguments = spec, _named(spec)
+    elif isinstance(spec, Mapping) and all(isinstance(key, str) for key in spec):
+        arguments = dict(spec)
+        name = arguments.pop("name", "/".join(map(str, arguments.values())))
+    else:
         raise TypeError(
             f"methods must be names, or mappings of arguments of simulate, got {shown(spec)} "
             "among them"
         )
-    arguments = dict(spec)
-    name = arguments.pop("name", "/".join(map(str, arguments.values())))
     if not isinstance(name, str):
         raise TypeError(f"name of a method must be a string, got {shown(name)}")
-    return _simulation(name, arguments)
+    if arguments is None:
+        run = Run(name, "rolling", "exact", "", tags=("own", "exact"))
+        return Contender(run, None, _prepared_flow)
+    for argument in arguments:
+        choice("arguments of methods", argument, tuple(_ARGUMENTS))
+    model = choice("model", arguments.get("model", "rolling"), MODELS)
+    method = choice("method", arguments.get("method", "auto"), METHODS)
+    ladder: str | None = TOLERANCES if method in _PAIRS else STEPS
+    if method == "exact" or model == "contact":
+        ladder = None
+    default = DEFAULTS.stabilization if model == "multipliers" else ""
+    stabilization = str(arguments.get("stabilization", default))
+    run = Run(name, model, method, stabilization, tags=("own", model))
+    return Contender(run, ladder, partial(_Simulation, {"model": model, **arguments}, ladder))
 
 
-def _named(name: str) -> dict[str, Any]:
-    """Return the arguments of `simulate` that a name stands for."""
-    if name in METHODS[1:]:
-        return {"model": "rolling", "method": name}
-    parts = name.split("/")
+def _named(name: str) -> dict[str, Any] | None:
+    """Return the arguments of `simulate` that a name stands for, None for "flow"."""
+    if name == "flow":
+        return None
+    parts = ["rolling", name] if name in METHODS[1:] else name.split("/")
     if len(parts) <= 3 and all(
         map(tuple.__contains__, (MODELS[1:], METHODS, STABILIZATIONS), parts)
     ):
@@ -144,28 +160,6 @@ def _named(name: str) -> dict[str, Any]:
     raise ValueError(
         f"methods must be among {listed}, or 'model/method/stabilization', got {shown(name)}"
     )
-
-
-def _simulation(name: str, arguments: dict[str, Any]) -> Contender:
-    for argument in arguments:
-        choice("arguments of methods", argument, tuple(_ARGUMENTS))
-    model = choice("model", arguments.get("model", "rolling"), MODELS)
-    method = choice("method", arguments.get("method", "auto"), METHODS)
-    ladder: str | None = TOLERANCES if method in _PAIRS else STEPS
-    if method == "exact" or model == "contact":
-        ladder = None
-
-    def prepare(scene: Scene, t_end: float, setting: float) -> _Simulation:
-        how = {"model": model, **arguments}
-        if ladder == TOLERANCES:
-            how |= {"rtol": setting, "atol": setting / _RELATIVE}
-        if ladder == STEPS:
-            how |= {"step": setting}
-        return _Simulation(scene, t_end, how)
-
-    default = DEFAULTS.stabilization if model == "multipliers" else ""
-    stabilization = str(arguments.get("stabilization", default))
-    return Contender(Run(name, model, method, stabilization, tags=("own", model)), ladder, prepare)
 
 
 def of_peer(peer: Any) -> Contender:

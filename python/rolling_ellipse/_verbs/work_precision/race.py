@@ -7,7 +7,7 @@ import math
 import platform
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from datetime import date
 from importlib.metadata import version
@@ -33,6 +33,7 @@ from .results import WorkPrecision
 from .run import COMPLETED, NOT_RUN, Run
 from .truth import Judge, Truth, rolls_for_certain
 
+_TOLERANCES = [10.0**-k for k in range(2, 15)]
 _MOST = 1_000_000  # rounds, samples
 _JUDGING = 0.6  # share of max_seconds in which every run is made once
 _SHORTEST = 1e-3  # of a timing [s]: shorter calls are repeated
@@ -103,27 +104,21 @@ def work_precision(
     ends = _numbers("t_end", t_end, "a time or increasing times [s]")
     if any(after <= before for before, after in pairwise(ends)):
         raise ValueError(f"t_end must be a time or increasing times [s], got {shown(t_end)}")
-    rtols = [10.0**-k for k in range(2, 15)]
-    if tolerances is not None:
-        rtols = _numbers("tolerances", tolerances, "a sequence of positive numbers")
-    lengths = [] if steps is None else _numbers("steps", steps, "a sequence of positive numbers")
+    rtols = _TOLERANCES if tolerances is None else _numbers("tolerances", tolerances)
+    lengths = [] if steps is None else _numbers("steps", steps)
     samples = whole_within("samples", samples, _MOST)
     rounds = whole_within("rounds", rounds, _MOST)
     seconds = positive("max_seconds", max_seconds)
     if reference is not None and not callable(reference):
         raise TypeError(f"reference must be a function of times or None, got {shown(reference)}")
-    try:
-        rivals = list(peers)
-    except TypeError:
-        raise TypeError(f"peers must be a sequence, got {shown(peers)}") from None
+    if not isinstance(peers, Iterable):
+        raise TypeError(f"peers must be a sequence, got {shown(peers)}")
     contenders = own_contenders(methods, scene, rolls_for_certain(scene))
-    contenders += [of_peer(peer) for peer in rivals]
+    contenders += map(of_peer, peers)
     names = [contender.run.name for contender in contenders]
-    if not names:
-        raise ValueError("methods and peers must name at least one contender, got none")
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"methods and peers must have names of their own, got {name!r} twice")
+    if not names or len(set(names)) < len(names):
+        twice = next((f"{name!r} twice" for name in names if names.count(name) > 1), "none")
+        raise ValueError(f"methods and peers must be some, with names of their own, got {twice}")
     judges = [Judge(scene, end, samples, reference) for end in ends]
     ladders = []
     for judge in judges:
@@ -154,7 +149,7 @@ def work_precision(
     )
 
 
-def _numbers(name: str, values: Any, what: str) -> list[float]:
+def _numbers(name: str, values: Any, what: str = "a sequence of positive numbers") -> list[float]:
     found = np.atleast_1d(array(name, values))
     if found.ndim != 1 or found.size == 0:
         raise ValueError(f"{name} must be {what}, got {shown(values)}")
