@@ -134,7 +134,7 @@ def work_precision(
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,
-        runs=tuple(attempt.run() for attempt in attempts),
+        runs=tuple(attempt.timed() for attempt in attempts),
         references=tuple(judge.reference for judge in judges),
         machine={
             "processor": platform.machine(),
@@ -160,45 +160,46 @@ class _Attempt:
     """A contender at one setting: judged once, and timed if it has an answer."""
 
     def __init__(self, contender: Contender, judge: Judge, setting: float) -> None:
-        self.contender, self.judge, self.setting = contender, judge, setting
+        self.contender, self.judge = contender, judge
+        self.run = replace(contender.run, setting=setting, t_end=judge.t_end)
         self.call: Any = None  # the timed call; None before the first answer
-        self.status, self.reason = COMPLETED, ""
-        self.facts: dict[str, Any] = {}  # fields of its Run
         self.setup = self.spent = 0.0  # time of `judge_once` [s]: its set-up, and the rest
         self.times: list[float] = []  # [s]
+
+    def note(self, status: str, reason: str, **figures: Any) -> None:
+        self.run = replace(self.run, status=status, reason=reason, **figures)
 
     def judge_once(self) -> None:
         """Set it up, run it and judge it; a failure is kept as its status."""
         begin = time.perf_counter()
         try:
-            self._run()
+            self._judge()
         except Stopped as stopped:
-            self.status, self.reason = stopped.args
+            self.note(*stopped.args)
         except ValueError as refusal:
-            self.status, self.reason = "REFUSED", str(refusal)
+            self.note("REFUSED", str(refusal))
         except Exception as failure:  # a peer may raise anything
-            self.status, self.reason = "FAILED", f"{type(failure).__name__}: {failure}"
+            self.note("FAILED", f"{type(failure).__name__}: {failure}")
         self.spent = time.perf_counter() - begin - self.setup
 
-    def _run(self) -> None:
+    def _judge(self) -> None:
         begin = time.perf_counter()
-        call = self.contender.prepare(self.judge.scene, self.judge.t_end, self.setting)
+        call = self.contender.prepare(self.judge.scene, self.judge.t_end, self.run.setting)
         self.setup = time.perf_counter() - begin
         self.once, end = self._twice(call)
         counts = dict(getattr(call, "counts", None) or {})
-        self.facts = {
-            name: int(counts.get(name, 0)) for name in ("steps", "rejected", "evaluations")
-        }
-        self.facts["setup"] = self.setup
-        theta, omega, x = (float(value) for value in end)
-        if not all(math.isfinite(value) for value in (theta, omega, x)):
-            raise ArithmeticError(f"it returned theta, omega, x = {(theta, omega, x)}")
+        figures = {name: int(counts.get(name, 0)) for name in ("steps", "rejected", "evaluations")}
+        self.note(COMPLETED, "", setup=self.setup, **figures)
+        state = tuple(float(value) for value in end)
+        if len(state) != 3 or not all(map(math.isfinite, state)):
+            raise ArithmeticError(f"it returned theta, omega, x = {state}")
         motion = None
         if hasattr(call, "sample"):
-            self.facts["samples_time"], motion = self._twice(lambda: call.sample(self.judge.times))
-        self.facts["errors"] = self.judge.errors(motion, (theta, omega, x))
-        self.call, self.reason = call, getattr(call, "advice", "")
-        self.repeats = 1 + int(_SHORTEST / self.once)  # calls in one timing
+            seconds, motion = self._twice(lambda: call.sample(self.judge.times))
+            self.note(COMPLETED, "", samples_time=seconds)
+        errors = self.judge.errors(motion, state)
+        self.note(COMPLETED, getattr(call, "advice", ""), errors=errors)
+        self.call, self.repeats = call, 1 + int(_SHORTEST / self.once)  # calls in one timing
 
     def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
         """Return the time of a second call and its answer; a longer first call is set-up."""
@@ -213,7 +214,7 @@ class _Attempt:
     def expected(self, setting: float) -> float:
         """Return how long being judged at a finer setting may take, without set-up [s]."""
         power = 1.0 if self.contender.ladder == STEPS else _POWER_OF_TOLERANCES
-        return self.spent * math.pow(self.setting / setting, power)
+        return self.spent * math.pow(self.run.setting / setting, power)
 
     def time_once(self) -> None:
         begin = time.perf_counter()
@@ -221,16 +222,12 @@ class _Attempt:
             self.call()
         self.times.append((time.perf_counter() - begin) / self.repeats)
 
-    def run(self) -> Run:
-        if self.times:
-            least = min(self.times)
-            self.facts["time"] = least
-            if len(self.times) > 1:
-                self.facts["spread"] = statistics.median(self.times) / least - 1
-        return replace(
-            self.contender.run, setting=self.setting, t_end=self.judge.t_end, status=self.status,
-            reason=self.reason, **self.facts,
-        )  # fmt: skip
+    def timed(self) -> Run:
+        if not self.times:
+            return self.run
+        least = min(self.times)
+        spread = statistics.median(self.times) / least - 1 if len(self.times) > 1 else math.nan
+        return replace(self.run, time=least, spread=spread)
 
 
 def _judge_all(
@@ -245,15 +242,15 @@ def _judge_all(
     share, spent, done = seconds / len(ladders), 0.0, 0
     for rung in range(max(map(len, ladders))):
         for ladder in ladders:
-            if rung >= len(ladder) or ladder[rung].status == NOT_RUN:
+            if rung >= len(ladder) or ladder[rung].run.status == NOT_RUN:
                 continue
             attempt, before = ladder[rung], ladder[:rung]
-            expected = before[-1].expected(attempt.setting) if before else 0.0
+            expected = before[-1].expected(attempt.run.setting) if before else 0.0
             used = sum(each.spent for each in before)
             if before and used + expected > share and expected >= seconds - spent:
                 why = f"max_seconds: a run that may take {expected:.2g} s is more than its share"
                 for each in ladder[rung:]:
-                    each.status, each.reason = NOT_RUN, why
+                    each.note(NOT_RUN, why)
                 done += len(ladder) - rung
             else:
                 attempt.judge_once()
