@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -17,15 +17,14 @@ from matplotlib.text import Text
 from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, NullLocator
 
 from .._ask.check import choice, shown
-from .._verbs.work_precision.run import ERRORS, OF_STATES, QUANTITIES, Run
-from .._verbs.work_precision.verdict import EQUAL, Gaps, gaps
+from .._verbs.work_precision.run import EQUAL, ERRORS, OF_STATES, QUANTITIES, Run
 from .axes import Artists, axes_of, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
 from .legends import name_curves
 from .palette import palette_of
 
 if TYPE_CHECKING:  # results.py imports this file
-    from .._verbs.work_precision.results import WorkPrecision
+    from .._verbs.work_precision.results import Gaps, WorkPrecision
 
 _NAMES = {
     "largest": "largest error of the state", "final": "error of the state at the end",
@@ -88,7 +87,7 @@ def draw(
         return _multiples(race)
     own_figure = ax is None
     ax = axes_of(ax, (8, 5.6))
-    chart = WorkPrecisionChart((ax,), gaps(runs), **_drawn(ax, race, None))
+    chart = WorkPrecisionChart((ax,), race.gaps, **_drawn(ax, race, None))
     below = _below(ax, race, chart.gaps, found.machine) if own_figure else None
     ax.get_figure(root=True).draw_without_rendering()  # type: ignore[union-attr]
     return WorkPrecisionChart(**{**vars(chart), **_named(ax, race, chart), "below": below})
@@ -110,9 +109,10 @@ class _Race:
     """The points of each contender, and the fronts of the two camps."""
 
     def __init__(
-        self, found: WorkPrecision, x: str, y: str, runs: Sequence[Run], highlight: Any
+        self, found: WorkPrecision, x: str, y: str, runs: tuple[Run, ...], highlight: Any
     ) -> None:
         self.x, self.y, self.runs = x, y, runs
+        self.gaps = replace(found, runs=runs).gaps(t_end=runs[0].t_end)
         limits = found.judged_by(runs[0].t_end).limits(x) if x in OF_STATES else ()
         self.limit = float(np.nanmax([_LEAST, *limits]))  # attained and judged at best
         self.points: dict[str, list[Point]] = {}
@@ -334,4 +334,4 @@ def _multiples(race: _Race) -> WorkPrecisionChart:
             for name in members
         }  # fmt: skip
         names |= label_lines(ax, labels, _TEXT)
-    return WorkPrecisionChart(tuple(panels[: len(libraries)]), gaps(race.runs), lines, names=names)
+    return WorkPrecisionChart(tuple(panels[: len(libraries)]), race.gaps, lines, names=names)

@@ -1,31 +1,79 @@
-"""The results of a race: runs, references, and comparisons of the runs."""
+"""The results of a race: comparisons of the runs, the verdict in sentences, and files."""
 
 from __future__ import annotations
 
 import json
 import math
 import os
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import groupby
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import choice, file_name, number, shown
-from ..._ask.printing import Row, html_table
+from ..._ask.printing import Row, html_table, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, parsed, restored
 from ..._motion.export.tables import required
-from .run import ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, record
-from .verdict import DECADES, Gaps, gaps, verdict
+from .run import (
+    COMPLETED,
+    EQUAL,
+    ERRORS,
+    NOT_RUN,
+    QUANTITIES,
+    Reference,
+    Run,
+    by_name,
+    plain,
+    record,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
     from pandas import DataFrame
 
     from ..._pictures.work_precision import WorkPrecisionChart
 
 _SCHEMA = 2
+_DECADES = tuple(10.0**-k for k in range(2, 15))
+_POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
+_HEAD = ("no answer of", "at setting", "why")
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Runs of one contender that have the same status, which is not an answer, or a poor one."""
+
+    name: str
+    settings: str  # of these runs
+    runs: int  # their number
+    answers: int  # number of the contender's runs that have an answer
+    status: str  # as of `Run`; "COMPLETED" where all answers are poor
+    reason: str  # of the first of these runs
+
+    def row(self) -> Row:
+        """Return the cells of a row of the table."""
+        status = "" if self.status in (COMPLETED, NOT_RUN) else f"{self.status}, "
+        return self.name, self.settings, status + self.reason
+
+
+class Gaps(tuple[Gap, ...]):
+    """A tuple of gaps that prints as a table."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return text_table([_HEAD, *(gap.row() for gap in self)]) if self else "no gaps"
+
+    def _repr_html_(self) -> str:
+        return html_table("", [gap.row() for gap in self], _HEAD)
+
+    def to_dataframe(self) -> DataFrame:
+        """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each gap."""
+        frame: DataFrame = required("pandas", "to_dataframe").DataFrame(map(asdict, self))
+        return frame
 
 
 @dataclass(frozen=True, repr=False)
@@ -107,7 +155,7 @@ class WorkPrecision:
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
         found: dict[str, tuple[float, ...]] = {}
-        for decade in DECADES:
+        for decade in _DECADES:
             least = self.least(decade, x=x, y=y, t_end=t_end)
             if self.not_run(decade, x=x, y=y, t_end=t_end):
                 continue
@@ -122,7 +170,24 @@ class WorkPrecision:
         The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
-        return verdict(self, self.judged_by(t_end))
+        reference, runs = self.judged_by(t_end), self.of(t_end)
+        floor, attainable = reference.limits("largest")
+        limits = [f"its own error {floor:.1e}"] if floor else []
+        if not math.isnan(attainable):
+            limits.append(f"attainable {attainable:.1e}")
+        known = f" ({'; '.join(limits)})" if limits else ""
+        alone = by_name(run for run in runs if run.completed and math.isnan(run.errors.linf))
+        but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
+        head = (
+            f"To t = {reference.t_end:.6g} s, judged by {reference.name}{known}, at the sample "
+            f"times and the end{but}:"
+        )
+        table = {decade: self.least(decade, t_end=t_end) for decade in _DECADES}
+        lines = [head, *self._leaders(runs, {decade: row for decade, row in table.items() if row})]
+        if none := [decade for decade, row in table.items() if not row]:
+            why = ", which the reference could not tell" if none[0] < floor else ""
+            lines.append(f"nobody has reached an error {_span(none)}{why}")
+        return "\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))])
 
     def gaps(self, *, t_end: float | None = None) -> Gaps:
         """Return the table of the runs that failed, were refused or were not run, with reasons.
@@ -130,7 +195,57 @@ class WorkPrecision:
         Contenders whose answers all err by more than 1e-2 are there, too. It prints as a table, and
         has `to_dataframe`.
         """
-        return gaps(self.of(t_end))
+        rows = []
+        for name, found in by_name(self.of(t_end)).items():
+            made = [run for run in found if run.status != NOT_RUN]
+            answers = [run for run in made if run.completed]
+            for status in dict.fromkeys(run.status for run in found if not run.completed):
+                those = [run for run in found if run.status == status]
+                ends = dict.fromkeys(f"{run.setting:.0e}" for run in (those[0], those[-1]))
+                where, reason = " to ".join(ends).replace("nan", "all"), those[0].reason
+                if status == NOT_RUN:
+                    where = f"beyond {made[-1].setting:.0e}" if made else "at all"
+                    so_far = f" ({_brief(answers[-1].time)} a call so far)" if answers else ""
+                    reason = f"no time left{so_far}"
+                rows.append(Gap(name, where, len(those), len(answers), status, reason))
+            nearest = min((run.errors.largest for run in answers), default=0.0)
+            if nearest > _POOR and len(made) == len(found):
+                reason = f"came no nearer than {nearest:.1e}"
+                rows.append(Gap(name, "any", len(answers), len(answers), COMPLETED, reason))
+        return Gaps(rows)
+
+    def _leaders(self, runs: Sequence[Run], table: dict[float, dict[str, float]]) -> Iterator[str]:
+        """Yield a line for the fastest method in each range of error, and one for the runner-up.
+
+        The table has the least times by decade and name. A runner-up has another method.
+        """
+        contenders = by_name(runs)
+        method = {name: (those[0].model, those[0].method) for name, those in contenders.items()}
+        ranked = []  # decade, the fastest, whether others might still be faster, the runner-up
+        for decade, least in table.items():
+            first, *others = sorted(least, key=least.__getitem__)
+            second = next((name for name in others if method[name] != method[first]), "")
+            is_open = self.not_run(decade, t_end=runs[0].t_end) != ()
+            ranked.append((decade, first, is_open, second))
+        for (name, is_open), rows in groupby(ranked, itemgetter(1, 2)):
+            held = list(rows)
+            rank = "the fastest that was run" if is_open else "unbeaten"
+            # the longest set-up: some contenders compile once, at their first setting
+            setup = max(run.setup for run in contenders[name] if run.completed)
+            decades = [decade for decade, *_ in held]
+            cost = f"{_brief(table[decades[-1]][name])}, set-up {_brief(setup)}"
+            yield f"{name} is {rank} {_span(decades)} ({cost});"
+            for rival, same in groupby(held, itemgetter(3)):
+                decades = [decade for decade, *_ in same]
+                if rival:
+                    factors = [table[decade][rival] / table[decade][name] for decade in decades]
+                    listed = (
+                        f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True)
+                    )
+                    equal = " (as good as equal)" if max(factors) <= EQUAL else ""
+                    yield f"    {rival} takes {', '.join(listed)}{equal}"
+                else:
+                    yield f"    no other {'was seen' if is_open else 'gets'} there {_span(decades)}"
 
     def plot(
         self, x: str = "largest", y: str = "time", tags: Sequence[str] | None = None,
@@ -243,3 +358,29 @@ class WorkPrecision:
         if json.dumps(found._about(), sort_keys=True) != json.dumps(about, sort_keys=True):
             raise ValueError("it must hold what save writes, in its types")
         return found
+
+
+def _without_answer(gaps: Gaps) -> Iterator[str]:
+    """Yield a line for each contender without an answer, with a poor one, or cut short."""
+    missing = sorted(gaps, key=lambda gap: gap.status == NOT_RUN)
+    late = {gap.name for gap in missing if gap.status == NOT_RUN}
+    for gap in missing:
+        name, settings, why = gap.row()
+        if gap.status == COMPLETED:
+            yield f"{name} {why}"
+        elif gap.status == NOT_RUN:
+            yield f"{name} was not run {settings}: {why}"
+        elif not gap.answers:
+            yield f"{name} reached nothing{' so far' if name in late else ''}: {why}"
+
+
+def _span(decades: Sequence[float]) -> str:
+    if len(decades) == 1:
+        return f"at {decades[0]:.0e}"
+    return f"from {decades[0]:.0e} to {decades[-1]:.0e}"
+
+
+def _brief(seconds: float) -> str:
+    sizes = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
+    unit = next((unit for unit, size in sizes.items() if seconds >= size), "ns")
+    return f"{seconds / sizes[unit]:.3g} {unit}"

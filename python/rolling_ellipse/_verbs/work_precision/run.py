@@ -20,6 +20,8 @@ QUANTITIES = (
     "evaluations", "t_end",
 )  # fmt: skip
 
+EQUAL = 1.2  # ratio of times that count as equal
+
 _Record = TypeVar("_Record")
 
 
