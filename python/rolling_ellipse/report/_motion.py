@@ -108,7 +108,7 @@ def _weight(body: Scene) -> FloatArray:
 def accelerations(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
+    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN if there is no solution."""
     matrix, rate = rows_and_rate(q, q_dot, body.a, body.b, printed)
     system = np.zeros((*q.shape[:-1], 9, 9))
     system[..., :5, :5] = np.diag(masses(body))
@@ -119,10 +119,7 @@ def accelerations(
     right[..., 5:] = -np.einsum("...ij,...j->...i", rate, q_dot)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
-    except np.linalg.LinAlgError:
-        if q.ndim > 1:  # some sample is singular: each is solved alone
-            found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
-            return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
+    except np.linalg.LinAlgError:  # a pivot of 0, out of numbers that are infinite
         solution = np.full_like(right, np.nan)
     return solution[..., :COORDINATES], solution[..., COORDINATES:]
 
@@ -168,7 +165,13 @@ def _integrated(
     samples, now, end = [y for _ in t[t == 0]], 0.0, float(t[-1])
     slopes = np.zeros((stages + 1, y.size))
     slopes[0] = slope(y)
-    h = how.step or _first_step(y, slopes[0], how, end)
+
+    def sizes(values: FloatArray, scale: FloatArray) -> FloatArray:
+        return values / (how.atol + how.rtol * np.abs(scale) + _TINY)
+
+    # the first step: 1/100 of the time in which y changes by its size
+    size, speed = (float(np.linalg.norm(sizes(values, y))) for values in (y, slopes[0]))
+    h = how.step or (min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end)
     for _ in range(how.max_steps):
         if len(samples) == t.size:
             break
@@ -180,8 +183,8 @@ def _integrated(
             slopes[i] = slope(after)
         growth = 1.0
         if how.step is None:
-            allowed = _allowed(np.maximum(np.abs(y), np.abs(after)), how)
-            error = h * (tableau["error"][0, : stages + 1] @ slopes) / allowed
+            error = h * (tableau["error"][0, : stages + 1] @ slopes)
+            error = sizes(error, np.maximum(np.abs(y), np.abs(after)))
             growth = _SAFETY * np.sqrt(np.mean(error**2)) ** (-1 / order)
             growth = float(np.fmin(np.fmax(growth, _MOST_SHRINKING), _MOST_GROWTH))
             if growth < _SAFETY:
@@ -201,15 +204,3 @@ def _integrated(
         now, y, slopes[0] = last, after, slopes[-1]
         h = how.step or h * growth
     return np.array(samples), "" if len(samples) == t.size else f"max_steps reached at {now:.6g} s"
-
-
-def _allowed(size: FloatArray, how: Settings) -> FloatArray:
-    """Return the allowed local error of each component: atol + rtol times its size."""
-    return how.atol + how.rtol * size + _TINY
-
-
-def _first_step(y: FloatArray, first: FloatArray, how: Settings, end: float) -> float:
-    """Return the first step: 1/100 of the time in which y changes by its size (HNW II.4)."""
-    allowed = _allowed(np.abs(y), how)
-    size, speed = float(np.linalg.norm(y / allowed)), float(np.linalg.norm(first / allowed))
-    return min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end

@@ -133,11 +133,9 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
 
     Parameters
     ----------
-    q : array_like, shape (..., 5)
-        Coordinates x, z, theta, psi, r [m, rad].
     omega : array_like, shape (...)
         theta_dot [rad/s].
-    a, b, printed
+    q, a, b, printed
         As for `constraint_matrix`.
 
     Returns

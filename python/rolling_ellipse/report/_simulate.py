@@ -102,10 +102,10 @@ def simulate(
             raise ValueError(
                 f"{name} must be None for the {equations} equations, got {shown(value)}"
             )
-    if method is not None and not corrected:
-        choice("method", method, ("dopri5", "rk4"))
     if method is None:
         method = "dopri5" if not corrected else "radau" if _is_ggl(stabilization) else "dop853"
+    if not corrected:
+        choice("method", method, ("dopri5", "rk4"))
     settings = replace(
         DEFAULTS,
         model="multipliers",

@@ -14,9 +14,9 @@ from ._rows import direction, masses, rows
 
 _EPS = float(np.finfo(float).eps)
 _ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: as large as one of `kinematics`
-_NAMES = (
-    ("f2", "m"), ("f3", "m"), ("f4", "rad"),
-    ("f1", "m/s"), ("rate of f2", "m/s"), ("rate of f3", "m/s"), ("rate of f4", "rad/s"),
+_NAMES = (  # name and unit of a constraint, and the row that may be as printed
+    ("f2", "m", ""), ("f3", "m", ""), ("f4", "rad", ""), ("f1", "m/s", "f1"),
+    ("rate of f2", "m/s", "df2"), ("rate of f3", "m/s", "df3"), ("rate of f4", "rad/s", "a44"),
 )  # fmt: skip
 
 
@@ -57,42 +57,28 @@ def violations(
     off = _ULPS * np.spacing(np.abs(state))
     off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # an error of psi - theta acts as one of psi
     moved = state + np.concatenate([np.zeros((1, 10)), np.diag(off), np.diag(-off)])
-    residuals = _residuals(moved[:, :5], moved[:, 5:], body, printed)
-    sizes = np.abs(residuals[0])
-    allowed = np.sum(np.abs(residuals[1:] - residuals[0]), axis=0)
-    allowed += _ULPS * _EPS * _terms(q, q_dot, body, printed)
-    changed = {"f1": "f1", "rate of f2": "df2", "rate of f3": "df3", "rate of f4": "a44"}
+    residuals, terms = _residuals(moved[:, :5], moved[:, 5:], body, printed)
+    allowed = np.sum(np.abs(residuals[1:] - residuals[0]), axis=0) + _ULPS * _EPS * terms[0]
     return tuple(
-        f"{name}{' as printed' if changed.get(name) in printed else ''} = {value:.6g} {unit}"
-        for (name, unit), value, size, limit in zip(
-            _NAMES, residuals[0], sizes, allowed, strict=True
-        )
-        if not size <= limit
+        f"{name}{' as printed' if row in printed else ''} = {value:.6g} {unit}"
+        for (name, unit, row), value, limit in zip(_NAMES, residuals[0], allowed, strict=True)
+        if not abs(value) <= limit
     )
-
-
-def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return the constraint matrix with rows 3 and 4 scaled so that they give rates of f3, f4."""
-    matrix = rows(q, body.a, body.b, printed)
-    matrix[..., 2, :] /= matrix[..., 2, 4, None].copy()
-    matrix[..., 3, :] /= matrix[..., 3, 3, None].copy()
-    return matrix
 
 
 def _residuals(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
-) -> FloatArray:
-    """Return the seven residuals f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return the residuals of `_NAMES`, and for each the sum of the sizes of its terms, (n, 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
-    velocity = np.einsum("...ij,...j->...i", _scaled_rows(q, body, printed), q_dot)
-    return np.concatenate([position, velocity], axis=-1)
-
-
-def _terms(q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return, for each of the seven residuals, the sum of the sizes of its terms."""
-    _, z, theta, psi, r = np.abs(q)
-    velocity = np.abs(_scaled_rows(q, body, printed)) @ np.abs(q_dot)
-    return np.concatenate([[z + r, 2 * r, theta + psi], velocity])
+    _, z, theta, psi, r = np.abs(q).T
+    matrix = rows(q, body.a, body.b, printed)
+    matrix /= matrix[:, range(4), (0, 1, 4, 3), None].copy()  # rows 3, 4 now give rates of f3, f4
+    velocity = np.einsum("...ij,...j->...i", matrix, q_dot)
+    sizes = np.einsum("...ij,...j->...i", np.abs(matrix), np.abs(q_dot))
+    return np.column_stack([position, velocity]), np.column_stack(
+        [z + r, 2 * r, theta + psi, sizes]
+    )
 
 
 def project(
