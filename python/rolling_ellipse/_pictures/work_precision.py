@@ -193,18 +193,13 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
     """Set the axes, with errors from 10 to what can be attained; mark the latter."""
     palette, x, y = palette_of(ax), race.x, race.y
-    ax.set(
-        xscale="log",
-        yscale="log",
-        xlabel=f"{_NAMES.get(x, x)} (smaller →)",
-        ylabel=_NAMES.get(y, y),
-    )
+    across, up = f"{_NAMES.get(x, x)} (smaller →)", _NAMES.get(y, y)
+    ax.set(xscale="log", yscale="log", xlabel=across, ylabel=up)
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(labelsize=_TEXT + 1)
     ax.grid(True, axis="y", color=palette.grey, alpha=0.2, lw=0.5)
     points = [point for points in race.points.values() for point in points]
-    errors = [at for at, _ in points] or [_MOST]
-    end = race.limit if x in OF_STATES else min(errors)
+    end = race.limit if x in OF_STATES else min((at for at, _ in points), default=_MOST)
     ax.set_xlim(_MOST, min(end, 1.0) / 3)
     values = np.log10([value for at, value in points if at <= _MOST] or [1.0])
     width, height = size_in_points(ax)
@@ -236,21 +231,18 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
     wide = size_in_points(ax)[0] * stride > 10 * _TEXT * (first - last)
     labels: dict[Any, Label] = {}
     for decade in both[::stride]:
-        (mine, own), (best, other) = _least(ours, decade), _least(others, decade)
-        low, high, color = mine, best, palette.blue
-        if best < mine:
-            low, high, color = best, mine, palette.orange
+        mine, best = _least(ours, decade), _least(others, decade)
+        (low, _), (high, loser) = sorted([mine, best])
+        color, word = (palette.blue, "faster") if low == mine[0] else (palette.orange, "slower")
         ends = np.array([(decade, high), (decade, low)])
         texts, sides = ["equal"], BELOW_FIRST
         if high > EQUAL * low:
             ax.plot(
                 *ends.T, color=color, lw=1, marker=CARETDOWN, ms=6, mew=0, markevery=[1], zorder=2.7
             )
-            word = ("faster" if mine < best else "slower") if race.y in _SECONDS else ""
             factor = f"{high / low:.0f} ×" if high > 9.95 * low else f"{high / low:.1f} ×"
-            loser = other if mine < best else own
-            texts, sides = [f"{factor} {word}\nthan {loser}"] if word and wide else [], BESIDE
-            texts.append(factor)
+            told = [f"{factor} {word}\nthan {loser}"] if race.y in _SECONDS and wide else []
+            texts, sides = [*told, factor], BESIDE
         labels[decade] = Label(texts, visible_part(ax, *ends.T), 0.5, sides, color, halo, must=True)
     named: dict[str, Label] = {}
     for front, color in ((ours, palette.blue), (others, palette.orange)):

@@ -170,21 +170,48 @@ class WorkPrecision:
         The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
-        reference, runs = self.judged_by(t_end), self.of(t_end)
+        reference, contenders = self.judged_by(t_end), by_name(self.of(t_end))
         floor, attainable = reference.limits("largest")
         limits = [f"its own error {floor:.1e}"] if floor else []
         if not math.isnan(attainable):
             limits.append(f"attainable {attainable:.1e}")
         known = f" ({'; '.join(limits)})" if limits else ""
-        alone = by_name(run for run in runs if run.completed and math.isnan(run.errors.linf))
+        alone = by_name(r for r in self.of(t_end) if r.completed and math.isnan(r.errors.linf))
         but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
-        head = (
+        lines = [
             f"To t = {reference.t_end:.6g} s, judged by {reference.name}{known}, at the sample "
             f"times and the end{but}:"
-        )
-        table = {decade: self.least(decade, t_end=t_end) for decade in _DECADES}
-        lines = [head, *self._leaders(runs, {decade: row for decade, row in table.items() if row})]
-        if none := [decade for decade, row in table.items() if not row]:
+        ]
+        method = {name: (runs[0].model, runs[0].method) for name, runs in contenders.items()}
+        ranked, none = [], []
+        for decade in _DECADES:
+            least = self.least(decade, t_end=t_end)
+            if not least:
+                none.append(decade)
+                continue
+            first, *others = sorted(least, key=least.__getitem__)
+            rival = next((name for name in others if method[name] != method[first]), "")
+            factor = least.get(rival, math.nan) / least[first]
+            is_open = self.not_run(decade, t_end=t_end) != ()  # others might still be faster
+            ranked.append((decade, (first, is_open), rival, least[first], factor))
+        for (name, is_open), rows in groupby(ranked, itemgetter(1)):
+            held = list(rows)
+            decades, _, _, times, _ = zip(*held, strict=True)
+            rank = "the fastest that was run" if is_open else "unbeaten"
+            # the longest set-up: some contenders compile once, at their first setting
+            setup = max(run.setup for run in contenders[name] if run.completed)
+            cost = f"{_brief(times[-1])}, set-up {_brief(setup)}"
+            lines.append(f"{name} is {rank} {_span(decades)} ({cost});")
+            for rival, same in groupby(held, itemgetter(2)):
+                decades, _, _, _, factors = zip(*same, strict=True)
+                if rival:
+                    parts = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True))
+                    equal = " (as good as equal)" if max(factors) <= EQUAL else ""
+                    lines.append(f"    {rival} takes {', '.join(parts)}{equal}")
+                else:
+                    seen = "was seen" if is_open else "gets"
+                    lines.append(f"    no other {seen} there {_span(decades)}")
+        if none:
             why = ", which the reference could not tell" if none[0] < floor else ""
             lines.append(f"nobody has reached an error {_span(none)}{why}")
         return "\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))])
@@ -213,39 +240,6 @@ class WorkPrecision:
                 reason = f"came no nearer than {nearest:.1e}"
                 rows.append(Gap(name, "any", len(answers), len(answers), COMPLETED, reason))
         return Gaps(rows)
-
-    def _leaders(self, runs: Sequence[Run], table: dict[float, dict[str, float]]) -> Iterator[str]:
-        """Yield a line for the fastest method in each range of error, and one for the runner-up.
-
-        The table has the least times by decade and name. A runner-up has another method.
-        """
-        contenders = by_name(runs)
-        method = {name: (those[0].model, those[0].method) for name, those in contenders.items()}
-        ranked = []  # decade, the fastest, whether others might still be faster, the runner-up
-        for decade, least in table.items():
-            first, *others = sorted(least, key=least.__getitem__)
-            second = next((name for name in others if method[name] != method[first]), "")
-            is_open = self.not_run(decade, t_end=runs[0].t_end) != ()
-            ranked.append((decade, first, is_open, second))
-        for (name, is_open), rows in groupby(ranked, itemgetter(1, 2)):
-            held = list(rows)
-            rank = "the fastest that was run" if is_open else "unbeaten"
-            # the longest set-up: some contenders compile once, at their first setting
-            setup = max(run.setup for run in contenders[name] if run.completed)
-            decades = [decade for decade, *_ in held]
-            cost = f"{_brief(table[decades[-1]][name])}, set-up {_brief(setup)}"
-            yield f"{name} is {rank} {_span(decades)} ({cost});"
-            for rival, same in groupby(held, itemgetter(3)):
-                decades = [decade for decade, *_ in same]
-                if rival:
-                    factors = [table[decade][rival] / table[decade][name] for decade in decades]
-                    listed = (
-                        f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True)
-                    )
-                    equal = " (as good as equal)" if max(factors) <= EQUAL else ""
-                    yield f"    {rival} takes {', '.join(listed)}{equal}"
-                else:
-                    yield f"    no other {'was seen' if is_open else 'gets'} there {_span(decades)}"
 
     def plot(
         self, x: str = "largest", y: str = "time", tags: Sequence[str] | None = None,
