@@ -33,14 +33,18 @@ def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
 
 
+def _last(*columns: Any) -> FloatArray:
+    """Return columns that broadcast, along a new last axis."""
+    return np.stack(np.broadcast_arrays(*columns), axis=-1)
+
+
 # -------------------------------------------------------------- sections 2.1 and 2.2 of the report
 
 
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return psi [rad] as eq 5 prints it, an arctan; right and continuous: `contact_angle`."""
     body = Scene(a, b)
-    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
-    return found
+    return np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
 
 
 def case_sign(theta: Any) -> FloatArray:
@@ -54,8 +58,7 @@ def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
     r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
-    found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
-    return found
+    return case_sign(angle) * r * np.sin(psi - angle)
 
 
 def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
@@ -69,8 +72,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     choice("case", case, _CASES)
     sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
     turning = rates[..., 3] - rates[..., 2]
-    found: FloatArray = rates[..., 0] + sign * (r * cosine * turning + rates[..., 4] * sine)
-    return found
+    return rates[..., 0] + sign * (r * cosine * turning + rates[..., 4] * sine)
 
 
 def f2(q: Any) -> FloatArray:
@@ -83,8 +85,7 @@ def f3(q: Any, *, a: float, b: float) -> FloatArray:
     """Return f3 of eq 10 [m], the error of r at the angle psi; eq 10 prints it right."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
-    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
-    return found
+    return r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
 
 
 def f4(q: Any, *, a: float, b: float) -> FloatArray:
@@ -103,19 +104,16 @@ def eqs_33_to_37(
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
     inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, coordinates("q_ddot", q_ddot)
-    one, two, three, four = _multipliers(multipliers)
+    one, two, three, four = np.moveaxis(_multipliers(multipliers), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
     lever = one * r * cosine - two * r * sine
-    return np.stack(
-        np.broadcast_arrays(
-            body.mass * ddot[..., 0] - one,
-            body.mass * ddot[..., 1] - two + body.mass * body.gravity,
-            inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
-            lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
-            one * sine - two * cosine + 2 * three * polar(psi, body.a, body.b) ** 1.5,
-        ),
-        axis=-1,
+    return _last(
+        body.mass * ddot[..., 0] - one,
+        body.mass * ddot[..., 1] - two + body.mass * body.gravity,
+        inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
+        lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
+        one * sine - two * cosine + 2 * three * polar(psi, body.a, body.b) ** 1.5,
     )
 
 
@@ -126,21 +124,18 @@ def equations_of_motion(
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
-    pull = np.einsum(
-        "...ij,...i->...j", rows(coordinates("q", q), body.a, body.b, ("tan",)),
-        np.stack(_multipliers(multipliers), axis=-1),
-    )  # fmt: skip
+    matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
+    pull = np.einsum("...ij,...i->...j", matrix, _multipliers(multipliers))
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
     forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces: + in eqs 36, 37
-    found: FloatArray = masses(body) * ddot + weight + forces * pull
-    return found
+    return masses(body) * ddot + weight + forces * pull
 
 
-def _multipliers(values: Any) -> tuple[FloatArray, ...]:
+def _multipliers(values: Any) -> FloatArray:
     found = finite("multipliers", values)
     if found.ndim == 0 or found.shape[-1] != 4:
         raise ValueError(f"multipliers must have 4 entries last, got shape {found.shape}")
-    return tuple(found[..., i] for i in range(4))
+    return found
 
 
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
@@ -150,15 +145,12 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
-    return np.stack(
-        np.broadcast_arrays(
-            x - stretch * cosine - (turn - spin) * r * sine,
-            z - stretch * sine - turn * r * sine + spin * r * cosine,
-            2 * stretch * polar(psi, body.a, body.b) ** 1.5 - turn * squeeze,
-            turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
-            - spin * body.a**2 * (tangent**2 + 1),
-        ),
-        axis=-1,
+    return _last(
+        x - stretch * cosine - (turn - spin) * r * sine,
+        z - stretch * sine - turn * r * sine + spin * r * cosine,
+        2 * stretch * polar(psi, body.a, body.b) ** 1.5 - turn * squeeze,
+        turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
+        - spin * body.a**2 * (tangent**2 + 1),
     )
 
 
@@ -167,8 +159,7 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
-    found: FloatArray = np.einsum("...ij,...j->...i", matrix, coordinates("q_dot", q_dot))
-    return found
+    return np.einsum("...ij,...j->...i", matrix, coordinates("q_dot", q_dot))
 
 
 # -------------------------------------------------------------------- section 3.3 of the report
@@ -184,14 +175,11 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     ddot = coordinates("q_ddot", q_ddot)
     third = _squeezed(eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity), psi, body)
     fourth = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    return np.stack(
-        np.broadcast_arrays(
-            body.mass * ddot[..., 0],
-            body.mass * (ddot[..., 1] - body.gravity),
-            third,
-            fourth / (4 * body.a**2 * body.b**2),
-        ),
-        axis=-1,
+    return _last(
+        body.mass * ddot[..., 0],
+        body.mass * (ddot[..., 1] - body.gravity),
+        third,
+        fourth / (4 * body.a**2 * body.b**2),
     )
 
 
@@ -204,8 +192,7 @@ def lambda4_numerator(
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
-    found: FloatArray = -body.mass * np.cos(theta) ** 2 * (turning + levers)
-    return found
+    return -body.mass * np.cos(theta) ** 2 * (turning + levers)
 
 
 def multipliers(
@@ -223,15 +210,14 @@ def multipliers(
     friction, normal = body.mass * ddot[..., 0], body.mass * (ddot[..., 1] + body.gravity)
     third = -normal * matrix[..., 1, 4] / matrix[..., 2, 4]
     fourth = -(normal * matrix[..., 1, 3] + third * matrix[..., 2, 3]) / matrix[..., 3, 3]
-    return np.stack(np.broadcast_arrays(friction, normal, third, fourth), axis=-1)
+    return _last(friction, normal, third, fourth)
 
 
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
     """Return values over 4 a^3 b^3 sin(2 psi) (a^2 - b^2), as in eqs 39 and 41; 0/0 is inf."""
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        found: FloatArray = np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
-    return found
+        return np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
 
 
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -241,7 +227,7 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
     c2, t2 = np.cos(theta) ** 2, np.tan(theta) ** 2
-    found: FloatArray = (
+    return (
         b**6 * spin * c2 + a**6 * spin * c2 + a**4 * b**2 * t2 + a**2 * b**4 * spin * c2
         - 4 * a**2 * b**2 * r * cosine * x
         + a**4 * b**2 * spin * c2 * t2 + 4 * a**2 * b**2 * z * r * sine
@@ -252,7 +238,6 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
         + 4 * a**4 * x * m * r * cosine * c2 * t2 - 4 * a**4 * z * m * r * sine * c2 * t2
         + 4 * a**4 * g * m * r * sine * c2 * t2
     )  # fmt: skip
-    return found
 
 
 def complete_f(
@@ -268,8 +253,7 @@ def complete_f(
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
     numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     turned = body.a**4 * np.tan(theta) ** 2 + body.b**4
-    found: FloatArray = -4 * (body.a * body.b) ** 2 * lever - turned * numerator
-    return found
+    return -4 * (body.a * body.b) ** 2 * lever - turned * numerator
 
 
 def eq_41(
@@ -288,8 +272,7 @@ def eq_41(
         spread = 2 * polar(psi, body.a, body.b) ** 1.5 * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
-    found: FloatArray = _head(q, q_ddot, body) - _squeezed(spread, psi, body)
-    return found
+    return _head(q, q_ddot, body) - _squeezed(spread, psi, body)
 
 
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -303,15 +286,13 @@ def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     _, psi, _, _, _ = state(q)
     factor = 2 * body.a**2 * np.cos(psi) ** 2 + 2 * body.b**2 * np.sin(psi)
     terms = complete_f(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    found: FloatArray = _head(q, q_ddot, body) - factor * terms
-    return found
+    return _head(q, q_ddot, body) - factor * terms
 
 
 def _head(q: Any, q_ddot: Any, body: Scene) -> FloatArray:
     _, _, _, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
-    found: FloatArray = body.mass * (cosine * (z - body.gravity) - x * sine)
-    return found
+    return body.mass * (cosine * (z - body.gravity) - x * sine)
 
 
 # ------------------------------------------------------- section 3.4 and appendix B of the report
@@ -344,8 +325,7 @@ def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
     body = Scene(a, b)
     t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 has psi here
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
-    found: FloatArray = body.a * body.b / np.hypot(across, along)
-    return found
+    return body.a * body.b / np.hypot(across, along)
 
 
 def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
@@ -353,11 +333,9 @@ def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)
-    found: FloatArray = coordinates("q", q)[..., 0] + radius * np.sin(angle)
-    return found
+    return coordinates("q", q)[..., 0] + radius * np.sin(angle)
 
 
 def contact_x(q: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C = x + h', the position of the contact along the ground [m]."""
-    found: FloatArray = coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)
-    return found
+    return coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)

@@ -72,8 +72,7 @@ class PrintedMotion:
         body = self.body
         x, z, omega = (self.q_dot[:, i] for i in range(3))
         kinetic = body.mass * (x**2 + z**2 + body.gyration2 * omega**2) / 2
-        found: FloatArray = kinetic + body.mass * body.gravity * self.q[:, 1]
-        return found
+        return kinetic + body.mass * body.gravity * self.q[:, 1]
 
     def constraint_residuals(self) -> ConstraintResiduals:
         """Return the residuals of the right constraints at each sample (see `constraints`)."""

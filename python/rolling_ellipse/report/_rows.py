@@ -22,14 +22,12 @@ _TINY = 1e-30  # size of the complex step: no truncation error in doubles, and n
 
 def masses(body: Scene) -> FloatArray:
     """Return the diagonal mass matrix: mass [kg] of x, z, inertia [kg m^2] of theta, 0, 0."""
-    found: FloatArray = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
-    return found
+    return np.array([1, 1, body.gyration2, 0, 0]) * body.mass
 
 
 def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
     """Return (a b/r)^2 [m^2], r the radius of the ellipse at the angle psi, real or complex."""
-    found: npt.NDArray[Any] = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
-    return found
+    return (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
 
 
 def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
@@ -152,5 +150,4 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
     with np.errstate(over="ignore"):  # rates beyond the largest double are infinite
-        rates: FloatArray = allowed * speed
-    return rates
+        return allowed * speed
