@@ -107,7 +107,7 @@ def _weight(body: Scene) -> FloatArray:
 def accelerations(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN if there is no solution."""
+    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
     matrix, rate = rows_and_rate(q, q_dot, body.a, body.b, printed)
     system = np.zeros((*q.shape[:-1], 9, 9))
     system[..., :5, :5] = np.diag(masses(body))
@@ -118,7 +118,10 @@ def accelerations(
     right[..., 5:] = -np.einsum("...ij,...j->...i", rate, q_dot)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
-    except np.linalg.LinAlgError:  # a pivot of 0, out of numbers that are infinite
+    except np.linalg.LinAlgError:
+        if q.ndim > 1:  # some sample is singular: each is solved alone
+            found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
+            return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
     return solution[..., :COORDINATES], solution[..., COORDINATES:]
 
