@@ -15,8 +15,7 @@ from ._equations import *  # noqa: F403
 from ._errata import Comparison, Erratum, errata, errata_table
 from ._motion import PrintedMotion
 from ._rows import CODE, EQ_32, MATRIX, MISPRINTS, consistent_rates, constraint_matrix
-from ._simulate import simulate
-from ._start import InconsistentStartWarning, Start
+from ._simulate import InconsistentStartWarning, Start, simulate
 
 __all__ = [
     "CODE", "EQ_32", "MATRIX", "MISPRINTS", "Comparison", "Erratum", "InconsistentStartWarning",

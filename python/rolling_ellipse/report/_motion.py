@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,7 +21,9 @@ from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
 from ._rows import masses, rows, rows_and_rate
-from ._start import Start
+
+if TYPE_CHECKING:
+    from ._simulate import Start
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0

@@ -120,13 +120,10 @@ class Judge:
         except ValueError:
             return np.full(times.size, math.nan)
         for name in _INEXACT:
-            value = getattr(scene, name)
-            share = _CHANGE
-            if name == "theta":
-                share = change = _CHANGE * max(1.0, abs(value))
-            elif value and math.isfinite(value):
-                change = share * value
-            else:
+            value: Any = getattr(scene, name) or 0.0
+            change = _CHANGE * (max(1.0, abs(value)) if name == "theta" else value)
+            share = change if name == "theta" else _CHANGE  # of the number's size
+            if change == 0 or not math.isfinite(change):
                 continue
             sides = []
             for changed in (value + change, value - change):
