@@ -13,13 +13,6 @@ from typing import Any, TypeVar
 from ..._motion.export.strict import field_names, require_names, scene_of
 
 COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
-ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
-OF_STATES = ERRORS[:4]
-QUANTITIES = (
-    *ERRORS, "setting", "time", "samples_time", "setup", "spread", "steps", "rejected",
-    "evaluations", "t_end",
-)  # fmt: skip
-
 EQUAL = 1.2  # ratio of times that count as equal
 
 _Record = TypeVar("_Record")
@@ -128,6 +121,9 @@ def record(kind: type[_Record], found: Any) -> _Record:
     return kind(**{each.name: _value(str(each.type), found[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
 
 
+ERRORS = ("largest", *field_names(Errors))
+OF_STATES = ERRORS[:4]
+QUANTITIES = (*ERRORS, *(each.name for each in fields(Run) if each.type in ("float", "int")))
 _RECORDS: dict[str, Any] = {kind.__name__: kind for kind in (Errors, Run, Reference)}
 
 
