@@ -34,34 +34,24 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     """Return the constraint matrix at a real or complex q, (..., 4, 5)."""
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
     sine, cosine = np.sin(psi - theta), np.cos(psi - theta)
-    matrix = np.zeros((*q.shape[:-1], 4, COORDINATES), dtype=q.dtype)
-    x_, z_, theta_, psi_, r_ = (matrix[..., i] for i in range(COORDINATES))
-
-    x_[..., 0] = 1
-    theta_[..., 0] = -r * cosine
-    if "f1" in printed:  # f1 is d(x + r sin(psi - theta))/dt, not x_dot - h theta_dot
-        psi_[..., 0] = r * cosine
-        r_[..., 0] = sine
-
+    # f1 as printed is d(x + r sin(psi - theta))/dt, not x_dot - h theta_dot
+    frozen = (r * cosine, sine) if "f1" in printed else (0, 0)
     sign = -1 if "df2" in printed else 1
-    z_[..., 1] = 1
-    theta_[..., 1] = -sign * r * sine
-    psi_[..., 1] = sign * r * sine
-    r_[..., 1] = -cosine
-
+    power, bend = (1, np.sin(psi) ** 2) if "df3" in printed else (1.5, np.sin(2 * psi))
     squeeze = a * b * (a - b) * (a + b)
-    if "df3" in printed:
-        psi_[..., 2] = -squeeze * np.sin(psi) ** 2
-        r_[..., 2] = 2 * polar(psi, a, b)
-    else:
-        psi_[..., 2] = -squeeze * np.sin(2 * psi)
-        r_[..., 2] = 2 * polar(psi, a, b) ** 1.5
-
     scale = 1 if "tan" in printed else np.cos(theta) ** 2
     tangent2 = np.tan(theta) ** 2 if "tan" in printed else np.sin(theta) ** 2
-    theta_[..., 3] = (1 if "a44" in printed else -1) * a * a * (tangent2 + scale)
-    psi_[..., 3] = a**4 * tangent2 / b**2 + b * b * scale
-    return matrix
+    a44 = (1 if "a44" in printed else -1) * a * a * (tangent2 + scale)
+    entries = (
+        *(1, 0, -r * cosine, *frozen),
+        *(0, 1, -sign * r * sine, sign * r * sine, -cosine),
+        *(0, 0, 0, -squeeze * bend, 2 * polar(psi, a, b) ** power),
+        *(0, 0, a44, a**4 * tangent2 / b**2 + b * b * scale, 0),
+    )
+    matrix = np.empty((*q.shape[:-1], len(entries)), dtype=q.dtype)
+    for place, entry in enumerate(entries):
+        matrix[..., place] = entry
+    return matrix.reshape(*q.shape[:-1], 4, COORDINATES)
 
 
 def rows_and_rate(
