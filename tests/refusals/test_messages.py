@@ -42,8 +42,8 @@ UNREACHABLE: dict[str, str] = {
     " for its first piece since angles below 1e-100 are none to endless friction",
     # reason of a run that has no answer, kept in the race
     "flow must be given a scene that rolls": "a reason",
-    "raise Stopped(": "a reason",
-    'NotImplementedError("': "a reason",
+    "raise IntegrationError(motion)": "a reason",
+    'NotImplementedError("no result")': "a reason",
     "it returned theta, omega, x": "a reason",
 }
 

@@ -2,5 +2,3 @@
 
 from .race import work_precision as work_precision
 from .results import WorkPrecision as WorkPrecision
-from .run import Errors as Errors
-from .run import Run as Run

@@ -14,7 +14,7 @@ from ..._ask.check import FloatArray, choice, shown
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS, settings
 from ..._motion.stability import advice
-from ..._motion.status import Status
+from ..._motion.status import IntegrationError, Status
 from ..._motion.trajectory import Trajectory
 from ..flow import arguments_of, flow, period
 from ..simulate import sample_times
@@ -31,10 +31,6 @@ _OF_MULTIPLIERS = (
     "multipliers/rk4/projection", "multipliers/rk4/projection+energy", "multipliers/radau/ggl",
 )  # fmt: skip
 _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
-
-
-class Stopped(Exception):
-    """A run that has no answer: the name of its status, and the reason."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +85,7 @@ class _Simulation:
         """Do all that `simulate` does except warn."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
-            raise Stopped(motion.status.name, motion.message)
+            raise IntegrationError(motion)
         self.advice, self.last = self.advice or advice(motion) or "", motion
         return motion
 

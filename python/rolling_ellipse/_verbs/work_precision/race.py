@@ -20,15 +20,8 @@ from ... import _core
 from ..._ask.check import array, positive, shown, whole_within
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene, require_scene
-from .contenders import (
-    STEPS,
-    TOLERANCES,
-    Contender,
-    Stopped,
-    default_steps,
-    of_peer,
-    own_contenders,
-)
+from ..._motion.status import IntegrationError
+from .contenders import STEPS, TOLERANCES, Contender, default_steps, of_peer, own_contenders
 from .results import WorkPrecision
 from .run import COMPLETED, NOT_RUN, Run
 from .truth import Judge, Truth, rolls_for_certain
@@ -174,8 +167,8 @@ class _Attempt:
         begin = time.perf_counter()
         try:
             self._judge()
-        except Stopped as stopped:
-            self.note(*stopped.args)
+        except IntegrationError as stopped:
+            self.note(stopped.trajectory.status.name, stopped.trajectory.message)
         except ValueError as refusal:
             self.note("REFUSED", str(refusal))
         except Exception as failure:  # a peer may raise anything
