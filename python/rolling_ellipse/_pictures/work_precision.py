@@ -113,8 +113,8 @@ class _Race:
     ) -> None:
         self.x, self.y, self.runs = x, y, runs
         self.gaps = replace(found, runs=runs).gaps(t_end=runs[0].t_end)
-        limits = found.judged_by(runs[0].t_end).limits(x) if x in OF_STATES else ()
-        self.limit = float(np.nanmax([_LEAST, *limits]))  # attained and judged at best
+        limits = found.judged_by(runs[0].t_end).limits(x)  # attained and judged at best
+        self.limit = float(np.nanmax([_LEAST, *limits]))
         self.points: dict[str, list[Point]] = {}
         for run in runs:
             at, value = max(run.value(x), self.limit), run.value(y)

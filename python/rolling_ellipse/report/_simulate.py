@@ -14,7 +14,7 @@ import numpy as np
 from .. import _core
 from .._ask.check import FloatArray, choice, finite, shown
 from .._ask.scene import Scene
-from .._ask.settings import DEFAULTS, Method, Settings, Stabilization
+from .._ask.settings import DEFAULTS, Method, Stabilization
 from .._motion.constraints import COORDINATES, constraints, kinematics
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
@@ -140,7 +140,7 @@ def simulate(
                 f"{name} must be None for the {equations} equations, got {shown(value)}"
             )
     if method is None:
-        method = "dopri5" if not corrected else "radau" if _is_ggl(stabilization) else "dop853"
+        method = "dopri5" if not corrected else "radau" if str(stabilization) == "ggl" else "dop853"
     if not corrected:
         choice("method", method, ("dopri5", "rk4"))
     settings = replace(
@@ -154,23 +154,15 @@ def simulate(
         max_events=1,  # the least allowed: "multipliers" has no events
         **{name: value for name, value in how.items() if value is not None},
     )
-    if corrected:
-        return _corrected(_checked_start(*state, body, (), consistent), times, body, settings)
     _core.validate_settings(settings.core, float(times[-1]))
-    names = misprints(CODE if printed is None else printed)
-    return follow(_checked_start(*state, body, names, consistent), times, body, names, settings)
-
-
-def _is_ggl(stabilization: object) -> bool:  # `==` of an array has many answers
-    return isinstance(stabilization, str) and stabilization == "ggl"
-
-
-def _corrected(start: Start, t: FloatArray, body: Scene, settings: Settings) -> Trajectory:
-    """Return the motion by the corrected equations, the model "multipliers", from a start."""
+    names = () if corrected else misprints(CODE if printed is None else printed)
+    start = _checked_start(*state, body, names, consistent)
+    if not corrected:
+        return follow(start, times, body, names, settings)
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
-    trajectory = Trajectory.computed(scene, settings, t, (start.q, start.q_dot))
-    report_status(trajectory, raise_on_failure=True, stacklevel=4)
+    trajectory = Trajectory.computed(scene, settings, times, (start.q, start.q_dot))
+    report_status(trajectory, raise_on_failure=True, stacklevel=3)
     return trajectory
 
 
@@ -231,9 +223,8 @@ def _residuals(
     matrix /= matrix[:, range(4), (0, 1, 4, 3), None].copy()  # rows 3, 4 now give rates of f3, f4
     velocity = np.einsum("...ij,...j->...i", matrix, q_dot)
     sizes = np.einsum("...ij,...j->...i", np.abs(matrix), np.abs(q_dot))
-    return np.column_stack([position, velocity]), np.column_stack(
-        [z + r, 2 * r, theta + psi, sizes]
-    )
+    terms = np.column_stack([z + r, 2 * r, theta + psi, sizes])
+    return np.column_stack([position, velocity]), terms
 
 
 def _project(

@@ -35,15 +35,10 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer with its ladder of settings (None: it has no setting).
-
-    `prepare(scene, t_end, setting)` returns a function without arguments that returns theta, omega,
-    x at the end. The function may have `sample`, a function of times that returns a Trajectory or
-    theta, omega, x; `counts` of its last call; and `advice` about its answer.
-    """
+    """A method or peer, by the protocol of peers; its call may also have `advice` on its answer."""
 
     run: Run  # its name, model, method, stabilization and tags
-    ladder: str | None
+    ladder: str | None  # None: it has no setting
     prepare: Callable[[Scene, float, float], Any]
 
 
