@@ -139,19 +139,16 @@ def _multipliers(values: Any) -> FloatArray:
 
 
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return f1 [m/s] and the rates of f2, f3 and f4 as eq 38 prints them, (..., 4)."""
-    body = Scene(a, b)
-    theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
+    """Return f1 [m/s] and the rates of f2, f3 and f4 as eq 38 prints them, (..., 4).
+
+    It prints the last two right.
+    """
+    _, _, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
-    squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
-    tangent = np.tan(theta)
-    return _last(
-        x - stretch * cosine - (turn - spin) * r * sine,
-        z - stretch * sine - turn * r * sine + spin * r * cosine,
-        2 * stretch * polar(psi, body.a, body.b) ** 1.5 - turn * squeeze,
-        turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
-        - spin * body.a**2 * (tangent**2 + 1),
-    )
+    first = x - stretch * cosine - (turn - spin) * r * sine
+    second = z - stretch * sine - turn * r * sine + spin * r * cosine
+    right = constraint_rates(q, q_dot, a=a, b=b)
+    return _last(first, second, right[..., 2], right[..., 3])
 
 
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:

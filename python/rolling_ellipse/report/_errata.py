@@ -105,12 +105,8 @@ def _row(row: int, printed: tuple[str, ...]) -> Callable[[], Comparison]:
 
 def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: Any) -> Any:
     """Return the term of lambda3 in the equation of psi, eq 37 [N m]."""
-    coefficient = constraint_matrix(q, a=a, b=b, printed=())[2, 3]
-    return (
-        sign
-        * coefficient
-        * equations.multipliers(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)[2]
-    )
+    third = equations.multipliers(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)[2]
+    return sign * constraint_matrix(q, a=a, b=b, printed=())[2, 3] * third
 
 
 def _fourth(power: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: Any) -> Any:
