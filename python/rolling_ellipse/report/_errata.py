@@ -170,10 +170,6 @@ def errata_table() -> str:
     for erratum in _ERRATA:
         cells = erratum.where, erratum.printed, erratum.finding, erratum.quantity
         found = erratum.evaluate()
-        lines.append(f"| {' | '.join(cells)} | {found.printed:.4g} | {_rounded(found.right)} |")
+        right = found.right if abs(found.right) > 1e-12 else 0.0  # a rounding error of 0
+        lines.append(f"| {' | '.join(cells)} | {found.printed:.4g} | {right:.4g} |")
     return "\n".join(lines)
-
-
-def _rounded(value: float) -> str:
-    """Return a right value in four digits, as text; sizes up to 1e-12 are rounding errors of 0."""
-    return f"{value if abs(value) > 1e-12 else 0.0:.4g}"

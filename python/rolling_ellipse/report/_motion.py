@@ -145,13 +145,14 @@ def follow(
         samples = samples.reshape(-1, 2 * COORDINATES)
         q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
         q_ddot, multipliers = accelerations(q, q_dot, body, printed)
-    lost = ~np.isfinite(np.concatenate([q_ddot, multipliers], axis=1)).all(axis=1)
-    if lost.any():
-        end = int(np.argmax(lost))
+    held = np.isfinite(np.concatenate([q_ddot, multipliers], axis=1)).all(axis=1)
+    end = int(np.argmin(np.append(held, False)))
+    if end < len(q):
         message = f"the equations have no finite solution at {t[end]:.6g} s"
-        q, q_dot, q_ddot, multipliers = q[:end], q_dot[:end], q_ddot[:end], multipliers[:end]
-    reached = t[: len(q)].copy()  # a copy: the caller may change the array t
-    return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)
+    return PrintedMotion(  # a copy of the times: the caller may change the array t
+        t[:end].copy(), q[:end], q_dot[:end], q_ddot[:end], multipliers[:end], body, printed, start,
+        message,
+    )  # fmt: skip
 
 
 # ------------------------------------------------------------------ explicit Runge-Kutta steps

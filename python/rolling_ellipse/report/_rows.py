@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .._ask.check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
+from .._ask.check import COORDINATES, FloatArray, choice, coordinates, finite, require_together
 from .._ask.scene import Scene
 
 #: Parts of the matrix that may be as printed: rows of f1, f2, f3 (eq 32), the sign of a44 (appendix
@@ -79,12 +79,8 @@ def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> Fl
 
 def misprints(printed: Any) -> tuple[str, ...]:
     """Return `printed` as a tuple of names out of MISPRINTS, or raise ValueError."""
-    names = tuple(printed) if isinstance(printed, (tuple, list)) else (printed,)
-    for name in names:
-        if not isinstance(name, str) or name not in MISPRINTS:
-            valid = ", ".join(map(repr, MISPRINTS))
-            raise ValueError(f"printed must hold names out of {valid}, got {shown(name)}")
-    return names
+    names = printed if isinstance(printed, (tuple, list)) else (printed,)
+    return tuple(choice("printed", name, MISPRINTS) for name in names)
 
 
 def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
