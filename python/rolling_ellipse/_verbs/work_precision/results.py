@@ -17,18 +17,7 @@ from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, parsed, restored
 from ..._motion.export.tables import required
-from .run import (
-    COMPLETED,
-    EQUAL,
-    ERRORS,
-    NOT_RUN,
-    QUANTITIES,
-    Reference,
-    Run,
-    by_name,
-    plain,
-    record,
-)
+from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, made, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -224,19 +213,19 @@ class WorkPrecision:
         """
         rows = []
         for name, found in by_name(self.of(t_end)).items():
-            made = [run for run in found if run.status != NOT_RUN]
-            answers = [run for run in made if run.completed]
+            tried = [run for run in found if run.status != NOT_RUN]
+            answers = [run for run in tried if run.completed]
             for status in dict.fromkeys(run.status for run in found if not run.completed):
                 those = [run for run in found if run.status == status]
                 ends = dict.fromkeys(f"{run.setting:.0e}" for run in (those[0], those[-1]))
                 where, reason = " to ".join(ends).replace("nan", "all"), those[0].reason
                 if status == NOT_RUN:
-                    where = f"beyond {made[-1].setting:.0e}" if made else "at all"
+                    where = f"beyond {tried[-1].setting:.0e}" if tried else "at all"
                     so_far = f" ({_brief(answers[-1].time)} a call so far)" if answers else ""
                     reason = f"no time left{so_far}"
                 rows.append(Gap(name, where, len(those), len(answers), status, reason))
             nearest = min((run.errors.largest for run in answers), default=0.0)
-            if nearest > _POOR and len(made) == len(found):
+            if nearest > _POOR and len(tried) == len(found):
                 reason = f"came no nearer than {nearest:.1e}"
                 rows.append(Gap(name, "any", len(answers), len(answers), COMPLETED, reason))
         return Gaps(rows)
@@ -345,7 +334,7 @@ class WorkPrecision:
         about = parsed("the file", content.decode("utf-8"))
         if (schema := about.get("schema")) != _SCHEMA:
             raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
-        found = record(cls, {name: about[name] for name in about.keys() - {"schema"}})
+        found = made(cls, {name: about[name] for name in about.keys() - {"schema"}})
         ends = {each.t_end for each in found.references}
         if not ends or ends != {run.t_end for run in found.runs}:
             raise ValueError("runs must be there, and end where the references do")

@@ -115,7 +115,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def record(kind: type[_Record], found: Any) -> _Record:
+def made(kind: type[_Record], found: Any) -> _Record:
     """Return a dataclass of this kind out of what `plain` makes of it."""
     require_names(f"a {kind.__name__}", found, field_names(kind))
     return kind(**{each.name: _value(str(each.type), found[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
@@ -130,7 +130,7 @@ _RECORDS: dict[str, Any] = {kind.__name__: kind for kind in (Errors, Run, Refere
 def _value(kind: str, value: Any) -> Any:
     """Return the value of a field of this type."""
     if kind in _RECORDS:
-        return record(_RECORDS[kind], value)
+        return made(_RECORDS[kind], value)
     if kind == "Scene":
         return scene_of({name: _unbounded(each) for name, each in value.items()})
     if kind.startswith("dict"):
