@@ -65,11 +65,9 @@ class _Simulation:
         setting: float,
     ) -> None:  # fmt: skip
         self.scene = replace(scene)  # a new scene, so that its own set-up is timed again
-        how: dict[str | None, dict[str, float]] = {
-            None: {}, TOLERANCES: {"rtol": setting, "atol": setting / _RELATIVE},
-            STEPS: {"step": setting},
-        }  # fmt: skip
-        self.settings = tuple((DEFAULTS.__getstate__() | arguments | how[ladder]).values())
+        how = {TOLERANCES: {"rtol": setting, "atol": setting / _RELATIVE}, STEPS: {"step": setting}}
+        given = arguments | how.get(ladder or "", {})
+        self.settings = tuple((DEFAULTS.__getstate__() | given).values())
         self.times = np.array([t_end])
 
     def __call__(self) -> tuple[float, float, float]:
