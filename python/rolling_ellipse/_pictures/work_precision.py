@@ -51,8 +51,8 @@ Point = tuple[float, float]  # error, value
 class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
-    `lines` and `names` have the names of contenders as keys, `fronts` and `arrows` "highlight" and
-    "others", and `factors` the errors. `gaps` is the table of missing runs, and `below` the text
+    `lines` and `names` have the names of contenders as keys, `fronts` "highlight" and "others", and
+    `factors` the errors. `gaps` is the table of missing runs, and `below` the text
     under an own figure: this table, where it fits, and the machine. `limit` exists for errors of
     the state.
     """

@@ -17,13 +17,12 @@ from .._ask.scene import Scene
 from .._motion.constraints import kinematics
 from .._verbs.classify import thresholds
 from .._verbs.simulate import simulate
-from ..geometry import contact_angle, contact_distance, support, support_slope
+from ..geometry import contact_angle, contact_distance, support_slope
 from . import _equations as equations
 from ._rows import CODE, EQ_32, consistent_rates, constraint_matrix
 from ._simulate import simulate as follow
 
 _BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
-_THETA, _OMEGA = 0.2, 3.2  # rad, rad/s: the body rolls through all quadrants
 
 
 class Comparison(NamedTuple):
@@ -60,20 +59,11 @@ class Erratum:
 
 
 def _rolling(theta: float, **other: float) -> dict[str, Any]:
-    """Return the arguments of all equations where a rolling body passes the angle theta.
-
-    It has the speed _OMEGA at the angle _THETA.
-    """
+    """Return the arguments of all equations where a rolling body passes the angle theta."""
     body = _BODY | other
-    axes = {"a": body["a"], "b": body["b"]}
-    k2 = Scene(**axes).gyration2
-
-    def inertia(angle: float) -> float:  # D = k^2 + r^2, about the contact, per mass [m^2]
-        return k2 + float(contact_distance(angle, **axes)) ** 2
-
-    fall = float(support(_THETA, **axes) - support(theta, **axes))
-    omega2 = (inertia(_THETA) * _OMEGA**2 + 2 * body["gravity"] * fall) / inertia(theta)
-    there = simulate(Scene(**body, theta=theta, omega=math.sqrt(omega2)), 0.0)
+    motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # through all quadrants
+    omega = motion.at(motion.when(theta=theta)[0]).omega
+    there = simulate(Scene(**body, theta=theta, omega=omega), 0.0)
     columns = there.x_ddot, there.z_ddot, there.omega_dot, there.psi_ddot, there.r_ddot
     state = {"q": there.q[0], "q_dot": there.q_dot[0], "q_ddot": np.stack(columns, axis=-1)[0]}
     return {"theta": theta, "impulse": 48.0, "d": 1.5, **body, **state}
