@@ -17,8 +17,6 @@ EQ_32 = ("f1", "df2", "df3", "tan")
 MATRIX = ("f1", "df2", "tan")
 CODE = ("f1", "df2", "a44", "tan")
 
-_TINY = 1e-30  # size of the complex step: no truncation error in doubles, and nothing cancels
-
 
 def masses(body: Scene) -> FloatArray:
     """Return the diagonal mass matrix: mass [kg] of x, z, inertia [kg m^2] of theta, 0, 0."""
@@ -52,18 +50,6 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     for place, entry in enumerate(entries):
         matrix[..., place] = entry
     return matrix.reshape(*q.shape[:-1], 4, COORDINATES)
-
-
-def rows_and_rate(
-    q: FloatArray, q_dot: FloatArray, a: float, b: float, printed: tuple[str, ...]
-) -> tuple[FloatArray, FloatArray]:
-    """Return the constraint matrix and its time derivative along q_dot.
-
-    The derivative is the imaginary part after a complex step along q_dot, exact to rounding
-    (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
-    """
-    stepped = rows(q + 1j * _TINY * q_dot, a, b, printed)
-    return stepped.real, stepped.imag / _TINY
 
 
 def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> FloatArray:
