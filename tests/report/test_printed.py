@@ -101,6 +101,14 @@ def test_samples_do_not_steer() -> None:
     assert run(q, q_dot, 0.1, printed=()).t.size == 1001
 
 
+def test_a_singular_sample_takes_nothing_from_those_before() -> None:
+    """Far off the constraints the system becomes singular in doubles, after a quarter second."""
+    own: Any = ([0.3, 1.5, 0.4, 5.0, 3.0], [1.0, 0.5, 2.0, 7.0, -3.0])
+    how: dict[str, Any] = {"printed": report.EQ_32, "method": "rk4", "step": 0.01}
+    with pytest.warns(report.InconsistentStartWarning):
+        assert run(*own, 0.5, consistent="as_given", **how).t[-1] >= 0.25
+
+
 def test_max_steps() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 1.0], printed=(), max_steps=3)
