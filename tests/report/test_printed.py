@@ -103,10 +103,10 @@ def test_samples_do_not_steer() -> None:
 
 def test_a_singular_sample_takes_nothing_from_those_before() -> None:
     """Far off the constraints the system becomes singular in doubles, after a quarter second."""
-    own: Any = ([0.3, 1.5, 0.4, 5.0, 3.0], [1.0, 0.5, 2.0, 7.0, -3.0])
-    how: dict[str, Any] = {"printed": report.EQ_32, "method": "rk4", "step": 0.01}
+    how: dict[str, Any] = {"consistent": "as_given", "method": "rk4", "step": 0.01}
     with pytest.warns(report.InconsistentStartWarning):
-        assert run(*own, 0.5, consistent="as_given", **how).t[-1] >= 0.25
+        motion = run([0.3, 1.5, 0.4, 5, 3], [1, 0.5, 2, 7, -3], 0.5, printed=report.EQ_32, **how)
+    assert motion.t[-1] >= 0.25
 
 
 def test_max_steps() -> None:
@@ -128,8 +128,11 @@ def test_exact_starts_are_consistent_and_others_are_not(
         q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
         if printed:
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
-        options: dict[str, Any] = {"a": a, "b": b, "printed": printed, "max_steps": 1}
-        assert run(q, q_dot, 0.0, **options).start.violations == ()
+        options: dict[str, Any] = {"equations": "printed", "printed": printed, "max_steps": 1}
+        options |= {"a": a, "b": b}
+        motion = report.simulate(q, q_dot, 0.0, **options)
+        assert isinstance(motion, report.PrintedMotion)
+        assert motion.start.violations == ()
         for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is noticed
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
