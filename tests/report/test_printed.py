@@ -128,11 +128,8 @@ def test_exact_starts_are_consistent_and_others_are_not(
         q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
         if printed:
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
-        options: dict[str, Any] = {"equations": "printed", "printed": printed, "max_steps": 1}
-        options |= {"a": a, "b": b}
-        motion = report.simulate(q, q_dot, 0.0, **options)
-        assert isinstance(motion, report.PrintedMotion)
-        assert motion.start.violations == ()
+        options: dict[str, Any] = {"a": a, "b": b, "printed": printed, "max_steps": 1}
+        assert run(q, q_dot, 0.0, **options).start.violations == ()
         for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is noticed
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
