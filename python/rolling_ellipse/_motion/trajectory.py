@@ -37,9 +37,8 @@ if TYPE_CHECKING:
     from typing import Self
 
     from .._pictures.animation import RollingAnimation
-    from .._pictures.constraints import Constraints
     from .._pictures.energy import Energy
-    from .._pictures.error import Error
+    from .._pictures.errors import Constraints, Error
     from .._pictures.forces import Forces
     from .._pictures.overview import Overview
     from .._pictures.paths import Paths

@@ -1,9 +1,9 @@
 """Pictures and films: everything that needs matplotlib, loaded when first asked for."""
 
 from .animation import animate as animate
-from .constraints import plot_constraints as plot_constraints
 from .energy import plot_energy as plot_energy
-from .error import plot_error as plot_error
+from .errors import plot_constraints as plot_constraints
+from .errors import plot_error as plot_error
 from .forces import plot_forces as plot_forces
 from .overview import plot as plot
 from .paths import plot_paths as plot_paths

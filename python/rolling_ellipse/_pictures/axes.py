@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from dataclasses import fields
 from functools import wraps
+from threading import RLock
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
@@ -16,10 +18,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from .._ask.check import positive, shown
-from .alone import Alone
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
+
+
+class Alone:
+    """A lock for what exists once in a process, free in a forked process: `with alone(): ...`."""
+
+    def __init__(self) -> None:
+        self._renew()
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._renew)
+
+    def _renew(self) -> None:
+        self._lock = RLock()
+
+    def __call__(self) -> RLock:
+        return self._lock
+
+
 # Figures opened by the running plot function
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number

@@ -15,9 +15,10 @@ from .._core import Mode
 from .._motion.relative_errors import energy_error
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, picture
-from .comparison import Comparison
+from .comparison import PLAIN, Comparison, Style
+from .errors import draw_errors
 from .legends import some_of
-from .panels import DASHES, draw_energies, draw_errors, finish
+from .panels import DASHES, draw_curve, finish
 from .sampling import for_dots, over_time
 
 KINDS = ("energies", "error")
@@ -82,3 +83,15 @@ def plot_energy(
     errors = ({style.label or "energy error": energy_error(motion)} for motion, style in shown)
     found = draw_errors(ax, shown, errors, f"relative energy {'change' if loses else 'error'}")
     return Energy(ax, (), (), (), found, finish([ax], shown, some_of(found)))
+
+
+def draw_energies(
+    ax: Axes, motion: Trajectory, style: Style = PLAIN
+) -> tuple[Line2D, Line2D, Line2D]:
+    """Draw the energy and its two parts."""
+    ax.set_ylabel("energy [J]")
+    return (
+        draw_curve(ax, motion, motion.energy, "total", 0, style),
+        draw_curve(ax, motion, motion.kinetic_energy, "kinetic", 1, style),
+        draw_curve(ax, motion, motion.potential_energy, "potential", 2, style),
+    )

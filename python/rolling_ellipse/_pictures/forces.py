@@ -12,15 +12,21 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.ticker import SymmetricalLogLocator
 
+from .._core import EventKind
 from .._motion.trajectory import Trajectory
 from .axes import Artists, panels_of, picture
-from .comparison import Comparison, Style
+from .comparison import PLAIN, Comparison, Style
 from .legends import name_curves, quantity_handles
+from .modes import events_shown
 from .palette import palette_of
-from .panels import DASHES, RANGE, Stems, dot, draw_forces, dress_forces, entries_of, finish
-from .sampling import are_ranges, curve, over_time
+from .panels import DASHES, RANGE, dot, draw_curve, entries_of, finish
+from .sampling import are_ranges, curve, over_time, ranges
 
+Stems = tuple[Line2D, Line2D]
+"""The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
+_SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
 _LIMIT = ":"
 _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
 
@@ -93,6 +99,81 @@ def plot_forces(
         handles += entries_of([upright for upright, _ in impulses])
     marks = finish(panels, shown, handles)
     return Forces(tuple(panels), normal, friction, limits, impulses, needed, available, marks)
+
+
+def draw_forces(
+    ax: Axes, motion: Trajectory, style: Style = PLAIN
+) -> tuple[Line2D, Line2D, PolyCollection | None]:
+    """Draw N and F over the band +-friction N of F; infinite friction has no band."""
+    limit = None
+    if math.isfinite(motion.scene.friction):
+        t, bound = motion.t, motion.scene.friction * motion.normal_force
+        if are_ranges(motion):
+            t, _, bound = ranges(t, bound)
+        colour, alpha = (style.colour, 0.15) if style.colour else (palette_of(ax).shade(0.25), 1.0)
+        limit = ax.fill_between(
+            t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
+        )
+    normal = draw_curve(ax, motion, motion.normal_force, "normal", 0, style)
+    friction = draw_curve(ax, motion, motion.friction_force, "friction", 1, style)
+    return normal, friction, limit
+
+
+def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
+    """Draw and return the impulses of impacts for each motion, and scale the force axis.
+
+    It is linear, or beyond the weight logarithmic, where spikes tower.
+    """
+    impulses = _draw_impulses(ax, shown)
+    ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
+    ax.set_ylabel("force [N]")
+    motions = shown.motions
+    weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
+    if ax.dataLim.height < 1e-9 * weight:  # flight all the time: the forces give no scale
+        ax.set_ylim(-weight, weight)
+    if max(float(np.max(np.abs(m.normal_force))) for m in motions) > _SPIKE * weight:
+        decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
+        ax.set_yscale("symlog", linthresh=decade, linscale=1.5)
+        ticks = SymmetricalLogLocator(base=10, linthresh=decade)
+        ticks.set_params(numticks=ax.yaxis.get_tick_space())
+        ax.yaxis.set_major_locator(ticks)
+        ax.set_ylabel(f"force [N]\nlog beyond {decade:g}")
+        _fit_lines(ax)
+    return impulses
+
+
+def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
+    """Draw impulses as stems as high as the mean force over a time that their label tells.
+
+    By this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's own
+    height becomes a force of some weights.
+    """
+    scene = shown.motions[0].scene
+    time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
+    drawn: list[Stems] = []
+    for motion, style in shown:
+        hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
+        given = [(hit.state_after.reaction_z, hit.state_after.reaction_x) for hit in hits]
+        name = f"impulse / {time:g} s" if hits else "_"
+        line: dict[str, Any] = {"lw": 1.2, "marker": "o", "ms": 2.5, "markevery": (1, 3)}
+        t, stem = np.repeat([hit.t for hit in hits], 3), [0, 1 / time, np.nan]
+        upright, along = (
+            ax.plot(
+                t, np.outer(np.where(part == 0, np.nan, part), stem).ravel(), **line,  # 0: no stem
+                color=style.colour or palette_of(ax).curves[rank], label="_" if rank else name,
+            )[0]
+            for rank, part in enumerate(np.reshape(given, (-1, 2)).T)
+        )  # fmt: skip
+        drawn.append((upright, along))
+    return tuple(drawn)
+
+
+def _fit_lines(ax: Axes) -> None:
+    """Make room for the lines alone, not for a limit of friction far below them."""
+    scale, values = ax.yaxis.get_transform(), [np.ravel(line.get_ydata()) for line in ax.lines]
+    low, high = scale.transform([f(np.concatenate(values)) for f in (np.nanmin, np.nanmax)])
+    air = 0.05 * (high - low)
+    ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:

@@ -26,6 +26,7 @@ from .palette import PLUM, palette_of
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
+QUARTER = math.pi / 2
 
 
 def tilted(scene: Scene) -> Affine2D:
@@ -41,6 +42,11 @@ def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse
     body.set_transform(tilted(scene) + ax.transData)
     ax.add_patch(body)
     return body
+
+
+def flat_angle(scene: Scene) -> float:
+    """Return the angle at which the body lies flat, up to half turns [rad]."""
+    return 0.0 if scene.a >= scene.b else QUARTER
 
 
 def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:

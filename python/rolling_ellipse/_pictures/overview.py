@@ -17,17 +17,11 @@ from .._motion.relative_errors import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
 from .axes import Artists, close, figure_of, picture
 from .comparison import Comparison
+from .energy import draw_energies
+from .errors import draw_errors
+from .forces import Stems, draw_forces, dress_forces
 from .legends import name_curves
-from .panels import (
-    Stems,
-    draw_curve,
-    draw_energies,
-    draw_errors,
-    draw_forces,
-    dress_forces,
-    dress_over_time,
-    note_of,
-)
+from .panels import draw_curve, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time
 from .strobe import Strobe, check_strobe, plot_strobe

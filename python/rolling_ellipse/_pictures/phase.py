@@ -1,4 +1,8 @@
-"""The phase plane: angular velocity over angle, and the curve between rocking and rolling over."""
+"""The phase plane: angular velocity over angle, and the curve between rocking and rolling over.
+
+This separatrix of rolling on level ground encloses one eye for each half turn, around the flat
+position.
+"""
 
 from __future__ import annotations
 
@@ -18,17 +22,18 @@ from .._ask.scene import Scene
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, picture
 from .comparison import Comparison
+from .ground import QUARTER, flat_angle
 from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground, ending_of
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
-from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
 _TICK = 0.45  # room for a tick [inch]
+_POINTS = 801, 100_000  # of a separatrix: in one half turn, and in total
 _SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
 
@@ -193,7 +198,7 @@ def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: boo
     elif fastest == 0 or fastest > _SMALL * _core.roll_over_speed(body.core):
         left = min(float(np.min(motion.theta)) for motion in motions)
         right = max(float(np.max(motion.theta)) for motion in motions)
-        eyes = flat_angles(left, right, body)
+        eyes = _flat_angles(left, right, body)
     else:
         ax.set_xlim(ax.get_xlim())
         ax.set_ylim(ax.get_ylim())
@@ -211,12 +216,12 @@ def _draw_portrait(
     view = ax.get_xlim()
     separatrices: list[Line2D] = []
     for scene, colour in bodies:
-        theta, speed = separatrix(scene, flat_angles(*view, scene))
+        theta, speed = _separatrix(scene, _flat_angles(*view, scene))
         separatrices += ax.plot(
             np.append(theta, theta[::-1]), np.append(speed, -speed[::-1]),
             color=colour, lw=1.1, ls=":", label="separatrix", zorder=1.9,
         )  # fmt: skip
-    flats = flat_angles(*view, bodies[0][0])
+    flats = _flat_angles(*view, bodies[0][0])
     palette = palette_of(ax)
     rest: dict[str, Any] = {
         "color": palette.grey, "ls": "none", "mfc": palette.background, "ms": 5, "zorder": 1.9,
@@ -254,3 +259,26 @@ def _quarters(angle: float, _position: float | None = None) -> str:
     count, below = (quarters // 2, "") if quarters % 2 == 0 else (quarters, "/2")
     factor = "" if abs(count) == 1 else str(abs(count))
     return f"{'−' if count < 0 else ''}{factor}π{below}"
+
+
+def _flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
+    """Return the flat positions whose half turns cover an interval of theta [rad]."""
+    flat = flat_angle(scene)
+    first = math.floor((left - flat) / math.pi + 0.5)
+    last = max(math.ceil((right - flat) / math.pi - 0.5), first)
+    return flat + math.pi * np.arange(first, last + 1, dtype=np.float64)
+
+
+def _separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return theta and speed of the curve, for the half turns around the flat positions.
+
+    Points are dense near the flat position, where the curve of a thin body is a spike.
+    """
+    count = int(np.clip(_POINTS[1] // flats.size, 3, _POINTS[0]))
+    width = min(scene.a, scene.b) / max(scene.a, scene.b)
+    reach = math.asinh(100 / width)  # to 0.01 rad from the tip; the curve is straight there
+    within = np.arctan(width * np.sinh(np.linspace(-reach, reach, count)))
+    within[[0, -1]] = -QUARTER, QUARTER
+    speed = _core.speed_to_the_tip(scene.core, flat_angle(scene) + within)
+    theta: FloatArray = np.add.outer(flats, within).ravel()
+    return theta, np.tile(speed, flats.size)

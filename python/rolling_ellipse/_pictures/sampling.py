@@ -19,7 +19,7 @@ from .._ask.check import FloatArray
 from .._motion.samples import ContactSamples, even_times
 from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
-from .separatrix import flat_angle
+from .ground import flat_angle
 
 FEW = 120.0  # most half turns or swings that are drawn one by one over time
 PARTS = 800  # parts of the time of a motion with more

@@ -24,12 +24,12 @@ from ..._ask.progress import reporting
 from ..._motion.export.atomic import replacing
 from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
-from ..alone import Alone
+from ..axes import Alone
 from ..energy import plot_energy
 from ..forces import plot_forces
+from ..ground import flat_angle
 from ..palette import palette_of
 from ..phase import folded, plot_phase
-from ..separatrix import flat_angle
 from .camera import cameras
 from .movies import Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .pace import Pace

@@ -42,7 +42,10 @@ class Strip:
         self._stands, motion = film.cameras.follows == "nothing", self.motion
         self._turns = film.turns[k]
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
-        self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
+        self._skids, self._slip = (
+            drawing.skids(motion),
+            motion.constraint_residuals().slip,
+        )
         self._captions = [self._caption(i) for i in range(film.t.size)]
         self._build()
 

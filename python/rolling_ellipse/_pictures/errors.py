@@ -1,0 +1,231 @@
+"""Errors of motions over time: missed constraints, and the distance from the exact motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from .._ask.check import FloatArray, choice, shown
+from .._ask.settings import DEFAULTS
+from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
+from .._motion.relative_errors import constraint_errors, worst
+from .._motion.trajectory import Trajectory
+from .axes import Artists, axes_of, panels_of, picture
+from .comparison import Comparison, Style
+from .legends import name_curves, some_of
+from .palette import palette_of
+from .panels import dot, finish
+from .sampling import are_ranges, for_dots, over_time, ranges
+
+QUANTITIES = {  # quantities and their symbols
+    "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
+    "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
+    "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
+}  # fmt: skip
+_UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
+_DOTS = (".", "x", "+", "1", "2")
+# The axis of errors reaches at least ten times this, so that rounding looks small
+_ROUNDING = 1e-13
+_LEAST = 1e-17  # lower end of the axis of errors
+
+
+def draw_errors(
+    ax: Axes,
+    shown: Comparison,
+    errors: Iterable[Mapping[str, FloatArray]],
+    label: str,
+    none: str = "exactly 0 throughout",
+    *,
+    dashed: bool = False,
+) -> tuple[Line2D, ...]:
+    """Draw the errors of each motion by their names, on a logarithmic axis; lines if `dashed`.
+
+    Else they are dots, because rounding jumps. The axis goes from below rounding to above the
+    largest. It leaves out exact zeros; the label of an error that is always 0, or that the ground
+    does not hold, says so, and a sentence tells of errors that have no place on it.
+    """
+    palette, lines = palette_of(ax), list[Line2D]()
+    colours = *palette.curves[:3], palette.plum, palette.grey
+    for (motion, style), own in zip(shown, errors, strict=True):
+        for rank, (name, values) in enumerate(own.items()):
+            t = motion.t
+            if not np.nan_to_num(values).any():
+                name += " = 0" if np.isfinite(values).any() else " free"
+            if are_ranges(motion):
+                t, _, values = ranges(t, values)
+            how: dict[str, Any] = {"ls": "none", "marker": style.marker or _DOTS[rank]}
+            how = {"ls": style.dash} | dot(t) if dashed else how | {"ms": 3, "mew": 0.7}
+            lines += ax.plot(t, values, color=style.colour or colours[rank], label=name, **how)
+    shown.restyle(*lines)
+    largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
+    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # first: nothing but zeros has no log scale
+    ax.set_yscale("log", nonpositive="mask")
+    ax.set_ylabel(label)
+    if largest < _LEAST:
+        ax.text(
+            0.5, 0.5, f"less than {_LEAST:g} throughout" if largest else none, ha="center",
+            va="center", transform=ax.transAxes, fontsize="small", color=palette.text,
+            bbox={"fc": palette.background, "ec": "none"},
+        )  # fmt: skip
+    return tuple(lines)
+
+
+@dataclass(frozen=True, repr=False)
+class Constraints(Artists):
+    """Artists of `plot_constraints`: lines[i] are those in axes[i], each labelled."""
+
+    axes: tuple[Axes, ...]
+    lines: tuple[tuple[Line2D, ...], ...]
+    marks: tuple[Artist, ...]
+
+
+@picture
+def plot_constraints(
+    trajectories: Trajectory | Sequence[Trajectory],
+    *,
+    ax: Axes | Sequence[Axes] | None = None,
+    figsize: tuple[float, float] | None = None,
+    labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
+) -> Constraints:
+    """Draw by how much motions miss their constraints, without units, on a logarithmic scale.
+
+    Lengths are divided by the longer semi-axis, and rates by the largest |omega| of the motion as
+    well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows f2,
+    f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
+    `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
+    place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
+    flight. Dots are at the samples, or, of fewer than 100, as fine as curves. Modes, events, lost
+    validity and long spans are drawn as in `plot_forces`.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    ax : matplotlib Axes or two of them, optional
+        Where to draw the panels; in a single one both are drawn, of each the worst. Without it,
+        in a new pyplot figure.
+    {figsize}
+    {motions}
+    """
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(for_dots)
+    panels = panels_of(ax, figsize)
+    names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
+    errors = zip(*(_errors_of(*each, len(panels)) for each in shown), strict=True)
+    lines = tuple(
+        draw_errors(panel, shown, of_all, name)
+        for panel, of_all, name in zip(panels, errors, names, strict=True)
+    )
+    if shown.alone:
+        name_curves(panels[-1], some_of(lines[-1]))
+    marks = finish(panels, shown, some_of(lines[0]))
+    return Constraints(tuple(panels), lines, marks)
+
+
+def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
+    """Return the errors of each panel by name; of one of several motions only the worst."""
+    positions, velocities = constraint_errors(motion)
+    if style.label:
+        shown = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
+        return [{style.label: worst(errors)} for errors in shown]
+    if panels == 2:
+        return [positions, velocities]
+    return [{"positions": worst(positions), "velocities": worst(velocities)}]
+
+
+@dataclass(frozen=True, repr=False)
+class Error(Artists):
+    """Artists of `plot_error`; item i of `errors` and of `references` belongs to motion i."""
+
+    ax: Axes
+    errors: tuple[Line2D, ...]
+    references: tuple[Trajectory, ...]
+    marks: tuple[Artist, ...]
+
+
+@picture
+def plot_error(
+    trajectories: Trajectory | Sequence[Trajectory],
+    quantity: str = "theta",
+    reference: Trajectory | None = None,
+    *,
+    ax: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
+    labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
+) -> Error:
+    """Draw by how much one quantity of motions is off over time, on a logarithmic scale.
+
+    Each motion is held against the exact one from the same scene: exact rolling where the motion
+    is of a model that rolls, else the contact motion. An exact zero has no place on the scale.
+    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    quantity : str
+        "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
+        "friction_force", "energy", "kinetic_energy" or "potential_energy".
+    reference : Trajectory, optional
+        What all motions are held against, at the times of each: it must reach as far. It must be
+        given for a motion that started from coordinates of its own or lasts longer than 1e15 half
+        turns; those that are taken for right are among the artists.
+    {ax}
+    {motions}
+    """
+    quantity = choice("quantity", quantity, tuple(QUANTITIES))
+    compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
+    references = tuple(_reference_of(motion, reference) for motion in compared.motions)
+    compared.sampled(over_time)
+    ax = axes_of(ax, (7, 3.4), figsize)
+    found = (
+        {style.label or "error": _error(motion, right, quantity)}
+        for (motion, style), right in zip(compared, references, strict=True)
+    )
+    none = f"no error beside the {'exact motion' if reference is None else 'reference'}"
+    label = f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}"
+    errors = draw_errors(ax, compared, found, label, none, dashed=True)
+    marks = finish([ax], compared, [] if compared.alone else some_of(errors))
+    return Error(ax, errors, references, marks)
+
+
+def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajectory:
+    last = float(np.max(motion.t))
+    if reference is not None:
+        if not isinstance(reference, Trajectory):
+            raise TypeError(f"reference must be a Trajectory or None, got {shown(reference)}")
+        if reference.t_end < last:
+            raise ValueError(
+                f"reference must reach the last time of every trajectory, {last:g} s, got one to "
+                f"{reference.t_end:g} s"
+            )
+        return reference
+    if motion.start is not None:
+        raise ValueError(
+            "reference must be given for a trajectory that starts from coordinates of its own"
+        )
+    how: dict[str, Any] = {"model": "contact"}
+    if motion.model != "contact":
+        how = {"model": "rolling", "method": "exact"}
+    try:
+        return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
+    except ValueError as error:  # the core refuses times beyond 1e15 half turns
+        raise ValueError(
+            f"reference must be given where no exact motion reaches {last:g} s: {error}"
+        ) from error
+
+
+def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
+    """Return |error| at the times of a motion; NaN after the end of the right one."""
+    known = motion.t <= right.t_end
+    error = np.full(motion.t.shape, np.nan)
+    there = getattr(right.sol(motion.t[known]), quantity)
+    error[known] = np.abs(getattr(motion, quantity)[known] - there)
+    return error
