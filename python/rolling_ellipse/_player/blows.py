@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from .._ask.check import FloatArray
 from .._ask.scene import Impulse, Scene
@@ -16,13 +15,12 @@ from .._core import Outcome
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.phase_map import COLOURS
-from .._pictures.sampling import halve
 from .._verbs.classify import thresholds
 from .._verbs.outcome import outcome
 from ..geometry import support
 from .film import body, events
 from .sentences import told
-from .tracks import FORCES, columns, packed, sample_times
+from .tracks import columns, sample_times
 from .words import filled, written
 
 NAMES = [*(outcome.name for outcome in Outcome), "IN_THE_AIR"]
@@ -30,9 +28,7 @@ PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # width of the view [longer semi-axes]
 _PIXEL = 2.5e-4  # tolerance over the width of the view
 _SAMPLES = 100  # of a motion; up to ten times as many if places or forces need them
-ROWS, COLUMNS = 168.0, 540.0  # pixels of the plot of forces
-CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # its largest and its least range [weights]
-_WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])  # irregular parts of an interval
+CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # largest and least range of the plot of forces [weights]
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
 
 
@@ -68,14 +64,8 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
     first = np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist()
     codes, headlines, reasons = zip(*map(told, motions, first), strict=True)
     sampled = [_sampled(motion, tolerance) for motion in motions]
-    weight = 1e-3 * scene.mass * scene.gravity
     return {
-        "columns": columns(sampled, tolerance) | {
-            f"{name}_middle": packed(
-                np.concatenate([_middles(motion, name) for motion in sampled]), weight
-            )
-            for name in FORCES
-        },
+        "columns": columns(sampled, tolerance),
         "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
         "d": d.tolist(),
         "F": F.tolist(),
@@ -88,7 +78,7 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
         "code": code(scene, t_end),
         "cut": CUT,
         "least": LEAST,
-    }  # fmt: skip
+    }
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
@@ -98,55 +88,9 @@ def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
 
 
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
-    """Return the motion at the times for the player; at even times if these are too many.
-
-    Between them, parabolas through the forces and their values at the middles miss by less than
-    a pixel in a plot of the forces; a peak that it cuts off has an error of up to a fifth.
-    """
-    end, most = motion.t_end, 10 * _SAMPLES
-    times = sample_times(motion, end, tolerance, most=most, for_forces=0)
-    if times is None:
-        return motion.sol(even_times(0.0, end, _SAMPLES))
-    places = np.flatnonzero(np.diff(times) > 1e-9 * end)
-    weight, first = motion.scene.mass * motion.scene.gravity, motion.sol(times)
-    forces = [*LEAST, *(getattr(first, name) / weight for name in FORCES)]
-    rows = ROWS / np.ptp(np.clip(np.hstack(forces), *CUT))
-    while places.size and times.size <= most:
-        bad = _misses(motion, times[places], times[places + 1], rows)
-        times, places = halve(times, places[bad])
-    return motion.sol(times)
-
-
-def _misses(
-    motion: Trajectory, left: FloatArray, right: FloatArray, rows: float
-) -> npt.NDArray[np.bool_]:
-    """Return whether parabolas between the times miss the forces, of which one weight is `rows`."""
-    span, weight = (right - left)[:, np.newaxis], motion.scene.mass * motion.scene.gravity
-    inner = motion.sol((left[:, np.newaxis] + span * _WITHIN).ravel())
-    first, last = motion.sol(left), motion.sol(right)
-    bad, u, v = np.zeros(left.size, bool), _WITHIN, 1 - _WITHIN
-    for name in FORCES:
-        p, q = (getattr(at, name)[:, np.newaxis] / weight for at in (first, last))
-        true = getattr(inner, name).reshape(left.size, u.size) / weight
-        middle = true[:, u.size // 2, np.newaxis]
-        drawn = v * (v - u) * p + 4 * u * v * middle + u * (u - v) * q
-        steep = (4 * u - 3) * p + 4 * (v - u) * middle + (4 * u - 1) * q
-        steep *= rows / COLUMNS * motion.t_end / span  # pixels in a pixel
-        seen = (
-            rows
-            * np.abs(np.clip(drawn, *CUT) - np.clip(true, *CUT))
-            / np.minimum(np.hypot(1, steep), 3)
-        )
-        bad |= np.any((seen > 0.35) | (np.abs(drawn - true) > 0.2 * (1 + np.abs(true))), axis=1)
-    return bad
-
-
-def _middles(motion: Trajectory, name: str) -> FloatArray:
-    """Return forces at the middles of intervals, and the last force; a jump has their mean."""
-    t, forces = motion.t, getattr(motion, name)
-    middles: FloatArray = getattr(motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), name)
-    means = (forces + np.append(forces[1:], forces[-1])) / 2
-    return np.where(np.diff(t, append=np.inf) > 1e-9 * t[-1], middles, means)
+    """Return the motion at the times for the player; at even times if these are too many."""
+    times = sample_times(motion, motion.t_end, tolerance, most=10 * _SAMPLES)
+    return motion.sol(even_times(0.0, motion.t_end, _SAMPLES) if times is None else times)
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:

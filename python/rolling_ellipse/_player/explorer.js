@@ -111,7 +111,7 @@ export class Explorer extends Player {
       [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
     this.take(this.strip, columns);
     this.strip.events = table.events[n];
-    this.curves = forces(columns, this.strip.weight);
+    this.curves = forces(this.strip.motion, this.strip.weight);
   }
 
   /** Show the motion after a blow, from its beginning. */
@@ -177,7 +177,7 @@ export class Explorer extends Player {
   over(ink) {
     const { strip, colours, views: [view] } = this, end = strip.motion.end;
     ink.globalAlpha = 0.4;
-    line(ink, colours.orange, 1.2, strip.points.map(([, x, z]) => view.at(x, z)));
+    line(ink, colours.orange, 1.2, strip.trace.map(({ x, z }) => view.at(x, z)));
     for (let k = 1; k <= STROBES; k++) {
       outline(ink, strip, strip.motion.at((k / STROBES) * end), view);
       ink.globalAlpha = 0.2 + (0.3 * k) / STROBES;
@@ -264,18 +264,11 @@ export class Explorer extends Player {
   }
 }
 
-/** Both forces over time [s, weights]: parabolas through samples and the middles between them. */
-function forces(columns, weight) {
-  const { t } = columns;
-  return ["normal_force", "friction_force"].map((name) => {
-    const ends = columns[name], middles = columns[`${name}_middle`], points = [];
-    for (let i = 0; i + 1 < t.length; i++) {
-      for (let part = 0; part <= PARTS; part++) {
-        const u = part / PARTS, v = 1 - u;
-        const force = v * (v - u) * ends[i] + 4 * u * v * middles[i] + u * (u - v) * ends[i + 1];
-        points.push([v * t[i] + u * t[i + 1], force / weight]);
-      }
-    }
+/** Both forces over time [s, weights]. */
+function forces(motion, weight) {
+  const states = motion.states(PARTS);
+  return ["N", "F"].map((name) => {
+    const points = states.map((at) => [at.t, at[name] / weight]);
     const values = points.map(([, force]) => Number(force.toFixed(3)));
     return { points, least: Math.min(...values), most: Math.max(...values) };
   });

@@ -53,8 +53,8 @@ export class Player {
   /** Let a strip show another motion. */
   take(strip, columns, starts = [0]) {
     strip.motion = new Track(columns, strip.a);
-    strip.traces = starts.map((start, k) => strip.motion.trace(start, starts[k + 1]));
-    [strip.points] = strip.traces;
+    strip.traces = starts.map((start, k) => strip.motion.states(6, start, starts[k + 1]));
+    [strip.trace] = strip.traces;
   }
 
   /** Seconds of motion that the film shows before a time, and the time after so many. */
@@ -228,7 +228,7 @@ export class Player {
     let floor = 0;
     film.strips.forEach((strip, i) => {
       const tall = strip.share * height;
-      strip.points = strip.traces[part];
+      strip.trace = strip.traces[part];
       ink.save();
       ink.translate(columns > 1 ? i * across : 0, 0);
       ink.beginPath();

@@ -25,9 +25,9 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   ink.lineJoin = "round";
   paintGround(ink, colours, strip, view, shown);
   paintSkids(ink, colours, strip, at, view);
-  paintTrace(ink, colours.blue, 1, strip.points, 3, at, view, 0.55);
+  paintTrace(ink, colours.blue, 1, strip, ({ tip }) => tip, at, view, 0.55);
   paintBody(ink, colours, strip, at, view);
-  paintTrace(ink, colours.orange, 1.8, strip.points, 1, at, view, 1);
+  paintTrace(ink, colours.orange, 1.8, strip, ({ x, z }) => [x, z], at, view, 1);
   paintContact(ink, colours, strip, at, view);
   if (shown.forces) paintForces(ink, colours, strip, at, view);
   if (strip.blow) paintBlow(ink, colours, strip, view, shown.lasting);
@@ -127,34 +127,31 @@ function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   }
 }
 
-/** The last SHOWN points of a trace up to a time. */
-function past(points, t) {
-  const end = lastUntil(t, points.length, (k) => points[k][0]) + 1;
-  return points.slice(Math.max(0, end - SHOWN), end);
+/** The last SHOWN states of a trace up to now, and the state now. */
+function past({ trace }, at) {
+  const end = lastUntil(at.t, trace.length, (k) => trace[k].t) + 1;
+  return [...trace.slice(Math.max(0, end - SHOWN), end), at];
 }
 
 /** Draw where the contact has slid. */
-function paintSkids(ink, colours, { a, b, points }, at, view) {
+function paintSkids(ink, colours, strip, at, view) {
   ink.beginPath();
   let slid = false;
-  for (const [, x, , , , mode, theta] of past(points, at.t)) {
-    const place = mode === SLIDING || slid ? view.at(x + support(theta, a, b)[1], 0) : null;
+  for (const { x, theta, mode } of past(strip, at)) {
+    const place = view.at(x + support(theta, strip.a, strip.b)[1], 0);
     if (slid) ink.lineTo(...place);
-    else if (place) ink.moveTo(...place);
+    else if (mode === SLIDING) ink.moveTo(...place);
     slid = mode === SLIDING;
   }
-  if (slid) ink.lineTo(...view.at(at.x + support(at.theta, a, b)[1], 0));
   Object.assign(ink, { lineCap: "butt", globalAlpha: 0.5 });
   stroke(ink, colours.plum, 6);
   ink.globalAlpha = 1;
 }
 
-/** Draw a trace up to now; it ends at the body. */
-function paintTrace(ink, colour, width, points, column, at, view, alpha) {
-  if (!points.length) return;
-  const seen = past(points, at.t).map((point) => view.at(point[column], point[column + 1]));
+/** Draw the trace of a place of the body up to now. */
+function paintTrace(ink, colour, width, strip, placeOf, at, view, alpha) {
   ink.globalAlpha = alpha;
-  line(ink, colour, width, [...seen, column === 1 ? view.at(at.x, at.z) : view.at(...at.tip)]);
+  line(ink, colour, width, past(strip, at).map((state) => view.at(...placeOf(state))));
   ink.globalAlpha = 1;
 }
 

@@ -28,7 +28,8 @@ export function lastUntil(t, count, time) {
   return first;
 }
 
-/** One motion: its state at any time, by cubics between samples of position and rate. */
+/** One motion: its state at any time, by cubics between samples of position and rate, and parabolas
+ * through samples of a force and its values midway. */
 export class Track {
   constructor(columns, a) {
     Object.assign(this, columns, { a });
@@ -36,34 +37,34 @@ export class Track {
   }
 
   at(t) {
-    const i = lastUntil(t, this.t.length, (k) => this.t[k]), held = i === this.t.length - 1;
-    const j = held ? i : i + 1, span = held ? 1 : this.t[j] - this.t[i];
-    const u = held ? 0 : Math.max(0, t - this.t[i]) / span;
-    const v = 1 - u;
+    const i = lastUntil(t, this.t.length, (k) => this.t[k]), last = i === this.t.length - 1;
+    return this.between(i, last ? 0 : Math.max(0, t - this.t[i]) / (this.t[i + 1] - this.t[i]));
+  }
+
+  /** The state at a part u, from 0 to 1, of the way from sample i to the next one. */
+  between(i, u) {
+    const v = 1 - u, j = Math.min(i + 1, this.t.length - 1), span = this.t[j] - this.t[i];
     const line = (p) => v * p[i] + u * p[j];
+    const parabola = (p, middle) => v * (v - u) * p[i] + 4 * u * v * middle[i] + u * (u - v) * p[j];
     const cubic = (p, rate) => v * v * (1 + 2 * u) * p[i] + u * u * (1 + 2 * v) * p[j]
       + u * v * span * (v * rate[i] - u * rate[j]);
     const x = cubic(this.x, this.x_dot), z = cubic(this.z, this.z_dot);
     const theta = cubic(this.theta, this.omega);
     return {
-      t: Math.min(t, this.end), x, z, theta, xDot: line(this.x_dot), omega: line(this.omega),
-      N: line(this.normal_force), F: line(this.friction_force), mode: this.mode[i],
+      t: line(this.t), x, z, theta, xDot: line(this.x_dot), omega: line(this.omega),
+      N: parabola(this.normal_force, this.normal_force_middle),
+      F: parabola(this.friction_force, this.friction_force_middle), mode: this.mode[i],
       tip: [x + this.a * Math.cos(theta), z - this.a * Math.sin(theta)],
     };
   }
 
-  /** Points of the path [t, x, z, tip x, tip z, mode, theta] through some samples. */
-  trace(first = 0, end = this.t.length) {
-    const points = [];
-    for (let i = first; i < end; i++) {
-      const next = i + 1 < end ? this.t[i + 1] : this.t[i];
-      for (let part = 0; part < 6; part++) {
-        const at = this.at(this.t[i] + (part / 6) * (next - this.t[i]));
-        points.push([at.t, at.x, at.z, ...at.tip, at.mode, at.theta]);
-        if (next === this.t[i]) break;
-      }
-    }
-    return points;
+  /** The states at some samples, and in so many parts of the intervals between them. */
+  states(parts, first = 0, end = this.t.length) {
+    const found = [];
+    for (let i = first; i < end; i++)
+      for (let part = 0; part <= (i + 1 < end ? parts : 0); part++)
+        found.push(this.between(i, part / parts));
+    return found;
   }
 }
 

@@ -1,4 +1,4 @@
-"""A motion for the player: samples with their rates, so dense that cubics between them will do."""
+"""A motion for the player: samples so dense that cubics, and parabolas of forces, will do."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from .._pictures.sampling import halve
 MOST_SAMPLES = 20_000  # most samples of one motion, 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 FORCES = ("normal_force", "friction_force")
-# Places in an interval at which a cubic is compared with the motion. They are irregular, so that a
+_MIDDLES = {name: f"{name}_middle" for name in FORCES}
+# Places in an interval at which a curve is compared with the motion. They are irregular, so that a
 # motion whose period divides the intervals does not look like a straight line.
-_WITHIN = np.array([0.2113, 0.5, 0.7887])
-_FORCE = 0.04  # error of lines, over force + weight, that is a line's width in a plot
+_WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])
+_FORCE = 0.005  # error over force + weight: at most a pixel in a plot of 84 pixels a weight
 _FIRST = 17  # intervals to begin with
 
 
@@ -45,19 +46,29 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
     """Return the samples of motions of one body in packed columns, one motion after the other."""
     scene = motions[0].scene
     size = max(scene.a, scene.b)
-    joined = {
-        name: np.concatenate([getattr(motion, name) for motion in motions])
-        for name in ("t", *_RATES, *_RATES.values(), *FORCES, "mode")
-    }
+    names = ("t", *_RATES, *_RATES.values(), *FORCES, "mode")
+    parts = [{name: getattr(each, name) for name in names} | _middles(each) for each in motions]
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     speeds = np.hypot(joined["x_dot"], joined["z_dot"]) + size * np.abs(joined["omega"])
     near = tolerance / max(float(np.max(speeds)), 1e-300)  # [s]
     longest = max(float(np.max(np.diff(motion.t), initial=0.0)) for motion in motions)
     allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size, "mode": 0.0}
     for name, rate in _RATES.items():
         allowed[rate] = 4 * allowed[name] / max(longest, near)
-    for name in FORCES:
-        allowed[name] = 1e-3 * scene.mass * scene.gravity
+    allowed |= dict.fromkeys((*FORCES, *_MIDDLES.values()), 1e-3 * scene.mass * scene.gravity)
     return {name: packed(values.astype(float), allowed[name]) for name, values in joined.items()}
+
+
+def _middles(motion: Trajectory) -> dict[str, FloatArray]:
+    """Return forces at the middles of intervals, and the last ones; a jump has their mean."""
+    t = motion.t
+    between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
+    found = {}
+    for name, middle in _MIDDLES.items():
+        forces = getattr(motion, name)
+        means = (forces + np.append(forces[1:], forces[-1])) / 2
+        found[middle] = np.where(jumps > 1e-9 * t[-1], getattr(between, name), means)
+    return found
 
 
 def sample_times(
@@ -67,14 +78,12 @@ def sample_times(
     *,
     begin: float = 0.0,
     most: int = MOST_SAMPLES,
-    for_forces: int = MOST_SAMPLES,
 ) -> FloatArray | None:
     """Return times, from `begin` on, between which cubics miss by at most `tolerance` [m].
 
-    If there are more than `most`, it is None.
-
-    Lines between the forces are near them, too, as long as there are at most `for_forces` times.
-    Events are among the times, and the doubles just before them.
+    If there are more than `most`, it is None. Parabolas through the forces at the times and midway
+    are near them, too, as long as there are at most half of `most`. Events are among the times, and
+    the doubles just before them.
     """
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
@@ -83,7 +92,7 @@ def sample_times(
     places = np.flatnonzero(np.diff(times) > 1e-12 * (end - begin))
     while places.size and times.size <= most:
         left, right = times[places], times[places + 1]
-        force = _FORCE if times.size <= for_forces else np.inf
+        force = _FORCE if times.size <= most / 2 else np.inf
         bad = _misses(motion, left, right, tolerance, force) > 1
         bad &= right - left > 1e-9 * (end - begin)
         times, places = halve(times, places[bad])
@@ -93,7 +102,7 @@ def sample_times(
 def _misses(
     motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
 ) -> FloatArray:
-    """Return the errors of cubics, and of lines between forces, over those that are allowed."""
+    """Return the errors of cubics, and of parabolas of forces, over those that are allowed."""
     size = max(motion.scene.a, motion.scene.b)
     first, last = motion.sol(left), motion.sol(right)
     span = (right - left)[:, None]
@@ -111,7 +120,9 @@ def _misses(
     for name in FORCES:
         p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
         true = getattr(exact, name).reshape(left.size, u.size)
-        error = np.abs(v * p + u * q - true) / (force * (weight + np.abs(true)))
+        middle = true[:, u.size // 2, None]
+        parabola = v * (v - u) * p + 4 * u * v * middle + u * (u - v) * q
+        error = np.abs(parabola - true) / (force * (weight + np.abs(true)))
         missed = np.maximum(missed, error.max(axis=1))
     return missed
 
