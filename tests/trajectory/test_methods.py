@@ -16,20 +16,19 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Trajectory
-from rolling_ellipse._motion import events, trajectory
+from rolling_ellipse._motion import trajectory
 from rolling_ellipse._show.methods import METHODS
 
-NAMES = {kind: [name for names in of.values() for name in names] for kind, of in METHODS.items()}
-MODULES = {Trajectory: trajectory, events.Events: events}
+NAMES = [name for names in METHODS.values() for name in names]
 
 
-def declared(kind: type) -> Iterator[str]:
-    """The names in the part of a class that only type checkers read."""
-    source = Path(MODULES[kind].__file__ or "").read_text(encoding="utf-8")
+def declared() -> Iterator[str]:
+    """The names in the part of the class that only type checkers read."""
+    source = Path(trajectory.__file__ or "").read_text(encoding="utf-8")
     (body,) = (
         each.body
         for each in ast.parse(source).body
-        if isinstance(each, ast.ClassDef) and each.name == kind.__name__
+        if isinstance(each, ast.ClassDef) and each.name == "Trajectory"
     )
     for part in body:
         if isinstance(part, ast.If):
@@ -40,12 +39,11 @@ def declared(kind: type) -> Iterator[str]:
                     yield each.id
 
 
-@pytest.mark.parametrize("kind", METHODS, ids=lambda kind: kind.__name__)
-def test_type_checkers_know_them_all(kind: type) -> None:
-    assert sorted(declared(kind)) == sorted(NAMES[kind])
+def test_type_checkers_know_them_all() -> None:
+    assert sorted(declared()) == sorted(NAMES)
 
 
-@pytest.mark.parametrize("name", NAMES[Trajectory])
+@pytest.mark.parametrize("name", NAMES)
 def test_each_is_a_method_of_its_name(name: str) -> None:
     """help, Jupyter and pickles of bound methods find each method by the name of its calls."""
     method, motion = getattr(Trajectory, name), rl.simulate(rl.scenes.drop, 1.0)
@@ -60,7 +58,7 @@ def test_each_is_a_method_of_its_name(name: str) -> None:
 def test_completion_shows_what_is_for_people() -> None:
     shown = {name for name in dir(rl.simulate(rl.scenes.drop, 1.0)) if name[0] != "_"}
     stored = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
-    assert not stored & shown and set(NAMES[Trajectory]) - {"_repr_html_"} < shown
+    assert not stored & shown and set(NAMES) - {"_repr_html_"} < shown
 
 
 def test_help_tells_them() -> None:

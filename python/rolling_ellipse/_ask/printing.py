@@ -1,8 +1,9 @@
-"""Printing of values: tables of text, and of HTML without colours of its own."""
+"""Printing of values: tables of text, of HTML without colours of its own, and of other packages."""
 
 from __future__ import annotations
 
 import enum
+import importlib
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from typing import Any, ClassVar
@@ -91,3 +92,13 @@ class Listed:
 
     def _repr_html_(self) -> str:
         return html_table(type(self).__name__, self._rows())
+
+
+def required(package: str, method: str) -> Any:
+    """Return an imported package of the extra "data"; an ImportError names that extra."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(
+            f"{method} needs {package}: pip install 'rolling_ellipse[data]'"
+        ) from error

@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
+import numpy as np
+
 from .. import _core
-from .._ask.printing import Row, brief, html_table, text_table
+from .._ask.printing import Row, brief, html_table, required, text_table
 from .._ask.records import FieldsOnly, find_late, trusted
-from .._ask.scene import InitialState, Scene
+from .._ask.scene import STATE_UNITS, InitialState, Scene
 from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
-    from .export import event_table
+    from pandas import DataFrame
 
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
 _MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
@@ -111,8 +114,41 @@ class Events(tuple[Event, ...]):
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)
 
-    if TYPE_CHECKING:  # at run time, `_show.methods` adds this method to the class
-        to_dataframe = event_table.to_dataframe
+    def to_dataframe(self) -> DataFrame:
+        """Return a pandas DataFrame with a row for each event.
+
+        Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, with their
+        energies, the reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the
+        units by column.
+
+        Raises
+        ------
+        ImportError
+            Without pandas: it comes with ``rolling_ellipse[data]``.
+        """
+        pandas = required("pandas", "to_dataframe")
+        columns: dict[str, Any] = {}
+        units: dict[str, str] = {}
+
+        def add(name: str, unit: str, values: Iterable[float]) -> None:
+            columns[name], units[name] = np.array(list(values), float), unit
+
+        def add_names(name: str, values: Iterable[Any]) -> None:
+            columns[name], units[name] = [each.name for each in values], "1"
+
+        add("t", "s", (each.t for each in self))
+        add_names("kind", (each.kind for each in self))
+        for when in ("before", "after"):
+            states = [getattr(each, f"state_{when}") for each in self]
+            for name, unit in STATE_UNITS.items():
+                add(f"{name}_{when}", unit, map(attrgetter(name), states))
+            add_names(f"mode_{when}", (state.mode for state in states))
+            add(f"energy_{when}", "J", map(attrgetter(f"energy_{when}"), self))
+        for name in ("reaction_x", "reaction_z", "energy_lost"):  # of the states after
+            add(name, InitialState._units[name], map(attrgetter(name), states))
+        frame: DataFrame = pandas.DataFrame(columns | {"reason": [each.reason for each in states]})
+        frame.attrs = {"units": units | {"reason": "1"}}
+        return frame
 
 
 def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -11,10 +12,12 @@ import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import FloatArray, array, shown
+from .._core import Mode
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
+Pair = tuple[FloatArray, FloatArray]  # q and q_dot
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
@@ -153,9 +156,7 @@ def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
     return _untouchable(found)
 
 
-def coordinate_pair(
-    name: str, values: Any, shape: tuple[int, ...]
-) -> tuple[FloatArray, FloatArray]:
+def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
     """Return q and q_dot as read-only arrays of the given shape; it raises as `vector` does."""
     required = f"{name} must be q and q_dot, arrays of shape {shape}"
     try:
@@ -179,7 +180,35 @@ def contact_samples(values: Any, size: int) -> ContactSamples:
 
 def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
     numbers = vector(name, values, size)
-    wrong = numbers[~np.isin(numbers, list(_core.Mode))]
+    wrong = numbers[~np.isin(numbers, list(Mode))]
     if wrong.size:
         raise ValueError(f"{name} must hold codes of Mode, got {float(wrong[0])!r}")
     return _untouchable(np.asarray(values).astype(np.int8, copy=False))
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A motion at one time: numbers of the same names and units as the arrays of a Trajectory."""
+
+    t: float
+    x: float
+    z: float
+    theta: float
+    psi: float
+    r: float
+    omega: float
+    x_dot: float
+    z_dot: float
+    contact_x: float
+    turns: float
+    normal_force: float
+    friction_force: float
+    energy: float
+    mode: Mode
+
+
+def first_sample(motion: Trajectory) -> Sample:
+    """Return the first sample of a motion in plain floats."""
+    names = [field.name for field in fields(Sample) if field.name != "mode"]
+    values = {name: float(getattr(motion, name)[0]) for name in names}
+    return Sample(**values, mode=Mode(int(motion.mode[0])))

@@ -22,9 +22,12 @@ from .events import Event, Events, energies, events
 from .quantities import MODE, QUANTITIES
 from .samples import (
     ContactSamples,
+    Pair,
+    Sample,
     contact_samples,
     coordinate_pair,
     details,
+    first_sample,
     frozen,
     sampled,
     touch,
@@ -45,7 +48,7 @@ if TYPE_CHECKING:
     from .._pictures.phase import Phase
     from .._pictures.strobe import Strobe
     from .._show import notebook
-    from . import instant, passages
+    from . import passages
     from .export import files, tables
 
     _Path = str | os.PathLike[str]
@@ -154,8 +157,8 @@ class Trajectory(FieldsOnly):
     t_end: float
     span: float
     settings: Settings
-    coordinates: tuple[FloatArray, FloatArray] | None = None
-    start: tuple[FloatArray, FloatArray] | None = None
+    coordinates: Pair | None = None
+    start: Pair | None = None
     contact: ContactSamples | None = None
     kept_events: tuple[Event, ...] | None = None
     stats: dict[str, int] = field(default_factory=dict)
@@ -195,11 +198,7 @@ class Trajectory(FieldsOnly):
 
     @classmethod
     def computed(
-        cls,
-        scene: Scene,
-        settings: Settings,
-        times: FloatArray,
-        start: tuple[FloatArray, FloatArray] | None = None,
+        cls, scene: Scene, settings: Settings, times: FloatArray, start: Pair | None = None
     ) -> Trajectory:
         """Solve a scene up to the last of the times, and sample it at all times that are reached.
 
@@ -342,6 +341,16 @@ class Trajectory(FieldsOnly):
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
         return self._sampled(self._solution, times, self.__getstate__())
 
+    def at(self, t: float) -> Sample:
+        """Return the state at time t [s] in plain floats.
+
+        Raises
+        ------
+        ValueError
+            If t is outside of [0, t_end].
+        """
+        return first_sample(self.sol(number("t", t)))
+
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
@@ -353,7 +362,7 @@ class Trajectory(FieldsOnly):
     # -- methods of other modules, bound by `_show.methods` ----------------------------------------
 
     if TYPE_CHECKING:
-        at, when = instant.at, passages.when
+        when = passages.when
         save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
         _repr_html_ = notebook._repr_html_
 
@@ -462,12 +471,7 @@ def _placement(at: Trajectory) -> dict[str, Any]:
     return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
 
 
-def solve(
-    scene: Scene,
-    settings: Settings,
-    t_end: float,
-    start: tuple[FloatArray, FloatArray] | None,
-) -> _core.Solution:
+def solve(scene: Scene, settings: Settings, t_end: float, start: Pair | None) -> _core.Solution:
     """Solve a scene, and return the core's solution, which has the motion at any time to t_end."""
     if start is None:
         return _core.simulate(scene.core, settings.core, t_end)

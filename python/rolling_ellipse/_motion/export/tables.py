@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._ask.printing import required as required
 from ..._ask.scene import Scene
 from ..._core import Mode
 from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity
@@ -76,16 +76,6 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     }
     found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
     return found
-
-
-def required(package: str, method: str) -> Any:
-    """Return an imported package of the extra "data"; an ImportError names that extra."""
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise ImportError(
-            f"{method} needs {package}: pip install 'rolling_ellipse[data]'"
-        ) from error
 
 
 def _names(quantities: tuple[Quantity, ...]) -> list[str]:
