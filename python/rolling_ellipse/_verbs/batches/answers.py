@@ -7,6 +7,7 @@ a trajectory, or the exception of its scene.
 from __future__ import annotations
 
 import pickle
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -16,9 +17,9 @@ import numpy.typing as npt
 
 from ... import _core
 from ..._ask.check import FloatArray
+from ..._ask.records import trusted
 from ..._ask.scene import Scene
 from ..._ask.settings import Settings
-from ..._motion.events import Events
 from ..._motion.events import events as made_events
 from ..._motion.export.npz import require_array
 from ..._motion.samples import frozen, of_contact, of_coordinates
@@ -76,77 +77,54 @@ def answers(
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
     again when events are first asked for, as after pickling.
     """
-    cut = _Cut(tables, frozen(np.array(request.times)))
+    times, letters_of_all = frozen(np.array(request.times)), tables["text"].tobytes()
+    at: defaultdict[str, int] = defaultdict(int)  # how much of each table is taken
+
+    def following(table: str, size: int) -> slice:
+        begin = at[table]
+        at[table] = begin + size
+        return slice(begin, begin + size)
+
     found: list[Answer] = []
     known = columns("codes", tables) | columns("numbers", tables)
     code = {name: values.tolist() for name, values in known.items()}
     names = ("ending", "model", "method", "samples", "events", "letters", "t_end", "valid_until")
     of_each = zip(*(code[name] for name in names), strict=True)
     counts = zip(*(code[name] for name in _STATS), strict=True)
-    span = float(request.times[-1])
     for scene, each, count in zip(scenes, of_each, counts, strict=True):
         ending, model, method, samples, events, letters, t_end, valid_until = each
-        message = cut.text(letters)
+        message = letters_of_all[following("text", letters)].decode() if letters else ""
         if ending == REFUSED:
             found.append(ValueError(message))
             continue
-        status = STATUSES[ending]
-        kept = cut.events(scene, events) if keep_events else None
-        made = object.__new__(Trajectory)
-        made.__dict__.update(
-            cut.samples(MODELS[model], samples),
-            scene=scene,
-            model=MODELS[model],
-            method=METHODS[method],
-            status=status,
-            message=message or status.value,
-            valid_until=valid_until,
-            t_end=t_end,
-            span=span,
-            settings=request.settings,
-            start=None,
-            stats=dict(zip(_STATS, count, strict=True)),
-            kept_events=kept,
-        )
+        status, here = STATUSES[ending], following(MODELS[model], samples)
+        facts = {
+            "scene": scene, "model": MODELS[model], "method": METHODS[method], "status": status,
+            "message": message or status.value, "valid_until": valid_until, "t_end": t_end,
+            "span": float(request.times[-1]), "settings": request.settings, "start": None,
+            "stats": dict(zip(_STATS, count, strict=True)), "kept_events": None,
+        }  # fmt: skip
+        if keep_events:
+            rows = tables["events"][following("events", events)].tolist()
+            facts["kept_events"] = made_events(scene, rows)
+        made = trusted(Trajectory, _samples(MODELS[model], tables, here, times) | facts)
         failed = request.raise_on_failure and status not in AT_AN_END
         found.append(IntegrationError(made) if failed else made)
     return found
 
 
-class _Cut:
-    """Cuts the tables of many scenes into the parts of each scene, in their order."""
-
-    def __init__(self, tables: Tables, times: FloatArray) -> None:
-        self.times = times
-        self._tables = tables
-        self._letters = tables["text"].tobytes()
-        self._at = dict.fromkeys(("text", "events", "rolling", "contact", "multipliers"), 0)
-
-    def _next(self, of: str, size: int) -> slice:
-        begin = self._at[of]
-        self._at[of] = begin + size
-        return slice(begin, begin + size)
-
-    def text(self, size: int) -> str:
-        return self._letters[self._next("text", size)].decode() if size else ""
-
-    def events(self, scene: Scene, size: int) -> Events:
-        return made_events(scene, self._tables["events"][self._next("events", size)].tolist())
-
-    def samples(self, model: str, size: int) -> dict[str, Any]:
-        """Return the next `size` samples of a model as fields of a Trajectory."""
-        here, tables = self._next(model, size), self._tables
-        t = self.times if size == self.times.size else frozen(self.times[:size].copy())
-        if model == "multipliers":
-            q, q_dot = (frozen(tables[name][here].copy()) for name in ("q", "q_dot"))
-            return of_coordinates(t, q, q_dot)
-        rows = frozen(tables[model][:, here].copy())
-        found: dict[str, Any] = {"t": t}
-        found.update(zip(_COLUMNS[model], rows, strict=True))
-        if model == "contact":
-            found["mode"] = frozen(tables["mode"][here].copy())
-            return of_contact(found)
-        return found
+def _samples(model: str, tables: Tables, here: slice, times: FloatArray) -> dict[str, Any]:
+    """Return the samples of a motion as fields of a Trajectory."""
+    size = here.stop - here.start
+    t = times if size == times.size else frozen(times[:size].copy())
+    if model == "multipliers":
+        q, q_dot = (frozen(tables[name][here].copy()) for name in ("q", "q_dot"))
+        return of_coordinates(t, q, q_dot)
+    found: dict[str, Any] = {"t": t}
+    found.update(zip(_COLUMNS[model], frozen(tables[model][:, here].copy()), strict=True))
+    if model == "contact":
+        return of_contact(found | {"mode": frozen(tables["mode"][here].copy())})
+    return found
 
 
 def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> None:

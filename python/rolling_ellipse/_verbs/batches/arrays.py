@@ -17,7 +17,7 @@ from ..._motion.quantities import MODE, QUANTITIES, TIME
 from ..._motion.status import STATUSES, IntegrationError
 from ..._motion.trajectory import Trajectory
 from .answers import AT_AN_END, MODELS, REFUSED, Request, Tables, answers, columns
-from .tables import BLOW, NAMES, name_of, scenes_of
+from .asked import BLOW, NAMES, name_of, scenes_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -1,5 +1,8 @@
 """The scenes of `simulate_many` in chunks: from an iterable, or from arrays that broadcast.
 
+Scenes are the rows of a table, for workers and files: the numbers of a Scene in the order of the
+core, then those of its impulse. NaN stands for numbers that were not given.
+
 The size of a chunk depends only on the numbers of scenes before it and of samples per scene. The
 first chunks are small, so that a few slow scenes occupy many workers. Since sizes do not depend on
 the workers, a folder that was begun by some can be finished by others.
@@ -7,10 +10,12 @@ the workers, a folder that was begun by some can be finished by others.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sized
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from itertools import islice
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -18,9 +23,15 @@ import numpy as np
 from ... import _core
 from ..._ask.check import FloatArray, array, common_shape, shown
 from ..._ask.habits import meant
-from ..._ask.scene import OPTIONAL, Impulse, Scene
-from .tables import BLOW, NAMES, WIDTH, name_of, scenes_of, table_of
+from ..._ask.records import trusted
+from ..._ask.scene import OPTIONAL, STATE_UNITS, Impulse, Scene
 
+NAMES, BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
+WIDTH = len(NAMES) + len(BLOW)
+_OPTIONAL = tuple(OPTIONAL & set(NAMES))
+
+_numbers, _blow = attrgetter(*NAMES), attrgetter(*BLOW)
+_NO_BLOW = (math.nan,) * len(BLOW)
 _FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk
 _SHARE = 32  # scenes before a chunk that make it larger than the first by one scene
 _SAMPLES = 2**18  # largest number of samples of a chunk of several scenes
@@ -193,3 +204,33 @@ def asked(scenes: Any) -> SceneList | SceneGrid:
         "scenes must be Scenes, as an iterable, or a mapping of the arguments of Scene to numbers "
         f"and arrays, got {shown(scenes)}"
     )
+
+
+def name_of(argument: str) -> str:
+    """Return the name of an argument beside quantities of motions: the start gets a 0."""
+    return f"{argument}0" if argument in STATE_UNITS else argument
+
+
+def table_of(scenes: Sequence[Scene]) -> FloatArray:
+    """Return scenes as a table, with a row of numbers for each."""
+    rows = [
+        (*_numbers(each), *(_NO_BLOW if each.impulse is None else _blow(each.impulse)))
+        for each in scenes
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, WIDTH)
+
+
+def scenes_of(table: FloatArray) -> list[Scene]:
+    """Return the scenes in the rows of a table that the core has found valid."""
+    return [_scene(row) for row in table.tolist()]
+
+
+def _scene(row: list[float]) -> Scene:
+    known: dict[str, Any] = dict(zip(NAMES, row, strict=False))
+    for name in _OPTIONAL:
+        if math.isnan(known[name]):
+            known[name] = None
+    blow = row[len(NAMES) :]
+    struck = not math.isnan(blow[0])
+    known["impulse"] = trusted(Impulse, dict(zip(BLOW, blow, strict=True))) if struck else None
+    return trusted(Scene, known)

@@ -33,8 +33,7 @@ from ..._motion.export.npz import require_array
 from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
 from .answers import TABLES, Answer, Request, Tables, answers, require_tables
 from .arrays import DIRECT, MotionArrays, gathered, names_in
-from .asked import Chunk, sizes
-from .tables import scenes_of
+from .asked import Chunk, scenes_of, sizes
 
 if TYPE_CHECKING:
     from pandas import DataFrame
