@@ -42,15 +42,7 @@ _short.maxlist = _short.maxtuple = _short.maxdict = _short.maxset = _short.maxde
 
 
 def number(name: str, value: Any) -> float:
-    """Return ``value`` as a float, or raise an error that names the argument.
-
-    Raises
-    ------
-    TypeError
-        If it is not a number, is masked or has units.
-    ValueError
-        If it is beyond the range of doubles.
-    """
+    """Return a number as a float; it must not be masked, have units, or be beyond doubles."""
     if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
@@ -286,13 +278,7 @@ def require_together(**arguments: Any) -> None:
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Return the arguments' common shape, and a 1-D array of each: all its elements, or its one.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not broadcast; it names the arguments and their shapes.
-    """
+    """Return the arguments' common shape, and a 1-D array of each: all its elements, or its one."""
     arrays = {name: array(name, value) for name, value in arguments.items()}
     shape = common_shape(arrays, slice(None))
     return shape, [

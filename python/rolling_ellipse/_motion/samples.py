@@ -139,15 +139,7 @@ def _untouchable(values: _Values) -> _Values:
 
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
-    """Return a 1-D array of numbers, read-only, of the given size (None: of any size).
-
-    Raises
-    ------
-    TypeError
-        If it does not hold numbers.
-    ValueError
-        If it has another shape.
-    """
+    """Return a 1-D array of numbers, read-only, of the given size (None: of any size)."""
     found = array(name, values)
     if found.ndim != 1:
         raise ValueError(f"{name} must be a 1-D array, got shape {found.shape}")
@@ -157,7 +149,7 @@ def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
 
 
 def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
-    """Return q and q_dot as read-only arrays of the given shape; it raises as `vector` does."""
+    """Return q and q_dot as read-only arrays of the given shape."""
     required = f"{name} must be q and q_dot, arrays of shape {shape}"
     try:
         q, q_dot = values
@@ -170,7 +162,7 @@ def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
 
 
 def contact_samples(values: Any, size: int) -> ContactSamples:
-    """Return ContactSamples with checked, read-only arrays; it raises as `vector` does."""
+    """Return ContactSamples with checked, read-only arrays."""
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields

@@ -30,13 +30,7 @@ def _table(language: str) -> dict[str, str]:
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
     """Return the table of a language, or a copy of a mapping with the keys of the English one.
 
-    Raises
-    ------
-    ValueError
-        If the language is unknown, a key is missing or unknown, or a text asks for a number in
-        braces that the English one does not have.
-    TypeError
-        If it is neither a name nor a mapping, or a text is no string.
+    A text must not ask for a number in braces that the English one does not have.
     """
     if isinstance(language, str):
         return dict(_table(choice("language", language, LANGUAGES)))

@@ -33,15 +33,7 @@ class Lost:
 
 
 def threads_of(workers: Any) -> int | None:
-    """Return a number of threads, or None for an executor.
-
-    Raises
-    ------
-    TypeError
-        If it is neither.
-    ValueError
-        If the number is out of range.
-    """
+    """Return a number of threads in its range, or None for an executor; TypeError for neither."""
     if type(workers) is int:  # the fast path: most calls give a number
         return worker_count(workers)
     if isinstance(workers, type) or not (_can(workers, "submit") or _is_pool(workers)):

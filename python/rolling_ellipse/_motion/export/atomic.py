@@ -26,12 +26,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     killed. Any exception removes the new file. Its name has the suffix of `path`, by which writers
     choose a format, and is otherwise plain, so that other programs accept it. A link stays a link,
     and an old file keeps its permissions. Devices and pipes cannot be replaced: for them `path`
-    itself is yielded.
-
-    Raises
-    ------
-    OSError
-        If there is no such folder, or no permission, as `open` would; it names `path`.
+    itself is yielded. An OSError names `path`, as one of `open` would.
     """
     name = os.fspath(path)
     try:

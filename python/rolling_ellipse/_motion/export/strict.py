@@ -27,14 +27,8 @@ def restored(
     """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
     Only a file with the right first bytes (and the end of an archive) is read: another file may
-    have any size.
-
-    Raises
-    ------
-    ValueError
-        If `restore` raises anything; the message names the file, the trouble and the cure, if any.
-    OSError
-        If the file cannot be read.
+    have any size. Whatever `restore` raises becomes a ValueError with the file, the trouble and the
+    cure, if any.
     """
     name = file_name("path", path)
     with open(name, "rb") as file:
@@ -59,13 +53,7 @@ def restored(
 
 
 def parsed(name: str, text: str) -> Any:
-    """Return the value of a JSON text, in which numbers may be infinite, but not NaN.
-
-    Raises
-    ------
-    ValueError
-        If it is not JSON, or a name comes twice.
-    """
+    """Return the value of a JSON text: infinite numbers, but no NaN, and each name once."""
 
     def constant(literal: str) -> float:
         if literal == "NaN":

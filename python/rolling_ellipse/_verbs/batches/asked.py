@@ -84,12 +84,7 @@ class SceneList:
 class SceneGrid:
     """Scenes of the arguments in a mapping, numbers and arrays that broadcast, in C order.
 
-    Raises
-    ------
-    TypeError
-        If an argument is not one of Scene's, or not numeric.
-    ValueError
-        If shapes do not broadcast, or a scene is refused; the argument and its index are named.
+    All scenes are checked at once; an error names the argument and its index.
     """
 
     def __init__(self, arguments: Mapping[Any, Any]) -> None:

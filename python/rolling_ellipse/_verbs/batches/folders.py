@@ -54,12 +54,7 @@ _Names = dict[int, list[str]]  # names of the files of each chunk, by its index,
 class Folder:
     """The files of one request: a new folder, or one that an earlier call has left.
 
-    Raises
-    ------
-    ValueError
-        If the folder holds something else, which is named.
-    OSError
-        If it cannot be made or written.
+    Anything else in the folder is refused by its name.
     """
 
     def __init__(self, path: Any, request: Request) -> None:
@@ -239,13 +234,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
 
 
 def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
-    """Return number, axes and shape of the scenes of a complete folder.
-
-    Raises
-    ------
-    ValueError
-        If ``end.json`` is damaged, or does not fit the chunks in the folder.
-    """
+    """Return number, axes and shape of the scenes of a folder, if its chunks fit ``end.json``."""
     cure = f": {_AGAIN} writes it anew"
     end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
     for index, (begin, _) in enumerate(sizes(samples)):
