@@ -19,9 +19,8 @@ from .._motion.trajectory import Trajectory
 from .axes import Artists, panels_of, picture
 from .comparison import PLAIN, Comparison, Style
 from .legends import name_curves, quantity_handles
-from .modes import events_shown
 from .palette import palette_of
-from .panels import DASHES, RANGE, dot, draw_curve, entries_of, finish
+from .panels import DASHES, RANGE, dot, draw_curve, entries_of, events_shown, finish
 from .sampling import are_ranges, curve, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]

@@ -18,9 +18,8 @@ from .axes import Artists, axes_of, picture
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
-from .modes import EVENT_NAMES, draw_invalid_ground, ending_of, events_shown
 from .palette import palette_of
-from .panels import sparse_markers
+from .panels import EVENT_NAMES, draw_invalid_ground, ending_of, events_shown, sparse_markers
 from .sampling import between, span_of, turned_until
 from .strobe import dress_ground_axes, figure_size
 

@@ -24,9 +24,8 @@ from .axes import Artists, axes_of, picture
 from .comparison import Comparison
 from .ground import QUARTER, flat_angle
 from .legends import name_curves, title_beside_legend
-from .modes import draw_invalid_ground, ending_of
 from .palette import palette_of
-from .panels import dress_grid
+from .panels import draw_invalid_ground, dress_grid, ending_of
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn

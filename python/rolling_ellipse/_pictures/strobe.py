@@ -22,8 +22,8 @@ from .axes import Artists, axes_of, picture
 from .comparison import require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
 from .legends import name_curves, title_beside_legend
-from .modes import ending_of
 from .palette import palette_of
+from .panels import ending_of
 from .sampling import at_times, between, span_of, turned_until
 
 _PILE = 0.4  # opacity, about, of all bodies in one place together

@@ -22,10 +22,8 @@ from ..events import Event, events
 from ..samples import ContactSamples
 from ..status import Status
 from ..trajectory import Trajectory, solve
+from . import strict
 from .atomic import replacing
-from .npz import arrays as npz_arrays
-from .npz import require_array
-from .strict import ARCHIVE, field_names, parsed, require_names, restored, scene_of
 
 _Made = TypeVar("_Made", bound=Trajectory)
 
@@ -34,6 +32,7 @@ _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
 _state = attrgetter(*STATE_UNITS)
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
+_ABOUT = ("schema", "scene", "settings", "status", "events", *_FACTS)
 
 
 def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
@@ -73,11 +72,11 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     OSError
         If the file is missing or cannot be read.
     """
-    return restored(path, lambda content: _of_bytes(kind, content), ARCHIVE)
+    return strict.restored(path, lambda content: _of_bytes(kind, content), strict.ARCHIVE)
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
-    arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
+    arrays = strict.npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
     if "about" not in arrays:
         raise ValueError("it must hold the array 'about'")
     return _restored(kind, str(arrays.pop("about")), arrays)
@@ -108,15 +107,15 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
 
     So nothing is converted, filled in or left out, even where the classes would accept that.
     """
-    about = parsed("about", text)
-    require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
+    about = strict.parsed("about", text)
+    strict.require_names("about", about, _ABOUT)
     if about["schema"] != _SCHEMA:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
-    require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
+    strict.require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
     for name, values in arrays.items():
-        require_array(name, values, np.int8 if name == "mode" else np.float64, values.shape)
-    scene, settings = scene_of(about["scene"]), about["settings"]
-    require_names("settings", settings, field_names(Settings))
+        strict.require_array(name, values, np.int8 if name == "mode" else np.float64, values.shape)
+    scene, settings = strict.scene_of(about["scene"]), about["settings"]
+    strict.require_names("settings", settings, strict.field_names(Settings))
     contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
     pairs: dict[str, Any] = {name: tuple(arrays[name]) for name in _PAIRS if name in arrays}
     trajectory = kind(

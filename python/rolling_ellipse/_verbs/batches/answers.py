@@ -21,7 +21,7 @@ from ..._ask.records import trusted
 from ..._ask.scene import Scene
 from ..._ask.settings import Settings
 from ..._motion.events import events as made_events
-from ..._motion.export.npz import require_array
+from ..._motion.export.strict import require_array
 from ..._motion.samples import frozen, of_contact, of_coordinates
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory

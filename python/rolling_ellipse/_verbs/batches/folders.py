@@ -27,10 +27,8 @@ import numpy as np
 from ... import _core
 from ..._ask.check import FloatArray, file_name, flag, shown
 from ..._ask.settings import Settings
+from ..._motion.export import strict
 from ..._motion.export.atomic import remove_unfinished, replacing
-from ..._motion.export.npz import arrays as npz_arrays
-from ..._motion.export.npz import require_array
-from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
 from .answers import TABLES, Answer, Request, Tables, answers, require_tables
 from .arrays import DIRECT, MotionArrays, gathered, names_in
 from .asked import Chunk, scenes_of, sizes
@@ -236,7 +234,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
 def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
     """Return number, axes and shape of the scenes of a folder, if its chunks fit ``end.json``."""
     cure = f": {_AGAIN} writes it anew"
-    end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
+    end = strict.restored(folder / _END, _of_end, strict.OBJECT, "simulate_many", cure)
     for index, (begin, _) in enumerate(sizes(samples)):
         if begin >= end["scenes"]:
             break
@@ -260,7 +258,7 @@ def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
     """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
-    tables = npz_arrays(content, {"request", "scenes", *TABLES})
+    tables = strict.npz_arrays(content, {"request", "scenes", *TABLES})
     scenes = tables["scenes"]
     require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
@@ -282,12 +280,12 @@ def _about(request: Request) -> dict[str, Any]:
 
 
 def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
-    arrays = npz_arrays(content, {"about", "t"})
-    about = parsed("about", str(arrays["about"]))
-    require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
-    require_names("settings", about["settings"], field_names(Settings))
+    arrays = strict.npz_arrays(content, {"about", "t"})
+    about = strict.parsed("about", str(arrays["about"]))
+    strict.require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
+    strict.require_names("settings", about["settings"], strict.field_names(Settings))
     t = arrays["t"]
-    require_array("t", t, np.float64, (t.size,))
+    strict.require_array("t", t, np.float64, (t.size,))
     if not t.size or np.any(np.diff(t, prepend=0.0) < 0):
         raise ValueError("t must hold times that do not fall")
     Settings(**about["settings"])
@@ -296,8 +294,8 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
 
 
 def _of_end(content: bytes) -> dict[str, Any]:
-    found: dict[str, Any] = parsed("end", content.decode())
-    require_names("end", found, ("scenes", "digest", *(set(_GRID) & set(found))))
+    found: dict[str, Any] = strict.parsed("end", content.decode())
+    strict.require_names("end", found, ("scenes", "digest", *(set(_GRID) & set(found))))
     if type(count := found["scenes"]) is not int or count < 0:
         raise ValueError(f"scenes must be a count, got {shown(count)}")
     return found
@@ -305,13 +303,13 @@ def _of_end(content: bytes) -> dict[str, Any]:
 
 def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
     cure = f": delete it, and call {_AGAIN}"
-    return restored(folder / _REQUEST, _of_request, ARCHIVE, "simulate_many", cure)
+    return strict.restored(folder / _REQUEST, _of_request, strict.ARCHIVE, "simulate_many", cure)
 
 
 def _chunk(folder: Path, name: str, n: int, samples: int) -> Tables:
     """Return the tables of the file of this name, with n scenes."""
     read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} computes it anew"
-    return restored(folder / name, read, ARCHIVE, "simulate_many", cure)
+    return strict.restored(folder / name, read, strict.ARCHIVE, "simulate_many", cure)
 
 
 def _replacing(path: Path) -> AbstractContextManager[Path]:
