@@ -31,17 +31,9 @@ class ContactSamples(NamedTuple):
     friction_force: FloatArray
     mode: npt.NDArray[np.int8]
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Let unpickling make the arrays read-only again."""
-        return _frozen_contact, tuple(self)
-
 
 _known_of_all = itemgetter("t", "theta", "omega", "x")
 _beside = itemgetter(*ContactSamples._fields)
-
-
-def _frozen_contact(*arrays: Any) -> ContactSamples:
-    return ContactSamples._make(frozen(values) for values in arrays)
 
 
 def frozen(values: _Values) -> _Values:

@@ -192,9 +192,10 @@ class Trajectory(FieldsOnly):
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make the arrays read-only again: pickles and deep copies do not keep that."""
         self.__dict__.update(state)
-        pairs = *(self.coordinates or ()), *(self.start or ())
-        for values in (self.t, self.theta, self.omega, self.x, *pairs):
-            frozen(values)
+        samples = self.t, self.theta, self.omega, self.x
+        for group in (samples, self.coordinates, self.start, self.contact):
+            for values in group or ():
+                frozen(values)
 
     @classmethod
     def computed(

@@ -169,8 +169,10 @@ def event_row(values: Any) -> list[float]:
 def _require_consistent(trajectory: Trajectory) -> None:
     """Raise ValueError if parts of a trajectory contradict, or its scene cannot be solved."""
     asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
-    _require_asked("model", trajectory.model, asked.model)
-    _require_asked("method", trajectory.method, asked.method)
+    for name in ("model", "method"):
+        wanted, value = getattr(asked, name), getattr(trajectory, name)
+        if wanted not in ("auto", value):
+            raise ValueError(f"{name} must be that of the settings, {wanted!r}, got {value!r}")
     _require_within("span", [span], 0.0, sys.float_info.max)
     _require_within("t_end", [t_end], 0.0, span)
     _require_within("valid_until", [trajectory.valid_until], 0.0, math.inf)
@@ -181,11 +183,6 @@ def _require_consistent(trajectory: Trajectory) -> None:
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
     solve(trajectory.scene, asked, 0.0, trajectory.start)  # raises if the core cannot solve it
-
-
-def _require_asked(name: str, value: str, asked: str) -> None:
-    if asked not in ("auto", value):
-        raise ValueError(f"{name} must be that of the settings, {asked!r}, got {value!r}")
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:

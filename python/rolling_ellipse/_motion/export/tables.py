@@ -32,7 +32,8 @@ def to_dataframe(trajectory: Trajectory) -> DataFrame:
     """
     pandas = required("pandas", "to_dataframe")
     columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
-    columns |= dict(zip(_names(MULTIPLIERS), trajectory.multipliers.T, strict=True))
+    for each, values in zip(MULTIPLIERS, trajectory.multipliers.T, strict=True):
+        columns[each.name] = values
     columns["mode"] = pandas.Categorical.from_codes(trajectory.mode, [mode.name for mode in Mode])
     frame: DataFrame = pandas.DataFrame(columns, index=pandas.Index(trajectory.t.copy(), name="t"))
     everything = (TIME, *QUANTITIES, *MULTIPLIERS, MODE)
@@ -76,10 +77,6 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     }
     found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
     return found
-
-
-def _names(quantities: tuple[Quantity, ...]) -> list[str]:
-    return [each.name for each in quantities]
 
 
 def attributes(quantity: Quantity) -> dict[str, Any]:
