@@ -37,24 +37,16 @@ def film_html(animation: RollingAnimation) -> str:
     strips = [
         {
             **body(motion.scene),
-            "label": label,
-            "share": share,
-            "window": window,
+            "label": animation.labels[k],
+            "share": seen.heights[k],
+            "window": seen.windows[k],
             "track": track(motion, parts, _PIXEL * wide),
-            "theta": source.scene.theta,
-            "turns": turns,
+            "theta": motion.scene.theta,
+            "turns": animation.turns[k],
             "events": events(motion, last),
             "valid": None if np.isinf(motion.valid_until) else motion.valid_until,
         }
-        for motion, source, turns, label, share, window in zip(
-            motions,
-            animation.sources,
-            animation.turns,
-            animation.labels,
-            seen.heights,
-            seen.windows,
-            strict=True,
-        )
+        for k, motion in enumerate(motions)
     ]
     data = {
         "end": last,

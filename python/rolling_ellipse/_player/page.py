@@ -53,28 +53,23 @@ def fragment(
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
     name = hashlib.sha256(known.encode()).hexdigest()[:12]
     module = "\n".join(packaged(f"{each}.js") for each in scripts)
-    pictures = filter(None, (strobe_svg(motion, _style()) for motion in motions))
-    codes = [base64.b64encode(picture.encode()).decode() for picture in pictures]
+    light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
+    style = f"<style>{light}@media (prefers-color-scheme: dark) {{ {dark}}}</style>"
+    images = [
+        f'<img alt="{html.escape(text)}" style="width: 100%" src="data:image/svg+xml;base64,'
+        f'{base64.b64encode(picture.encode()).decode()}">'
+        for motion in motions
+        if (picture := strobe_svg(motion, style))
+    ]
     return (
         f'<div class="rolling-ellipse" data-film="{name}" data-lm-suppress-shortcuts="true">'
-        f"{''.join(_image(code, text) for code in codes)}\n"
+        f"{''.join(images)}\n"
         f'<script type="module">\n{module}\n'
         f'const free = `.rolling-ellipse[data-film="{name}"]:not([data-ready])`;\n'
         f'const film = await unzipped("{packed}");\n'
         f"const host = document.querySelector(free);\nnew {starts}(host, film);\n"
         "host.addEventListener('keydown', (event) => event.stopPropagation());\n</script></div>"
     )
-
-
-def _image(code: str, text: str) -> str:
-    source = f"data:image/svg+xml;base64,{code}"
-    return f'<img alt="{html.escape(text)}" style="width: 100%" src="{source}">'
-
-
-def _style() -> str:
-    """Return the style sheet of pictures, for light and for dark."""
-    light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
-    return f"<style>{light}@media (prefers-color-scheme: dark) {{ {dark}}}</style>"
 
 
 def document(title: str, content: str, language: str = "en") -> str:
