@@ -46,7 +46,8 @@ def cameras(
     follows the middle between the first and the last body. If these part by more than fits, every
     strip follows its own body.
     """
-    size = max(_size(motion) for motion in motions)
+    sizes = [max(motion.scene.a, motion.scene.b) for motion in motions]
+    size = max(sizes)
     columns = len(motions) if beside else 1
     widest = 2 * np.pi * size * SHOWN_TURNS / columns + 4 * size
     seen = [view_of(motion.scene, motion.x, motion.z) for motion in motions]
@@ -55,7 +56,11 @@ def cameras(
     targets = [np.zeros((motion.t.size, 2)) for motion in motions]
     follows = "nothing"
     if right - left > widest:
-        targets = [_feet(motion) for motion in motions]
+        feet = [np.column_stack([motion.x, np.zeros_like(motion.x)]) for motion in motions]
+        targets = [  # the places on the ground below the centre, as the picture has them
+            np.asarray(tilted(motion.scene).transform(below))
+            for motion, below in zip(motions, feet, strict=True)
+        ]
         places = np.array([target[:, 0] for target in targets])
         parted = float(np.max(np.ptp(places, axis=0)))
         together = parted + (BEHIND + AHEAD) * size <= widest
@@ -65,7 +70,10 @@ def cameras(
             targets = [np.column_stack([middle, target[:, 1]]) for target in targets]
         room = parted / 2 if together else 0.0
         left, right = -BEHIND * size - room, AHEAD * size + room
-        depths = [_depth(motion) for motion in motions]
+        depths = [  # of all frames, from the ground below the centre
+            (-0.35 * own, float(np.max(motion.z + np.minimum(motion.z, own))) + 0.3 * own)
+            for motion, own in zip(motions, sizes, strict=True)
+        ]
     if beside:  # one row as wide as a strip
         depths = [(min(bottom for bottom, _ in depths), max(top for _, top in depths))]
     windows, heights, shape = _framed(
@@ -103,19 +111,3 @@ def _framed(
     left, right = ends[0] - air, ends[1] + air
     windows = tuple((left, right, bottom, top) for bottom, top in depths)
     return windows, tuple((top - bottom) / (wide * shape) for bottom, top in depths), shape
-
-
-def _size(motion: Trajectory) -> float:
-    return max(motion.scene.a, motion.scene.b)
-
-
-def _feet(motion: Trajectory) -> FloatArray:
-    """Return the places on the ground below the centre, as the picture has them, (n, 2) [m]."""
-    below = np.column_stack([motion.x, np.zeros_like(motion.x)])
-    return np.asarray(tilted(motion.scene).transform(below))
-
-
-def _depth(motion: Trajectory) -> tuple[float, float]:
-    """Return bottom and top [m] of all frames, from the ground below the centre."""
-    size = _size(motion)
-    return -0.35 * size, float(np.max(motion.z + np.minimum(motion.z, size))) + 0.3 * size

@@ -39,13 +39,8 @@ class Strip:
     def __init__(self, ax: Axes, film: Any, k: int) -> None:
         self.ax, self.motion, self._source = ax, film.motions[k], film.sources[k]
         self._film, self._label, self._views = film, film.labels[k], film.cameras.views[k]
-        self._stands, motion = film.cameras.follows == "nothing", self.motion
-        self._turns = film.turns[k]
-        self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
-        self._skids, self._slip = (
-            drawing.skids(motion),
-            motion.constraint_residuals().slip,
-        )
+        self._stands, self._turns = film.cameras.follows == "nothing", film.turns[k]
+        self._slip = self.motion.constraint_residuals().slip
         self._captions = [self._caption(i) for i in range(film.t.size)]
         self._build()
 
@@ -81,6 +76,10 @@ class Strip:
             units="dots", width=0.035 * ax.figure.dpi, minlength=0,
         )  # fmt: skip
         self.names = [ax.text(0, 0, "", color=plum, zorder=9, clip_on=True) for _ in range(3)]
+        tip, skids, centre = drawing.tip(motion), drawing.skids(motion), (motion.x, motion.z)
+        touching = drawing.contact_points(motion)
+        self._traces = {self.skid_trace: skids, self.tip_trace: tip, self.centre_trace: centre}
+        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # of one frame
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
@@ -92,18 +91,15 @@ class Strip:
         along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
         self.axis_a.set_data(x + along * cosine, z - along * sine)
         self.axis_b.set_data(x + across * sine, z + across * cosine)
-        here, past = slice(i, i + 1), slice(int(self._film.pace.first[i]), i + 1)
-        self.tip.set_data(self._tip[0][here], self._tip[1][here])
-        self.contact.set_data(self._contact[0][here], self._contact[1][here])
-        self.slip.set_data(self._skids[0][here], self._skids[1][here])
+        for lines, first in ((self._marks, i), (self._traces, int(self._film.pace.first[i]))):
+            for line, places in lines.items():
+                line.set_data(*(values[first : i + 1] for values in places))
         if motion.mode[i] == Mode.SLIDING:
-            self.slip.set_marker(self._arrow(float(self._slip[i])))
+            side = ">" if self._slip[i] > 0 else "<"  # along the ground
+            self.slip.set_marker(MarkerStyle(side, transform=drawing.tilted(scene)))
         self.shadow.set_data(*self._shadow(i))
         if self._film.forces or self._film.blow:
             self._point(i)
-        self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
-        self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
-        self.centre_trace.set_data(motion.x[past], motion.z[past])
         self.caption.set_text(self._captions[i])
         left, right, bottom, top = self._views[i]
         middle = np.array([(left + right) / 2, (bottom + top) / 2])
@@ -114,9 +110,8 @@ class Strip:
         changing = [] if self._stands else [self.ruler.ticks, *self.ruler.labels]
         if len(set(self._captions)) > 1:
             changing.append(self.caption)
-        return [*changing, self.shadow, self.skid_trace, self.tip_trace, self.body,
-                self.centre_trace, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
-                self.arrows, *self.names]  # fmt: skip
+        moving = self.shadow, *self._traces, self.axis_a, self.axis_b, *self._marks
+        return [*changing, *moving, self.body, self.arrows, *self.names]
 
     def _point(self, i: int) -> None:
         """Let the arrows show the forces of the ground, and the blow while it fades."""
@@ -145,11 +140,6 @@ class Strip:
         places = seen(begins + [[1], [1], [0]] * arrows)  # ends of forces, beginning of the blow
         for name, text, place, alpha in zip(self.names, texts, places, (1, 1, fresh), strict=True):
             name.set(text=text, position=place, alpha=alpha)
-
-    def _arrow(self, slip: float) -> MarkerStyle:
-        """Return a triangle that points along the ground in the direction of the slip."""
-        along = drawing.tilted(self.motion.scene)
-        return MarkerStyle(">" if slip > 0 else "<", transform=along)
 
     def _shadow(self, i: int) -> tuple[list[float], list[float]]:
         """Return the ends of the shadow below the body: x and z; empty if it touches the ground."""
