@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from .._ask.check import COORDINATES as COORDINATES
-from .._ask.check import FloatArray, broadcast, coordinates, number, require, require_together
+from .._ask.check import FloatArray, broadcast, coordinates, finite, number, require_together
 
 
 @dataclass(frozen=True)
@@ -96,9 +96,7 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
     ValueError
         If a semi-axis is out of its range, or an angle or speed is not finite.
     """
-    shape, (angle, speed) = broadcast(theta=theta, omega=omega)
-    require("theta", "finite", angle, np.isfinite(angle))
-    require("omega", "finite", speed, np.isfinite(speed))
+    shape, (angle, speed) = broadcast(theta=finite("theta", theta), omega=finite("omega", omega))
     size = math.prod(shape)
     q, q_dot = _core.kinematics(size, angle, speed, number("a", a), number("b", b))
     return q.reshape(*shape, COORDINATES), q_dot.reshape(*shape, COORDINATES)

@@ -52,16 +52,18 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     if _core.are_sample_times(times):
         return _ascending(solution, times)
     order = np.argsort(times, kind="stable")
-    place = np.argsort(order)
+    found: dict[str, Any] = taken(_ascending(solution, times[order]), np.argsort(order))
+    return found
 
-    def put_back(values: Any) -> Any:
-        if isinstance(values, ContactSamples):
-            return ContactSamples._make(map(put_back, values))
-        if isinstance(values, tuple):
-            return tuple(map(put_back, values))
-        return frozen(values[place])
 
-    return {name: put_back(values) for name, values in _ascending(solution, times[order]).items()}
+def taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
+    """Return samples at some places: of an array, or of all arrays in dicts and tuples."""
+    if isinstance(values, dict):
+        return {name: taken(part, places) for name, part in values.items()}
+    if isinstance(values, tuple):
+        parts = [taken(part, places) for part in values]
+        return ContactSamples._make(parts) if isinstance(values, ContactSamples) else tuple(parts)
+    return None if values is None else frozen(values[places])
 
 
 def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:

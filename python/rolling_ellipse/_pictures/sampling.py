@@ -10,13 +10,12 @@ import math
 import warnings
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .._ask.check import FloatArray
-from .._motion.samples import ContactSamples, even_times
+from .._motion.samples import even_times, taken
 from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .ground import flat_angle
@@ -32,7 +31,7 @@ _BEND = 1e-3  # a curve that misses its chord by more of its range is seen to be
 _COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
 _STEADY = 1.05  # two counts of half turns whose ratio is smaller are right
 _EVENTS = 4000  # the first and last half of so many events are drawn as jumps
-_COLUMNS = "t", "theta", "omega", "x"
+_SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
 _COMPARED = 64  # samples that are compared with the motion
 _SEEN = 1e-6  # a smaller relative difference is seen in no picture
 _GOLDEN = (math.sqrt(5) - 1) / 2
@@ -176,12 +175,7 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
     if is_at_hand(motion):
         return motion.sol(times)
     nearest = np.argmin(np.abs(np.subtract.outer(times, motion.t)), axis=1)
-    columns: dict[str, Any] = {name: getattr(motion, name)[nearest] for name in _COLUMNS}
-    if motion.coordinates is not None:
-        columns["coordinates"] = tuple(values[nearest] for values in motion.coordinates)
-    if motion.contact is not None:
-        columns["contact"] = ContactSamples(*(values[nearest] for values in motion.contact))
-    return replace(motion, **columns)
+    return replace(motion, **taken({name: getattr(motion, name) for name in _SAMPLES}, nearest))
 
 
 def is_at_hand(motion: Trajectory) -> bool:
