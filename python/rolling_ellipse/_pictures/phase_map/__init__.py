@@ -20,8 +20,8 @@ from ..._verbs.classify import classify
 from ..axes import Artists, axes_of, picture, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
-from .marks import draw_marks, marks_of
-from .plane import Plane, plane_of
+from .marks import draw_marks
+from .plane import AXIS_NAMES, Plane, plane_of
 
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",
@@ -31,12 +31,6 @@ COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.LOSES_CONTACT: "#f6e3bd",
     Outcome.JAMS: PLUM,
     Outcome.EDGE: GREY,
-}
-_AXIS_NAMES = {
-    "aspect": "a/b",
-    "energy": "energy / that to roll over",
-    "speed": "ω lying flat [rad/s]",
-    "friction": "μ",
 }
 _FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has even ticks
 _FINEST = 10_000  # cells along an axis
@@ -134,7 +128,7 @@ def plot_phase_map(
         ax.set_ylim(*plane.ranges[1])
     found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
     name_curves(ax, [_handle(outcome) for outcome in found])
-    return PhaseMap(ax, cells, *draw_marks(ax, marks_of(plane)))
+    return PhaseMap(ax, cells, *draw_marks(ax, plane))
 
 
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
@@ -159,6 +153,6 @@ def _dress_map(ax: Axes, plane: Plane) -> None:
             axis.set_major_locator(AutoLocator() if few else LogLocator(subs=(1, 2, 5)))
             axis.set_major_formatter("{x:g}")
             axis.set_minor_locator(NullLocator())
-        label = _AXIS_NAMES[name]
+        label = AXIS_NAMES[name]
         axis.set_label_text(f"{label}   (at {plane.caption()})" if side == "x" else label)
     ax.spines[["top", "right"]].set_visible(False)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,20 +34,20 @@ _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A line in the plane: its points, properties of Line2D, and its name with the wanted place.
+class Mark(NamedTuple):
+    """A line over one axis of the plane: places on it, and values on the other axis.
 
-    `place` is the share of the visible line at the middle of the name, `above` the side of the
-    line for a reader.
+    Its names, from long to short, are written at the share `place` of the visible line, `above` it
+    or below for a reader. `line` are properties of Line2D.
     """
 
-    x: FloatArray
-    y: FloatArray
     key: str
-    names: tuple[str, ...]  # names of a curve, from long to short
-    line: dict[str, Any] = field(default_factory=dict)
-    place: float = 0.5
+    along: str
+    places: FloatArray
+    values: FloatArray
+    names: tuple[str, ...]
+    line: dict[str, Any]
+    place: float
     above: bool = True
 
 
@@ -83,14 +81,10 @@ def _level_marks(plane: Plane) -> Iterator[Mark]:
     if plane.level == "energy":
         contact, flight = (contact / rolling_over) ** 2, (flight / rolling_over) ** 2
         rolling_over = np.ones_like(rolling_over)
-
-    mark = partial(_curve, plane, along, places)
-    yield mark(rolling_over, "separatrix", ("just rolls over",), line={"ls": "--"}, place=0.12)
-    yield mark(contact, "contact loss", ("N = 0",), place=0.2)
-    yield mark(
-        flight, "lift-off", ("leaves the ground", "lift-off"), line=_LIFT_OFF, place=0.75,
-        above=bool(np.nanmedian(flight - contact) > 0),
-    )  # fmt: skip
+    names, above = ("leaves the ground", "lift-off"), bool(np.nanmedian(flight - contact) > 0)
+    yield Mark("separatrix", along, places, rolling_over, ("just rolls over",), {"ls": "--"}, 0.12)
+    yield Mark("contact loss", along, places, contact, ("N = 0",), {}, 0.2)
+    yield Mark("lift-off", along, places, flight, names, _LIFT_OFF, 0.75, above)
 
 
 def _painleve(plane: Plane) -> Mark:
@@ -98,11 +92,9 @@ def _painleve(plane: Plane) -> Mark:
     if "aspect" not in plane.axes:
         friction = _thresholds(plane).painleve_friction
         return _straight(plane, "Painlevé", "friction", friction, names)
-    aspects = plane.spaced("aspect", _POINTS)
-    frictions = np.array([_thresholds(plane, aspect=float(a)).painleve_friction for a in aspects])
-    return _curve(
-        plane, "aspect", aspects, frictions, "Painlevé", names, line={"ls": "-."}, place=0.6
-    )
+    places = plane.spaced("aspect", _POINTS)
+    values = np.array([_thresholds(plane, aspect=float(a)).painleve_friction for a in places])
+    return Mark("Painlevé", "aspect", places, values, names, {"ls": "-."}, 0.6)
 
 
 def _thresholds(plane: Plane, **along: float) -> Thresholds:
@@ -115,30 +107,19 @@ def _thresholds(plane: Plane, **along: float) -> Thresholds:
 def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ...]) -> Mark:
     """Return the line across the plane at a value of one of its axes."""
     along = next(each for each in plane.axes if each != axis)
-    ends, line = np.array(plane.range_of(along)), {"ls": ":" if axis == "aspect" else "-."}
-    return _curve(plane, along, ends, np.full(2, at), key, names, line=line, place=0.7)
+    line = {"ls": ":" if axis == "aspect" else "-."}
+    return Mark(key, along, np.array(plane.range_of(along)), np.full(2, at), names, line, 0.7)
 
 
-def _curve(
-    plane: Plane, along: str, places: FloatArray, values: FloatArray, *args: Any, **how: Any
-) -> Mark:
-    """Return a curve of the plane: `places` on the axis `along`, `values` on the other axis."""
-    x, y = (places, values) if plane.axes[0] == along else (values, places)
-    return Mark(x, y, *args, **how)
-
-
-def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict[str, Text]]:
+def draw_marks(ax: Axes, plane: Plane) -> tuple[dict[str, Line2D], dict[str, Text]]:
     """Draw the marks that are in view, and their names where there is room; both by key."""
-    seen = [(mark, visible_part(ax, mark.x, mark.y)) for mark in marks]
-    seen = [(mark, part) for mark, part in seen if len(part) > 1]
-    lines = {
-        mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LINE | mark.line))[0]
-        for mark, _ in seen
-    }
-    labels = {
-        mark.key: Label(
-            mark.names, part, mark.place, ABOVE_FIRST if mark.above else BELOW_FIRST, along=True
-        )
-        for mark, part in seen
-    }
+    lines: dict[str, Line2D] = {}
+    labels: dict[str, Label] = {}
+    for mark in marks_of(plane):
+        x, y = (mark.places, mark.values)[:: 1 if mark.along == plane.axes[0] else -1]
+        part = visible_part(ax, x, y)
+        if len(part) > 1:
+            lines[mark.key] = ax.plot(x, y, scalex=False, scaley=False, **(_LINE | mark.line))[0]
+            sides = ABOVE_FIRST if mark.above else BELOW_FIRST
+            labels[mark.key] = Label(mark.names, part, mark.place, sides, along=True)
     return lines, label_lines(ax, labels, FontProperties(size="x-small").get_size_in_points())

@@ -16,7 +16,10 @@ from ... import _core
 from ..._ask.check import FloatArray, choice, number, positive, shown
 from ..._ask.scene import Scene
 
-QUANTITIES = ("aspect", "energy", "speed", "friction")
+AXIS_NAMES = {
+    "aspect": "a/b", "energy": "energy / that to roll over", "speed": "ω lying flat [rad/s]",
+    "friction": "μ",
+}  # fmt: skip
 _LEVELS = {"energy", "speed"}  # each follows from the other
 _WIDEST = 1e3  # largest a/b, as everywhere
 _FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
@@ -86,7 +89,7 @@ def plane_of(
 ) -> Plane:
     """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
     for argument, axis in zip("xy", axes, strict=True):
-        choice(argument, axis, QUANTITIES)
+        choice(argument, axis, tuple(AXIS_NAMES))
     if axes[0] == axes[1] or set(axes) == _LEVELS:
         raise ValueError(
             "x and y must be two of the aspect, the energy or the speed, and the friction, "
