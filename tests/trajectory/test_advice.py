@@ -11,7 +11,7 @@ from oracles import losses
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, StabilityWarning, _core, simulate
-from rolling_ellipse._motion.relative_errors import energy_error
+from rolling_ellipse._motion.constraints import energy_error
 
 SCENE = Scene(2.0, 1.0, mass=3.0, theta=0.2, omega=3.2, x=1.0)
 DRIFTING: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from .._ask.check import choice
 from .._core import Mode
-from .._motion.relative_errors import energy_error
+from .._motion.constraints import energy_error
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, picture
 from .comparison import PLAIN, Comparison, Style

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 
 from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
+from .._motion.constraints import constraint_errors, worst
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
-from .._motion.relative_errors import constraint_errors, worst
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, panels_of, picture
 from .comparison import Comparison, Style

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
 from .._ask.check import FloatArray, file_name
-from .._motion.relative_errors import constraint_errors, energy_error, worst
+from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
 from .axes import Artists, close, figure_of, picture
 from .comparison import Comparison

@@ -14,7 +14,7 @@ from ..._ask.check import FloatArray
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS
 from ..._core import Validity
-from ..._motion.relative_errors import constraint_errors, energy_error
+from ..._motion.constraints import constraint_errors, energy_error
 from ..._motion.status import Status
 from ..._motion.trajectory import Trajectory
 from ..certify import certify
