@@ -55,6 +55,8 @@ if TYPE_CHECKING:
 
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
+# What the ground does not settle, by modes
+_FREE = {_core.Mode.SLIDING: ("x_dot",), _core.Mode.FLIGHT: ("z", "x_dot", "z_dot")}
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
@@ -355,10 +357,10 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
-        state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x")}
-        return reached_scene(
-            {**self.scene.__getstate__(), **state, **_placement(at), "impulse": None}
-        )
+        free = _FREE.get(_core.Mode(int(at.mode[0])), ())
+        state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x", *free)}
+        constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
+        return reached_scene(self.scene.__getstate__() | constrained | state)
 
     # -- methods of other modules, bound by `_show.methods` ----------------------------------------
 
@@ -460,16 +462,6 @@ find_late(Trajectory, reason=_reason, stats=_stats)
 for _each in (*QUANTITIES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence
-
-
-def _placement(at: Trajectory) -> dict[str, Any]:
-    """Return z, x_dot and z_dot of the first sample as a Scene takes them: None where rolling."""
-    if at.mode[0] in (_core.Mode.ROLLING, _core.Mode.REST):
-        return {"z": None, "x_dot": None, "z_dot": None}
-    x_dot = float(at.x_dot[0])
-    if at.mode[0] == _core.Mode.SLIDING:
-        return {"z": None, "x_dot": x_dot, "z_dot": None}
-    return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
 
 
 def solve(scene: Scene, settings: Settings, t_end: float, start: Pair | None) -> _core.Solution:
