@@ -40,13 +40,11 @@ if TYPE_CHECKING:
     from typing import Self
 
     from .._pictures.animation import RollingAnimation
-    from .._pictures.energy import Energy
-    from .._pictures.errors import Constraints, Error
+    from .._pictures.errors import Constraints, Energy, Error
     from .._pictures.forces import Forces
     from .._pictures.overview import Overview
-    from .._pictures.paths import Paths
     from .._pictures.phase import Phase
-    from .._pictures.strobe import Strobe
+    from .._pictures.stills import Paths, Strobe
     from .._show import notebook
     from . import passages
     from .export import files, tables

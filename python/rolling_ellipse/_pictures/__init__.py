@@ -1,12 +1,12 @@
 """Pictures and films: everything that needs matplotlib, loaded when first asked for."""
 
 from .animation import animate as animate
-from .energy import plot_energy as plot_energy
 from .errors import plot_constraints as plot_constraints
+from .errors import plot_energy as plot_energy
 from .errors import plot_error as plot_error
 from .forces import plot_forces as plot_forces
 from .overview import plot as plot
-from .paths import plot_paths as plot_paths
 from .phase import plot_phase as plot_phase
 from .phase_map import plot_phase_map as plot_phase_map
-from .strobe import plot_strobe as plot_strobe
+from .stills import plot_paths as plot_paths
+from .stills import plot_strobe as plot_strobe

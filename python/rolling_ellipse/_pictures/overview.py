@@ -17,14 +17,13 @@ from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
 from .axes import Artists, close, figure_of, picture
 from .comparison import Comparison
-from .energy import draw_energies
-from .errors import draw_errors
+from .errors import draw_energies, draw_errors
 from .forces import Stems, draw_forces, dress_forces
 from .legends import name_curves
 from .panels import draw_curve, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time
-from .strobe import Strobe, check_strobe, plot_strobe
+from .stills import Strobe, check_strobe, plot_strobe
 
 _SHARE = 0.16  # height of the bodies' axes over the width of the figure
 

@@ -25,7 +25,7 @@ from ..._motion.export.atomic import replacing
 from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
 from ..axes import Alone
-from ..energy import plot_energy
+from ..errors import plot_energy
 from ..forces import plot_forces
 from ..ground import flat_angle
 from ..palette import palette_of
