@@ -61,15 +61,8 @@ def fragment(
         for motion in motions
         if (picture := strobe_svg(motion, style))
     ]
-    return (
-        f'<div class="rolling-ellipse" data-film="{name}" data-lm-suppress-shortcuts="true">'
-        f"{''.join(images)}\n"
-        f'<script type="module">\n{module}\n'
-        f'const free = `.rolling-ellipse[data-film="{name}"]:not([data-ready])`;\n'
-        f'const film = await unzipped("{packed}");\n'
-        f"const host = document.querySelector(free);\nnew {starts}(host, film);\n"
-        "host.addEventListener('keydown', (event) => event.stopPropagation());\n</script></div>"
-    )
+    named = {"name": name, "images": "".join(images), "module": module, "packed": packed}
+    return Template(packaged("fragment.html").strip()).substitute(named, starts=starts)
 
 
 def document(title: str, content: str, language: str = "en") -> str:
@@ -77,17 +70,5 @@ def document(title: str, content: str, language: str = "en") -> str:
 
     In a frame it posts its height [CSS px] to the page around it, whenever that changes.
     """
-    return (
-        f'<!DOCTYPE html>\n<html lang="{html.escape(language)}">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        '<link rel="icon" href="data:,">\n'
-        f"<title>{html.escape(title)}</title>\n"
-        "<style>:root { color-scheme: light dark } [data-theme=light] { color-scheme: light }\n"
-        "[data-theme=dark] { color-scheme: dark }\n"
-        "body { margin: 0 auto; max-width: 1100px; padding: 1rem }\n"
-        "h1 { margin: 0 0 .6rem; font: 600 1.3rem system-ui, sans-serif }</style>\n"
-        f"</head>\n<body>\n<main>\n<h1>{html.escape(title)}</h1>\n{content}\n</main>\n<script>\n"
-        "if (parent !== window) new ResizeObserver(() => parent.postMessage(\n"
-        "  { rollingEllipse: { height: document.body.offsetHeight } }, '*'))\n"
-        "  .observe(document.body);\n</script>\n</body>\n</html>\n"
-    )
+    named = {"language": html.escape(language), "title": html.escape(title), "content": content}
+    return Template(packaged("page.html")).substitute(named)
