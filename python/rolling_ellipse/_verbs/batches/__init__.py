@@ -1,5 +1,5 @@
 """Many motions: scenes as tables, chunk by chunk, by any workers, kept in memory or in a folder."""
 
-from .arrays import MotionArrays as MotionArrays
+from .answers import MotionArrays as MotionArrays
 from .folders import load_many as load_many
 from .many import simulate_many as simulate_many

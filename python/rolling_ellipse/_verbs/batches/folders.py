@@ -29,8 +29,7 @@ from ..._ask.check import FloatArray, file_name, flag, shown
 from ..._ask.settings import Settings
 from ..._motion.export import strict
 from ..._motion.export.atomic import remove_unfinished, replacing
-from .answers import TABLES, Answer, Request, Tables, answers, require_tables
-from .arrays import DIRECT, MotionArrays, gathered, names_in
+from . import answers as results
 from .asked import Chunk, scenes_of, sizes
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class Folder:
     Anything else in the folder is refused by its name.
     """
 
-    def __init__(self, path: Any, request: Request) -> None:
+    def __init__(self, path: Any, request: results.Request) -> None:
         self.path = Path(file_name("out", path))
         about = _about(request)
         self._request, self._samples = _digest_of(about, request.times), request.times.size
@@ -93,7 +92,7 @@ class Folder:
                 return True
         return False
 
-    def store(self, chunk: Chunk, tables: Tables) -> None:
+    def store(self, chunk: Chunk, tables: results.Tables) -> None:
         name = _name(chunk.index, self._request, chunk.table)
         with _replacing(self.path / name) as new, open(new, "wb") as file:
             np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
@@ -131,20 +130,20 @@ class Folder:
         raise ValueError(f"out must be {required}, got {str(self.path)!r}{why}")
 
 
-class StoredMotions(Sequence[Answer]):
+class StoredMotions(Sequence[results.Answer]):
     """The motions in a folder of `simulate_many`, read a file at a time when they are asked for.
 
     A scene without a motion has its exception, as in the list of `simulate_many`.
     """
 
     def __init__(
-        self, folder: Path, request: Request, names: list[str], end: dict[str, Any]
+        self, folder: Path, request: results.Request, names: list[str], end: dict[str, Any]
     ) -> None:
         self._folder, self._request, self._names = folder, request, names
         self._axes, self._shape = tuple(end["axes"]), tuple(end["shape"])
         begins = islice(sizes(request.times.size), len(names))
         self._begins: list[int] = [*(begin for begin, _ in begins), end["scenes"]]
-        self._last: tuple[int, list[Answer]] = -1, []
+        self._last: tuple[int, list[results.Answer]] = -1, []
 
     def __len__(self) -> int:
         return self._begins[-1]
@@ -158,32 +157,33 @@ class StoredMotions(Sequence[Answer]):
             self._last = index, self._answers(index)
         return self._last[1][wanted - self._begins[index]]
 
-    def __iter__(self) -> Iterator[Answer]:
+    def __iter__(self) -> Iterator[results.Answer]:
         for index in range(len(self._names)):
             yield from self._answers(index)
 
     def __repr__(self) -> str:
         return f"<StoredMotions of {len(self)} scenes in {str(self._folder)!r}>"
 
-    def _answers(self, index: int) -> list[Answer]:
+    def _answers(self, index: int) -> list[results.Answer]:
         tables = self._tables(index)
-        return answers(self._request, scenes_of(tables["scenes"]), tables, keep_events=True)
+        return results.answers(self._request, scenes_of(tables["scenes"]), tables, keep_events=True)
 
-    def _tables(self, index: int) -> Tables:
+    def _tables(self, index: int) -> results.Tables:
         begin, end = self._begins[index : index + 2]
         return _chunk(self._folder, self._names[index], end - begin, self._request.times.size)
 
-    def arrays(self, returns: Any = DIRECT) -> MotionArrays:
+    def arrays(self, returns: Any = results.DIRECT) -> results.MotionArrays:
         """Return quantities of all motions, as `simulate_many` does for ``returns``."""
         each = map(self._tables, range(len(self._names)))
         parts = ((tables["scenes"], tables) for tables in each)
-        return gathered(names_in(returns), self._request, parts, self._axes, self._shape)
+        names = results.names_in(returns)
+        return results.gathered(names, self._request, parts, self._axes, self._shape)
 
-    def to_xarray(self, returns: Any = DIRECT) -> Dataset:
+    def to_xarray(self, returns: Any = results.DIRECT) -> Dataset:
         """Return `MotionArrays.to_xarray` of quantities of all motions."""
         return self.arrays(returns).to_xarray()
 
-    def to_dataframe(self, returns: Any = DIRECT) -> DataFrame:
+    def to_dataframe(self, returns: Any = results.DIRECT) -> DataFrame:
         """Return `MotionArrays.to_dataframe` of quantities of all motions."""
         return self.arrays(returns).to_dataframe()
 
@@ -227,7 +227,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
         )
     names = _chunks(folder)
     end = _end_of(folder, _digest_of(about, times), names, times.size)
-    request = Request(Settings(**about["settings"]), times, about["raise_on_failure"])
+    request = results.Request(Settings(**about["settings"]), times, about["raise_on_failure"])
     return StoredMotions(folder, request, list(chain.from_iterable(names.values())), end)
 
 
@@ -256,11 +256,11 @@ def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any
     return _digest(json.dumps([request, scenes, each, *grid.values()]).encode())
 
 
-def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
+def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
     """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
-    tables = strict.npz_arrays(content, {"request", "scenes", *TABLES})
+    tables = strict.npz_arrays(content, {"request", "scenes", *results.TABLES})
     scenes = tables["scenes"]
-    require_tables(scenes, tables, n, samples)
+    results.require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
         raise ValueError("request and scenes must match the digests in the name of the file")
     if (refused := _core.first_refused(scenes, reached=True)) is not None:
@@ -268,7 +268,7 @@ def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
     return tables
 
 
-def _about(request: Request) -> dict[str, Any]:
+def _about(request: results.Request) -> dict[str, Any]:
     about = {
         "schema": _SCHEMA,
         "version": version("rolling-ellipse"),
@@ -306,7 +306,7 @@ def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
     return strict.restored(folder / _REQUEST, _of_request, strict.ARCHIVE, "simulate_many", cure)
 
 
-def _chunk(folder: Path, name: str, n: int, samples: int) -> Tables:
+def _chunk(folder: Path, name: str, n: int, samples: int) -> results.Tables:
     """Return the tables of the file of this name, with n scenes."""
     read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} computes it anew"
     return strict.restored(folder / name, read, strict.ARCHIVE, "simulate_many", cure)

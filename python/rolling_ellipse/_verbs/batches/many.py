@@ -15,8 +15,7 @@ from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
-from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
-from .arrays import gathered, names_in
+from .answers import SAMPLE_BYTES, Answer, Request, answers, gathered, names_in, solve, solve_task
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
