@@ -39,12 +39,7 @@ _SAID = {  # parts of the sentence about a start; numbers by their names in the 
     "not_pressed": "the ground would have to pull: the body slides, not pressed "
     "(infinite friction)",
 }
-_DOES = {
-    Mode.ROLLING: "rolls",
-    Mode.SLIDING: "slides",
-    Mode.FLIGHT: "flies",
-    Mode.REST: "rests",
-}
+_DOES = {Mode.ROLLING: "rolls", Mode.SLIDING: "slides", Mode.FLIGHT: "flies", Mode.REST: "rests"}
 
 
 def blow_in_words(impulse: Impulse) -> str:

@@ -73,10 +73,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     q, q_dot = np.broadcast_arrays(q, q_dot)
     shape = q.shape[:-1]
     position, velocity, gap, slip = _core.constraints(
-        q.reshape(-1, COORDINATES),
-        q_dot.reshape(-1, COORDINATES),
-        number("a", a),
-        number("b", b),
+        q.reshape(-1, COORDINATES), q_dot.reshape(-1, COORDINATES), number("a", a), number("b", b)
     )
     return ConstraintResiduals(
         position.reshape(*shape, 3),

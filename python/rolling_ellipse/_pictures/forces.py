@@ -26,7 +26,7 @@ from .sampling import are_ranges, curve, over_time, ranges
 Stems = tuple[Line2D, Line2D]
 """The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
 _SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
-_LIMIT = ":"
+_LIMIT: dict[str, Any] = {"lw": 1.2, "ls": ":", "label": "available"}
 _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
 
 
@@ -86,11 +86,7 @@ def plot_forces(
     panels = panels_of(ax, figsize)
     drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
     impulses = dress_forces(panels[0], shown)
-    below = panels[1:]
-    needed = tuple(_draw_needed(ax, *each) for ax in below for each in shown)
-    available = tuple(_draw_available(ax, *each) for ax in below for each in shown)
-    for panel in below:
-        _dress_needed(panel, shown, any(available))
+    needed, available = _draw_needed(panels[1], shown) if len(panels) == 2 else ((), ())
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
@@ -175,27 +171,30 @@ def _fit_lines(ax: Axes) -> None:
     ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
 
-def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
-    colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
-    options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
-    t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **options, **dot(t))[0]
-
-
-def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:
-    friction = motion.scene.friction
-    if not math.isfinite(friction):
-        return None
-    colour = style.colour or palette_of(ax).grey
-    return ax.axhline(friction, color=colour, lw=1.2, ls=_LIMIT, label="available")
-
-
-def _dress_needed(ax: Axes, shown: Comparison, limited: bool) -> None:
-    values = [motion.friction_needed for motion in shown.motions]
-    values.append(np.array([motion.scene.friction for motion in shown.motions]))
-    finite = np.concatenate([v[np.isfinite(v)] for v in values])
+def _draw_needed(
+    ax: Axes, shown: Comparison
+) -> tuple[tuple[Line2D, ...], tuple[Line2D | None, ...]]:
+    """Draw and return |F|/N, and the coefficients of friction where they are finite."""
+    needed: list[Line2D] = []
+    for motion, style in shown:
+        colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
+        options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
+        t, values = curve(motion.t, motion.friction_needed)
+        options |= {"color": colour, "ls": style.dash, "label": label} | dot(t)
+        needed += ax.plot(t, values, **options)
+    available = [
+        ax.axhline(motion.scene.friction, color=style.colour or palette_of(ax).grey, **_LIMIT)
+        if math.isfinite(motion.scene.friction)
+        else None
+        for motion, style in shown
+    ]
+    every = [motion.friction_needed for motion in shown.motions]
+    every.append(np.array([motion.scene.friction for motion in shown.motions]))
+    finite = np.concatenate([each[np.isfinite(each)] for each in every])
     reach = min(float(np.max(finite, initial=0.0)), _STEEP)
     top = 1.15 * reach or 1.0
     ax.set_ylim(-0.03 * top, top)
     ax.set_ylabel("|F|/N")
-    name_curves(ax, quantity_handles([("μ", _LIMIT)], shown.palette) if limited else [])
+    limits = quantity_handles([("μ", _LIMIT["ls"])], shown.palette) if any(available) else []
+    name_curves(ax, limits)
+    return tuple(needed), tuple(available)
