@@ -26,8 +26,8 @@ from .._verbs.classify import thresholds
 from .._verbs.outcome import outcome
 from ..geometry import support
 from .film import body, events
+from .page import filled, numbers_in, written
 from .tracks import columns, sample_times
-from .words import filled, numbers_in, written
 
 Sentence = list[Any]  # a key, and the numbers for the braces of its text
 IN_THE_AIR = len(Outcome)  # the code of a body that does not come to the ground

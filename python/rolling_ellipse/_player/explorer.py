@@ -15,8 +15,7 @@ from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Impulse, Scene, require_scene
 from .._motion.export.atomic import replacing
 from . import blows
-from .page import document, fragment
-from .words import escaped, filled, packaged, words
+from .page import document, escaped, filled, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 

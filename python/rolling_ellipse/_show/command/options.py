@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 from ... import scenes
 from ..._ask.scene import Impulse, Scene
 from ..._ask.settings import METHODS, MODELS
-from ..._player.words import LANGUAGES
+from ..._player.page import LANGUAGES
 
 SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",
