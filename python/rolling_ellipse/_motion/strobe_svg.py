@@ -1,4 +1,7 @@
-"""A small picture of a motion as SVG: the body at even times, in the colour of the text."""
+"""A motion in a notebook: a table of its facts over a small picture as SVG.
+
+The picture shows the body at even times, in the colour of the text.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .._ask.printing import Row, brief, html_table
 from .samples import even_times
 
 if TYPE_CHECKING:
@@ -91,3 +95,26 @@ def _point(place: complex) -> str:
 def _line(places: Any, width: float) -> str:
     points = " ".join(_point(place) for place in places.tolist())
     return f'<polyline stroke-width="{width:g}" points="{points}"/>'
+
+
+def _repr_html_(trajectory: Trajectory) -> str:
+    """Return a table of the motion's facts and, if there are samples, the picture `strobe_svg`."""
+    return f"{html_table(repr(trajectory)[1:-1], _rows(trajectory))}{strobe_svg(trajectory)}"
+
+
+def _rows(trajectory: Trajectory) -> list[Row]:
+    rows: list[Row] = [
+        ("scene", repr(trajectory.scene)),
+        ("status", f"{trajectory.status.name}: {trajectory.message}"),
+        ("reason", trajectory.reason),
+    ]
+    if trajectory.t.size:
+        theta, x, omega = (getattr(trajectory, name)[-1] for name in ("theta", "x", "omega"))
+        rows.append(
+            ("at the end", f"theta = {theta:.6g} rad, omega = {omega:.6g} rad/s, x = {x:.6g} m")
+        )
+    if trajectory.events:
+        last = trajectory.events[-1]
+        count = f"{len(trajectory.events)}, the last {last.kind.name} at t = {brief(last.t)} s"
+        rows.append(("events", count))
+    return rows

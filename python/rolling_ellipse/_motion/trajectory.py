@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from .._pictures.overview import Overview
     from .._pictures.phase import Phase
     from .._pictures.stills import Paths, Strobe
-    from .._show import notebook
-    from . import passages
+    from . import passages, strobe_svg
     from .export import files, tables
 
     _Path = str | os.PathLike[str]
@@ -365,7 +364,7 @@ class Trajectory(FieldsOnly):
     if TYPE_CHECKING:
         when = passages.when
         save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
-        _repr_html_ = notebook._repr_html_
+        _repr_html_ = strobe_svg._repr_html_
 
         def plot(self, path: _Path | None = None, **options: Any) -> Overview: ...
         def plot_strobe(self, **options: Any) -> Strobe: ...

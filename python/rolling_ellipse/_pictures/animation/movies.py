@@ -102,15 +102,13 @@ def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -
             f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
         )
     program = ffmpeg() if suffix in ENCODERS else ""
-    if (
-        suffix == ".webm"
-        and (encoder := ENCODERS[suffix][0])
-        not in run([program, "-encoders"], capture_output=True, text=True).stdout
-    ):
-        raise ValueError(
-            f"{argument} must end in one of .gif, .mp4, .html, as ffmpeg has no encoder {encoder}, "
-            f"got {str(target)!r}"
-        )
+    if suffix == ".webm":
+        known = run([program, "-encoders"], capture_output=True, text=True).stdout
+        if (encoder := ENCODERS[suffix][0]) not in known:
+            raise ValueError(
+                f"{argument} must end in one of .gif, .mp4, .html, as ffmpeg has no encoder "
+                f"{encoder}, got {str(target)!r}"
+            )
     return suffix
 
 
