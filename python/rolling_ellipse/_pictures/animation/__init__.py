@@ -16,7 +16,7 @@ from ..._motion.trajectory import Trajectory
 from ..axes import picture, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
-from .pace import pace, within
+from .movies import pace, within
 
 __all__ = ["RollingAnimation", "animate"]
 

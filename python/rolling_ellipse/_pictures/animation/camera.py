@@ -38,13 +38,10 @@ def cameras(
 ) -> Cameras:
     """Return the views of motions sampled at the same frames.
 
-    `shape` is the height of the picture over its width, None to choose it. `head` and `foot` are
-    the free heights at the top and bottom of each strip, over the picture's width. If `beside`,
-    the strips stand side by side.
-
     The camera stands still if all motions fit into about three turns (side by side, fewer). Else it
     follows the middle between the first and the last body. If these part by more than fits, every
-    strip follows its own body.
+    strip follows its own body. Over the width of the picture are its height, `shape` (None to
+    choose it), and the free heights `head` and `foot` at the top and bottom of each strip.
     """
     sizes = [max(motion.scene.a, motion.scene.b) for motion in motions]
     size = max(sizes)

@@ -31,8 +31,7 @@ from ..ground import flat_angle
 from ..palette import palette_of
 from ..phase import folded, plot_phase
 from .camera import cameras
-from .movies import Pixels, ffmpeg, film_suffix, write_gif, write_video
-from .pace import Pace
+from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .strip import Strip
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
