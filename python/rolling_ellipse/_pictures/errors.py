@@ -18,13 +18,14 @@ from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, panels_of, picture
-from .comparison import PLAIN, Comparison, Style
+from .comparison import Comparison, Style
 from .legends import name_curves, some_of
 from .palette import palette_of
-from .panels import DASHES, dot, draw_curve, finish
+from .panels import DASHES, dot, draw_curves, finish
 from .sampling import are_ranges, for_dots, over_time, ranges
 
 KINDS = ("energies", "error")
+ENERGIES = {"energy": "total", "kinetic_energy": "kinetic", "potential_energy": "potential"}
 QUANTITIES = {  # quantities and their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
     "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
@@ -78,18 +79,6 @@ def draw_errors(
     return tuple(lines)
 
 
-def draw_energies(
-    ax: Axes, motion: Trajectory, style: Style = PLAIN
-) -> tuple[Line2D, Line2D, Line2D]:
-    """Draw the energy and its two parts."""
-    ax.set_ylabel("energy [J]")
-    return (
-        draw_curve(ax, motion, motion.energy, "total", 0, style),
-        draw_curve(ax, motion, motion.kinetic_energy, "kinetic", 1, style),
-        draw_curve(ax, motion, motion.potential_energy, "potential", 2, style),
-    )
-
-
 @dataclass(frozen=True, repr=False)
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
@@ -138,11 +127,8 @@ def plot_energy(
     shown = shown.sampled(over_time if wanted == "energies" else for_dots)
     ax = axes_of(ax, (7, 3.4), figsize)
     if wanted == "energies":
-        drawn = (draw_energies(ax, motion, style) for motion, style in shown)
-        total, kinetic, potential = zip(*drawn, strict=True)
-        shown.restyle(*total, *kinetic, *potential)
-        names = ("total", "kinetic", "potential")
-        handles = shown.handles(ax, list(zip(names, DASHES, strict=True)))
+        total, kinetic, potential = draw_curves(ax, shown, "energy [J]", ENERGIES)
+        handles = shown.handles(ax, list(zip(ENERGIES.values(), DASHES, strict=True)))
         return Energy(ax, total, kinetic, potential, (), finish([ax], shown, handles))
     # Sliding and impacts lose energy; this is no error.
     loses = any(each.events or (each.mode == Mode.SLIDING).any() for each in shown.motions)

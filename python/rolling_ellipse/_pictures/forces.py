@@ -17,14 +17,17 @@ from matplotlib.ticker import SymmetricalLogLocator
 from .._core import EventKind
 from .._motion.trajectory import Trajectory
 from .axes import Artists, panels_of, picture
-from .comparison import PLAIN, Comparison, Style
+from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
 from .palette import palette_of
-from .panels import DASHES, RANGE, dot, draw_curve, entries_of, events_shown, finish
+from .panels import DASHES, RANGE, dot, draw_curves, entries_of, events_shown, finish
 from .sampling import are_ranges, curve, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]
 """The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
+_Lines = tuple[Line2D, ...]
+_Limits = tuple[PolyCollection | None, ...]
+_FORCES = {"normal_force": "normal", "friction_force": "friction"}
 _SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
 _LIMIT: dict[str, Any] = {"lw": 1.2, "ls": ":", "label": "available"}
 _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
@@ -84,44 +87,25 @@ def plot_forces(
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(over_time)
     panels = panels_of(ax, figsize)
-    drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
-    impulses = dress_forces(panels[0], shown)
+    normal, friction, limits, impulses = draw_forces(panels[0], shown)
     needed, available = _draw_needed(panels[1], shown) if len(panels) == 2 else ((), ())
-    normal, friction, limits = zip(*drawn, strict=True)
-    shown.restyle(*normal, *friction, *needed)
-    handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
+    shown.restyle(*needed)
+    handles = shown.handles(panels[0], list(zip(_FORCES.values(), DASHES, strict=False)))
     if not shown.alone:
         handles += entries_of([upright for upright, _ in impulses])
     marks = finish(panels, shown, handles)
     return Forces(tuple(panels), normal, friction, limits, impulses, needed, available, marks)
 
 
-def draw_forces(
-    ax: Axes, motion: Trajectory, style: Style = PLAIN
-) -> tuple[Line2D, Line2D, PolyCollection | None]:
-    """Draw N and F over the band +-friction N of F; infinite friction has no band."""
-    limit = None
-    if math.isfinite(motion.scene.friction):
-        t, bound = motion.t, motion.scene.friction * motion.normal_force
-        if are_ranges(motion):
-            t, _, bound = ranges(t, bound)
-        colour, alpha = (style.colour, 0.15) if style.colour else (palette_of(ax).shade(0.25), 1.0)
-        limit = ax.fill_between(
-            t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
-        )
-    normal = draw_curve(ax, motion, motion.normal_force, "normal", 0, style)
-    friction = draw_curve(ax, motion, motion.friction_force, "friction", 1, style)
-    return normal, friction, limit
+def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, tuple[Stems, ...]]:
+    """Draw and return N and F of each motion, the band +-friction N of F, and impulses of impacts.
 
-
-def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
-    """Draw and return the impulses of impacts for each motion, and scale the force axis.
-
-    It is linear, or beyond the weight logarithmic, where spikes tower.
+    The axis is linear, or beyond the weight logarithmic, where spikes tower.
     """
+    limits = tuple(_draw_limit(ax, *each) for each in shown)
+    normal, friction = draw_curves(ax, shown, "force [N]", _FORCES)
     impulses = _draw_impulses(ax, shown)
     ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
-    ax.set_ylabel("force [N]")
     motions = shown.motions
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
     if ax.dataLim.height < 1e-9 * weight:  # flight all the time: the forces give no scale
@@ -134,7 +118,18 @@ def dress_forces(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
         ax.yaxis.set_major_locator(ticks)
         ax.set_ylabel(f"force [N]\nlog beyond {decade:g}")
         _fit_lines(ax)
-    return impulses
+    return normal, friction, limits, impulses
+
+
+def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | None:
+    """Draw the band of a motion; infinite friction has none."""
+    if not math.isfinite(motion.scene.friction):
+        return None
+    t, bound = motion.t, motion.scene.friction * motion.normal_force
+    if are_ranges(motion):
+        t, _, bound = ranges(t, bound)
+    colour, alpha = (style.colour, 0.15) if style.colour else (palette_of(ax).shade(0.25), 1.0)
+    return ax.fill_between(t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN")
 
 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
@@ -171,9 +166,7 @@ def _fit_lines(ax: Axes) -> None:
     ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
 
-def _draw_needed(
-    ax: Axes, shown: Comparison
-) -> tuple[tuple[Line2D, ...], tuple[Line2D | None, ...]]:
+def _draw_needed(ax: Axes, shown: Comparison) -> tuple[_Lines, tuple[Line2D | None, ...]]:
     """Draw and return |F|/N, and the coefficients of friction where they are finite."""
     needed: list[Line2D] = []
     for motion, style in shown:

@@ -12,19 +12,20 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from .._ask.check import FloatArray, file_name
+from .._ask.check import file_name
 from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
 from .axes import Artists, close, figure_of, picture
 from .comparison import Comparison
-from .errors import draw_energies, draw_errors
-from .forces import Stems, draw_forces, dress_forces
+from .errors import ENERGIES, draw_errors
+from .forces import Stems, draw_forces
 from .legends import name_curves
-from .panels import draw_curve, dress_over_time, note_of
+from .panels import draw_curves, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
 
+_STATES = {"theta": "θ [rad]", "omega": "ω [rad/s]", "z": "z of centre [m]"}
 _SHARE = 0.16  # height of the bodies' axes over the width of the figure
 
 
@@ -84,7 +85,6 @@ def plot(
     """
     check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
     shown = Comparison(trajectory).sampled(over_time)
-    (motion,) = shown.motions
     name = None if path is None else file_name("path", path)
     whole = figure_of(figure, (8.6, 8.0), figsize)
     grid = whole.add_gridspec(4, 2, height_ratios=[1.6, 1, 1, 1])
@@ -96,12 +96,12 @@ def plot(
     beside = whole.add_subplot(top[1])
     phase = plot_phase(trajectory, ax=beside) if knows_turns(trajectory) else None
     panels = [whole.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]
-    theta = _draw_state(panels[0], motion, motion.theta, "θ [rad]")
-    omega = _draw_state(panels[1], motion, motion.omega, "ω [rad/s]")
-    height = _draw_state(panels[2], motion, motion.z, "z of centre [m]")
-    forces = draw_forces(panels[3], motion)
-    (impulses,) = dress_forces(panels[3], shown)
-    energies = draw_energies(panels[4], motion)
+    theta, omega, height = (
+        draw_curves(panel, shown, label, {name: f"_{label}"})[0][0]
+        for panel, (name, label) in zip(panels[:3], _STATES.items(), strict=True)
+    )
+    (normal,), (friction,), (limit,), (impulses,) = draw_forces(panels[3], shown)
+    (total,), (kinetic,), (potential,) = draw_curves(panels[4], shown, "energy [J]", ENERGIES)
     errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
     marks = _dress_panels(panels, shown)
     whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
@@ -110,8 +110,8 @@ def plot(
         if figure is None:
             close(whole)
     return Overview(
-        (strobe.ax, *panels), strobe, phase, theta, omega, height, *forces, impulses,
-        *energies, *errors, marks,
+        (strobe.ax, *panels), strobe, phase, theta, omega, height, normal, friction, limit,
+        impulses, total, kinetic, potential, *errors, marks,
     )  # fmt: skip
 
 
@@ -122,11 +122,6 @@ def _headline(trajectory: Trajectory, note: str) -> str:
     if trajectory.valid_until < trajectory.t[-1]:
         text += f", not valid from {trajectory.valid_until:.3g} s on (grey)"
     return f"{text}; {note}" if note else text
-
-
-def _draw_state(ax: Axes, motion: Trajectory, values: FloatArray, label: str) -> Line2D:
-    ax.set_ylabel(label)
-    return draw_curve(ax, motion, values, f"_{label}", 0)
 
 
 def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:

@@ -7,7 +7,7 @@ are dotted lines with names. Where the model of a motion is not valid, its curve
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from .._core import EventKind, Mode
 from .._motion.events import Event
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
-from .comparison import PLAIN, Comparison, Style
+from .comparison import Comparison, Style
 from .labels import label_times
 from .legends import name_curves, title_beside_legend
 from .palette import palette_of
@@ -43,17 +43,26 @@ def dot(t: FloatArray) -> dict[str, Any]:
     return {"marker": "o", "ms": 3} if t.size == 1 else {}
 
 
-def draw_curve(
-    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
-) -> Line2D:
-    """Draw the quantity of a rank (0, 1, 2) of a motion over its times."""
-    t, values = curve(motion.t, values)
-    name = ", ".join(filter(None, (style.label, label)))
-    colour, options = style.colour or palette_of(ax).curves[rank], sparse_markers(style) | dot(t)
-    dash = DASHES[rank]
-    if are_ranges(motion):
-        dash, options = "-", options | {"alpha": RANGE}
-    return ax.plot(t, values, color=colour, ls=dash, label=name, **options)[0]
+def draw_curves(
+    ax: Axes, shown: Comparison, label: str, names: Mapping[str, str]
+) -> tuple[tuple[Line2D, ...], ...]:
+    """Draw up to three quantities of each motion, and return the lines of each quantity.
+
+    `names` has their names in legends by their attributes, `label` is for the axis.
+    """
+    lines: dict[str, list[Line2D]] = {name: [] for name in names}
+    for motion, style in shown:
+        for rank, (name, called) in enumerate(names.items()):
+            t, values = curve(motion.t, getattr(motion, name))
+            how = {"ls": DASHES[rank]} | sparse_markers(style) | dot(t)
+            if are_ranges(motion):
+                how |= {"ls": "-", "alpha": RANGE}
+            colour = style.colour or palette_of(ax).curves[rank]
+            text = ", ".join(filter(None, (style.label, called)))
+            lines[name] += ax.plot(t, values, color=colour, label=text, **how)
+    shown.restyle(*(line for each in lines.values() for line in each))
+    ax.set_ylabel(label)
+    return tuple(map(tuple, lines.values()))
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:
