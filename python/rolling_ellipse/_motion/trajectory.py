@@ -71,12 +71,9 @@ def _column(name: str, column: int) -> cached_property[FloatArray]:
     return _derived(lambda self: np.ascontiguousarray(self._details[name][:, column]))
 
 
-def _touching(name: str) -> cached_property[FloatArray]:
-    return _derived(lambda self: self._touch[name])
-
-
-def _energy(kind: int) -> cached_property[FloatArray]:
-    return _derived(lambda self: self._energies[kind])
+def _part(whole: str, key: Any) -> cached_property[FloatArray]:
+    """Make a property of a Trajectory: a part of another one."""
+    return _derived(lambda self: getattr(self, whole)[key])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -257,8 +254,9 @@ class Trajectory(FieldsOnly):
         """z, x_dot, z_dot, normal and friction force at the samples: cheaper than `_details`."""
         return touch(self)
 
-    z, x_dot, z_dot = _touching("z"), _touching("x_dot"), _touching("z_dot")
-    normal_force, friction_force = _touching("normal_force"), _touching("friction_force")
+    z, x_dot, z_dot, normal_force, friction_force = (
+        _part("_touch", name) for name in ("z", "x_dot", "z_dot", "normal_force", "friction_force")
+    )
 
     @property
     def multipliers(self) -> FloatArray:
@@ -284,7 +282,9 @@ class Trajectory(FieldsOnly):
     def _energies(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         return energies(self.scene, self)
 
-    translational_energy, rotational_energy, potential_energy = map(_energy, range(3))
+    translational_energy, rotational_energy, potential_energy = (
+        _part("_energies", i) for i in range(3)
+    )
 
     @_derived
     def kinetic_energy(self) -> FloatArray:

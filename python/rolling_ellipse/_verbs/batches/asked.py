@@ -95,16 +95,21 @@ class SceneGrid:
         for name in ("a", "b"):
             if name not in arguments:
                 raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")
+        given = {**arguments}
+        if (impulse := given.pop("impulse", None)) is not None:
+            if not isinstance(impulse, Impulse):
+                raise TypeError(
+                    f"scenes['impulse'] must be an Impulse or None, got {shown(impulse)}"
+                )
+            given |= {name: getattr(impulse, name) for name in BLOW}
         self._arrays: dict[str, FloatArray] = {}
-        for name, value in arguments.items():
+        for name, value in given.items():
             if value is None and name in OPTIONAL:
                 continue
-            if name == "impulse":
-                self._take_blow(value)
-                continue
-            self._arrays[name] = array(_entry(name), value)
-            if name in OPTIONAL:
-                self._require_numbers(name)
+            self._arrays[name] = values = array(_entry(name), value)
+            if name in OPTIONAL and np.isnan(values).any():
+                first = tuple(np.argwhere(np.isnan(values))[0])
+                raise ValueError(f"{_entry(name, first)} must be a number, got nan")
         entries = {_entry(name): values for name, values in self._arrays.items()}
         self.shape = common_shape(entries, slice(None))
         self.total = int(np.prod(self.shape, dtype=object))
@@ -134,12 +139,6 @@ class SceneGrid:
                 return
             yield Chunk(index, begin, self._table(begin, size))
 
-    def _take_blow(self, impulse: Any) -> None:
-        if not isinstance(impulse, Impulse):
-            raise TypeError(f"scenes['impulse'] must be an Impulse or None, got {shown(impulse)}")
-        for name in BLOW:
-            self._arrays[name] = np.asarray(getattr(impulse, name))
-
     def _table(self, begin: int, size: int) -> FloatArray:
         at = np.arange(begin, min(begin + size, self.total))
         index = np.unravel_index(at, self.shape) if self.shape else ()
@@ -159,12 +158,6 @@ class SceneGrid:
         """Return the index into `values` of the element at an index into the common shape."""
         last = index[len(index) - values.ndim :]
         return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
-
-    def _require_numbers(self, name: str) -> None:
-        values = self._arrays[name]
-        wrong = np.argwhere(np.isnan(values))
-        if len(wrong):
-            raise ValueError(f"{_entry(name, tuple(wrong[0]))} must be a number, got nan")
 
     def _require_valid(self, begin: int, table: FloatArray) -> None:
         refused = _core.first_refused(table, reached=False)
