@@ -1,6 +1,8 @@
 """The phase map: the first outcome of rolling, over two of shape, energy and friction.
 
-Lines over it are thresholds of the bodies in it, each with its name at the line.
+Two quantities are along the axes of its plane, the others are fixed. A point of it is a uniform
+disc that passes the flat position with a speed. Quantities have the units of the arguments of
+`plot_phase_map`. Lines over it are thresholds of its bodies, each with its name at the line.
 """
 
 from __future__ import annotations
@@ -20,15 +22,27 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._ask.check import FloatArray, whole_within
-from ..._core import Outcome
-from ..._verbs.classify import Thresholds, classify, thresholds
-from ..axes import Artists, axes_of, picture, require_axes
-from ..labels import ABOVE_FIRST, BELOW_FIRST, Label, label_lines, visible_part
-from ..legends import name_curves
-from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
-from .plane import AXIS_NAMES, Plane, plane_of
+from .. import _core
+from .._ask.check import FloatArray, choice, number, positive, shown, whole_within
+from .._ask.scene import Scene
+from .._core import Outcome
+from .._verbs.classify import Thresholds, classify, thresholds
+from .axes import Artists, axes_of, picture, require_axes
+from .labels import ABOVE_FIRST, BELOW_FIRST, Label, label_lines, visible_part
+from .legends import name_curves
+from .palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 
+AXIS_NAMES = {
+    "aspect": "a/b", "energy": "energy / that to roll over", "speed": "ω lying flat [rad/s]",
+    "friction": "μ",
+}  # fmt: skip
+_LEVELS = {"energy", "speed"}  # each follows from the other
+_WIDEST = 1e3  # largest a/b, as everywhere
+_FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
+_SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
+_FASTEST = 2.0  # of the speeds shown, in units of sqrt(g/b)
+_NAMES = {"aspect": "a/b", "energy": "energy", "speed": "ω", "friction": "μ"}
+_UNITS = {"speed": " rad/s"}
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",
     Outcome.ROCKS: SKY,
@@ -132,16 +146,16 @@ def plot_phase_map(
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
     count = whole_within("resolution", resolution, _FINEST)
-    edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
-    middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
-    codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
+    columns, rows = (plane.spaced(axis, 2 * count + 1) for axis in plane.axes)  # edges, middles
+    codes = classify(**plane.scenes(columns[1::2], rows[1::2, np.newaxis]), workers=workers)
     ax = axes_of(ax, (6.4, 4.4), figsize)
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
     free = ax.get_autoscalex_on(), ax.get_autoscaley_on()
     _dress_map(ax, plane)
     cells = ax.pcolormesh(
-        *edges, codes, cmap=colours, vmin=-0.5, vmax=len(Outcome) - 0.5, rasterized=True, zorder=0.5
-    )
+        columns[::2], rows[::2], codes, cmap=colours, vmin=-0.5, vmax=len(Outcome) - 0.5,
+        rasterized=True, zorder=0.5,
+    )  # fmt: skip
     if free[0]:
         ax.set_xlim(*plane.ranges[0])
     if free[1]:
@@ -149,13 +163,6 @@ def plot_phase_map(
     found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
     name_curves(ax, [_handle(outcome) for outcome in found])
     return PhaseMap(ax, cells, *_draw_marks(ax, plane))
-
-
-def _middles(axis: str, edges: FloatArray) -> FloatArray:
-    """Return the middles of cells in the picture: geometric means for the aspect."""
-    if axis == "aspect":
-        return np.sqrt(edges[:-1] * edges[1:])
-    return (edges[:-1] + edges[1:]) / 2
 
 
 def _handle(outcome: Outcome) -> Patch:
@@ -267,3 +274,125 @@ def _draw_marks(ax: Axes, plane: Plane) -> tuple[dict[str, Line2D], dict[str, Te
             sides = ABOVE_FIRST if mark.above else BELOW_FIRST
             labels[mark.key] = Label(mark.names, part, mark.place, sides, along=True)
     return lines, label_lines(ax, labels, FontProperties(size="x-small").get_size_in_points())
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The axes x and y with their ranges, the fixed quantities by name, b [m] and gravity."""
+
+    axes: tuple[str, str]
+    ranges: tuple[tuple[float, float], tuple[float, float]]
+    fixed: dict[str, float]
+    b: float
+    gravity: float
+
+    @property
+    def level(self) -> str:
+        """The quantity of the strength of the motion: "energy" or "speed"."""
+        return "speed" if "speed" in (*self.axes, *self.fixed) else "energy"
+
+    def range_of(self, name: str) -> tuple[float, float]:
+        return self.ranges[self.axes.index(name)]
+
+    def spaced(self, name: str, count: int) -> FloatArray:
+        """Return even places from end to end of an axis, even in the logarithm for the aspect."""
+        space: Any = np.geomspace if name == "aspect" else np.linspace
+        places: FloatArray = space(*self.range_of(name), count)
+        places[[0, -1]] = self.range_of(name)
+        return places
+
+    def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
+        """Return the arguments of `classify` at points of the plane; x and y broadcast."""
+        values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
+        speed = values.get("speed")
+        if speed is None:
+            speed = np.sqrt(values["energy"]) * np.vectorize(self._over)(values["aspect"])
+        return {
+            "a": values["aspect"] * self.b, "b": self.b, "omega": speed,
+            "friction": values["friction"], "gravity": self.gravity,
+        }  # fmt: skip
+
+    def _over(self, aspect: float) -> float:
+        """Return the roll-over speed of a disc [rad/s]."""
+        return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
+
+    def caption(self) -> str:
+        """Return the fixed quantities as text: "μ = 0.5"; with b where speeds depend on it."""
+        values = [
+            f"{_NAMES[name]} = {value:.4g}{_UNITS.get(name, '')}".replace("inf", "∞")
+            for name, value in self.fixed.items()
+        ]
+        if self.level == "speed":
+            values.append(f"b = {self.b:.4g} m")
+        return ", ".join(values)
+
+
+def plane_of(
+    axes: tuple[str, str],
+    ranges: tuple[Any, Any],
+    fixed: dict[str, float | None],
+    b: float,
+    gravity: float,
+) -> Plane:
+    """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
+    for argument, axis in zip("xy", axes, strict=True):
+        choice(argument, axis, tuple(AXIS_NAMES))
+    if axes[0] == axes[1] or set(axes) == _LEVELS:
+        raise ValueError(
+            "x and y must be two of the aspect, the energy or the speed, and the friction, "
+            f"got {axes[0]!r} and {axes[1]!r}"
+        )
+    b, gravity = positive("b", b), positive("gravity", gravity)
+    _core.validate_length("b", b)
+    shown = {**_SHOWN, "speed": (0.0, _FASTEST * math.sqrt(gravity / b))}
+    limits = [
+        shown[axis] if given is None else _limits(f"{argument}_range", axis, given)
+        for argument, axis, given in zip("xy", axes, ranges, strict=True)
+    ]
+    return Plane(axes, (limits[0], limits[1]), _values(axes, fixed), b, gravity)
+
+
+def _values(axes: tuple[str, str], given: dict[str, float | None]) -> dict[str, float]:
+    """Return the fixed quantities: the given ones, and the defaults of the others."""
+    values = {name: number(name, value) for name, value in given.items() if value is not None}
+    if values.keys() >= _LEVELS:
+        raise ValueError(
+            "energy and speed must not be given both, for one follows from the other, "
+            f"got {values['energy']:g} and {values['speed']:g}"
+        )
+    settled = {*axes}
+    if settled & _LEVELS:
+        settled |= _LEVELS
+    for name, value in values.items():
+        if name in settled:
+            raise ValueError(
+                f"{name} must not be given where x = {axes[0]!r} and y = {axes[1]!r}, got {value:g}"
+            )
+        _check_fixed(name, value)
+    if "speed" in values:
+        settled.add("energy")
+    return {name: value for name, value in _FIXED.items() if name not in settled} | values
+
+
+def _check_fixed(name: str, value: float) -> None:
+    if name == "aspect":
+        wanted, holds = f"above 1, up to {_WIDEST:g}", 1 < value <= _WIDEST
+    elif name == "friction":
+        wanted, holds = "0 or more, inf allowed", value >= 0
+    else:
+        wanted, holds = "0 or more, finite", 0 <= value < math.inf
+    if not holds:
+        raise ValueError(f"{name} must be {wanted}, got {value}")
+
+
+def _limits(argument: str, axis: str, given: Any) -> tuple[float, float]:
+    least, most = (1.0, _WIDEST) if axis == "aspect" else (0.0, math.inf)
+    wanted = f"{argument} must be two ascending finite numbers, not below {least:g}"
+    wanted += f" and not above {most:g}" if math.isfinite(most) else ""
+    try:
+        low, high = (number(argument, end) for end in given)
+    except (TypeError, ValueError):
+        raise ValueError(f"{wanted}, got {shown(given)}") from None
+    if not (least <= low < high <= most and high < math.inf):
+        raise ValueError(f"{wanted}, got {shown(given)}")
+    return low, high
