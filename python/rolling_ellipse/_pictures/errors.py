@@ -33,8 +33,7 @@ QUANTITIES = {  # quantities and their symbols
 }  # fmt: skip
 _UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
 _DOTS = (".", "x", "+", "1", "2")
-# The axis of errors reaches at least ten times this, so that rounding looks small
-_ROUNDING = 1e-13
+_ROUNDING = 1e-13  # the axis of errors reaches ten times this at least, so that it looks small
 _LEAST = 1e-17  # lower end of the axis of errors
 
 

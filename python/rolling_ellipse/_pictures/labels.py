@@ -114,10 +114,7 @@ class Label(NamedTuple):
 
 
 def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any, Text]:
-    """Write labels in a font size [points] beside their lines, clear of lines and of each other.
-
-    A label without a place is left out. Those before others choose first.
-    """
+    """Write those labels that find a place clear of lines and of labels before them [points]."""
     page = size_in_points(ax)
     dots = [page[None]]
     for line in ax.lines:

@@ -112,11 +112,7 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
 
 
 def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> list[Artist]:
-    """Shade the time that a motion slides, flies or rests.
-
-    A motion without a `colour` is alone and has the whole ground. One of several has a row at the
-    top, edged in its colour.
-    """
+    """Shade sliding, flight and rest: the whole ground, or a row at the top edged in a `colour`."""
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
     edge: dict[str, Any] = {"ec": colour, "lw": 0.8} if colour else {"lw": 0}
     upright = {"transform": ax.get_xaxis_transform(), "zorder": 0}
@@ -130,11 +126,7 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:
-    """Draw dotted lines at the events.
-
-    If `named`, a few have their names above the curves; more, or crowded ones, are counted in the
-    label of the lines.
-    """
+    """Draw dotted lines at the events, if `named` with a few names, or counted in their label."""
     events, upright = events_shown(motion), ax.get_xaxis_transform()
     if not events:
         return []
@@ -148,11 +140,7 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
-    """Shade the time after the model has ceased to be valid.
-
-    The grounds of several motions add up, each with a `share` of the darkness, and each has a line
-    of its colour where its model ends.
-    """
+    """Shade the time without validity by a `share` of the darkness, begun by a line in `colour`."""
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []
@@ -171,10 +159,7 @@ def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) 
 
 
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
-    """Label the time axis; mark modes, events and where a model is not valid.
-
-    If `named`, events of a single motion have their names, or are counted where there is no room.
-    """
+    """Label the time axis; mark modes, events (of one motion by name if `named`), and validity."""
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
     dress_grid(ax)
@@ -201,10 +186,7 @@ def entries_of(marks: Sequence[Artist]) -> list[Artist]:
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Dress one panel or two; the first gets the title and a legend of `handles` and marks.
-
-    The upper one of two has no label of a shared time axis.
-    """
+    """Dress one panel or two; the first gets the title and a legend of `handles` and marks."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])

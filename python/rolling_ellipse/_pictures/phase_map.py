@@ -8,7 +8,7 @@ disc that passes the flat position with a speed. Quantities have the units of th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -41,8 +41,6 @@ _WIDEST = 1e3  # largest a/b, as everywhere
 _FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
 _SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
 _FASTEST = 2.0  # of the speeds shown, in units of sqrt(g/b)
-_NAMES = {"aspect": "a/b", "energy": "energy", "speed": "ω", "friction": "μ"}
-_UNITS = {"speed": " rad/s"}
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",
     Outcome.ROCKS: SKY,
@@ -319,7 +317,8 @@ class Plane:
     def caption(self) -> str:
         """Return the fixed quantities as text: "μ = 0.5"; with b where speeds depend on it."""
         values = [
-            f"{_NAMES[name]} = {value:.4g}{_UNITS.get(name, '')}".replace("inf", "∞")
+            f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
+            + " rad/s" * (name == "speed")
             for name, value in self.fixed.items()
         ]
         if self.level == "speed":
@@ -328,11 +327,7 @@ class Plane:
 
 
 def plane_of(
-    axes: tuple[str, str],
-    ranges: tuple[Any, Any],
-    fixed: dict[str, float | None],
-    b: float,
-    gravity: float,
+    axes: tuple[str, str], ranges: Sequence[Any], fixed: dict[str, Any], b: float, gravity: float
 ) -> Plane:
     """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
     for argument, axis in zip("xy", axes, strict=True):

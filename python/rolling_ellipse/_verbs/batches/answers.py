@@ -42,9 +42,7 @@ MODELS, METHODS = _core.MODELS, _core.METHODS  # names, at the places of their c
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
 _WIDTH = {name: len(names) for name, names in _COLUMNS.items()}
 _FIRST_COUNT = _COLUMNS["codes"].index("samples")  # counts begin at this column
-TABLES = (
-    "codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot",
-)  # fmt: skip
+TABLES = ("codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot")
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
