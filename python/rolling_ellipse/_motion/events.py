@@ -144,7 +144,7 @@ class Events(tuple[Event, ...]):
                 add(f"{name}_{when}", unit, map(attrgetter(name), states))
             add_names(f"mode_{when}", (state.mode for state in states))
             add(f"energy_{when}", "J", map(attrgetter(f"energy_{when}"), self))
-        for name in ("reaction_x", "reaction_z", "energy_lost"):  # of the states after
+        for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after have them
             add(name, InitialState._units[name], map(attrgetter(name), states))
         frame: DataFrame = pandas.DataFrame(columns | {"reason": [each.reason for each in states]})
         frame.attrs = {"units": units | {"reason": "1"}}

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
-# What the ground does not settle, by modes
+# Quantities that the ground leaves free, by modes
 _FREE = {_core.Mode.SLIDING: ("x_dot",), _core.Mode.FLIGHT: ("z", "x_dot", "z_dot")}
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 

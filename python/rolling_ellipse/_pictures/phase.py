@@ -32,7 +32,7 @@ _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
 _TICK = 0.45  # room for a tick [inch]
-_POINTS = 801, 100_000  # of a separatrix: in one half turn, and in total
+_POINTS = 801, 100_000  # points of a separatrix: in one half turn, and in all
 _SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
 

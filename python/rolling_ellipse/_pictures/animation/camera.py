@@ -67,7 +67,7 @@ def cameras(
             targets = [np.column_stack([middle, target[:, 1]]) for target in targets]
         room = parted / 2 if together else 0.0
         left, right = -BEHIND * size - room, AHEAD * size + room
-        depths = [  # of all frames, from the ground below the centre
+        depths = [  # bottom and top in all frames, from the ground below the centre
             (-0.35 * own, float(np.max(motion.z + np.minimum(motion.z, own))) + 0.3 * own)
             for motion, own in zip(motions, sizes, strict=True)
         ]

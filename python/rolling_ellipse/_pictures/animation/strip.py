@@ -79,7 +79,7 @@ class Strip:
         tip, skids, centre = drawing.tip(motion), drawing.skids(motion), (motion.x, motion.z)
         touching = drawing.contact_points(motion)
         self._traces = {self.skid_trace: skids, self.tip_trace: tip, self.centre_trace: centre}
-        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # of one frame
+        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # in one frame
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
