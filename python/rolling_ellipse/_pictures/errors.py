@@ -1,4 +1,4 @@
-"""What motions keep over time, and what they miss: energies, constraints, the exact motion."""
+"""Energies, missed constraints and distances from the exact motion, over time."""
 
 from __future__ import annotations
 

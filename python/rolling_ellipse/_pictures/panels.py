@@ -1,4 +1,4 @@
-"""What forces, energies and errors over time share: curves, and the marks under them.
+"""Curves over time and the marks under them, shared by forces, energies and errors.
 
 The `style` of a curve belongs to its motion. A motion with the plain style is alone; its quantities
 differ in colour. Modes are greys that differ in hatches, too, so that they differ in print. Events
