@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._ask.check import FloatArray, choice, file_name, positive
-from .._ask.printing import html_table, text_table
+from .._ask.printing import html_table, required, text_table
 from ._problem import STATE, Problem
 from ._problem import problems as all_problems
 from ._result import Result, checked, read
@@ -100,9 +100,7 @@ class Scores(tuple[Score, ...]):
 
     def to_dataframe(self) -> Any:
         """Return the scores as a pandas DataFrame, a row each."""
-        import pandas
-
-        return pandas.json_normalize(self.records(), sep="_")
+        return required("pandas", "to_dataframe").json_normalize(self.records(), sep="_")
 
     def __repr__(self) -> str:
         return text_table([_HEAD, *(score._row() for score in self)]) + f"\n{self.verdict()}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._ask.printing import required as required
+from ..._ask.printing import required
 from ..._ask.scene import Scene
 from ..._core import Mode
 from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity

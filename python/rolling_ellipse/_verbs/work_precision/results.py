@@ -12,11 +12,10 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import choice, file_name, number, shown
-from ..._ask.printing import Row, html_table, text_table
+from ..._ask.printing import Row, html_table, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, parsed, restored
-from ..._motion.export.tables import required
 from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, made, plain
 
 if TYPE_CHECKING:
