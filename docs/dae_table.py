@@ -52,7 +52,7 @@ def ida() -> str:
         problem = benchmark.problem(name)
         times = np.append(0.0, scored(problem))
         for form, rtol, which in RUNS:
-            dae = problem.dae(form.removeprefix("index"))
+            dae = problem.dae(form)
             begun = time.perf_counter()
             found = solve(dae, times, rtol, tested(dae, which))
             seconds = time.perf_counter() - begun

@@ -29,7 +29,7 @@ def test_the_exact_motion_and_the_jacobian(name: str, form: str) -> None:
     one = benchmark.problem("roll.rock" if name == "uphill" else name)
     if name == "uphill":
         one = replace(one, scene=UPHILL, times=np.linspace(0, 0.6, 7))
-    dae, at = one.dae(form.removeprefix("index")), one.trajectory.sol(one.times)
+    dae, at = one.dae(form), one.trajectory.sol(one.times)
     y, yp = dae.exact(one.times), np.tile(0 * dae.y0, (one.times.size, 1))
     assert np.array_equal(dae.states(y), one.exact(one.times)) and y.shape[1] == len(dae.names)
     yp[:, :5] = y[:, 5:10]
@@ -82,7 +82,7 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
 )  # fmt: skip
 def test_the_index(name: str, form: str, least: str) -> None:
     """Least number of differentiations that determine each entry of y'; the index is the most."""
-    dae = benchmark.problem(name).dae(form.removeprefix("index"))
+    dae = benchmark.problem(name).dae(form)
     found = sum((~determined(dae, k)).astype(int) for k in range(dae.index + 1))
     assert "".join(map(str, found)) == least.replace(" ", "")
     assert max(found) == dae.index
@@ -99,7 +99,7 @@ def test_ida() -> None:
     one = benchmark.problem("brink.over")
     times, states = one.times[one.times < one.horizon], one.states[one.times < one.horizon]
     for form in FORMS[2:]:
-        dae = one.dae(form.removeprefix("index"))
+        dae = one.dae(form)
         found = names["solve"](dae, times, 3e-14, ~dae.algebraic)
         assert np.max(abs(dae.states(found.y) - states) / one.scales) < 1e-8
     found = names["solve"](dae, times, 3e-14, np.ones_like(dae.algebraic))  # errors of multipliers

@@ -149,7 +149,7 @@ class Problem(FieldsOnly):
         Parameters
         ----------
         index : {1, 2, 3, "ggl"}
-            Index, or the stabilised form of index 2.
+            Index, or the stabilised form of index 2; or the name of a form, as of `Dae`.
 
         Raises
         ------
@@ -158,7 +158,9 @@ class Problem(FieldsOnly):
         """
         if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
             raise ValueError(f"problem must roll all the time, got {self.id!r}")
-        form = choice("index", index if index == "ggl" else f"index{index}", tuple(FORMS))
+        form = f"index{index}"
+        if form not in FORMS:
+            form = choice("index", index, tuple(FORMS))
         return Dae(self, form, *FORMS[form])
 
 
