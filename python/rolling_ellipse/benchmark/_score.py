@@ -100,7 +100,8 @@ def scored(
 ) -> Score:
     """Return the score of the usable rows of a result."""
     if not found.t.size:
-        return Score(one.id, setting, FAILED, reason="no row is finite and within its time")
+        why = "no row is finite and within its time"
+        return Score(one.id, setting, FAILED, reason=why, tolerance=tolerance)
     rows, places = np.nonzero(one.times[:, None].round(9) == found.t.round(9))
     early = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
     rows, places = rows[early], places[early]

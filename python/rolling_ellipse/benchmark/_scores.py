@@ -148,14 +148,14 @@ def run(
     found = []
     for one in chosen:
         for setting in settings:
-            if tags is not None and one.id not in able:
-                found.append(Score(one.id, setting, UNSUPPORTED, reason="needs other abilities"))
-                continue
             times = one.output_times
             try:
+                if tags is not None and one.id not in able:
+                    raise NotImplementedError("needs other abilities")
                 result = mine(one, times, setting)
             except NotImplementedError as error:
-                found.append(Score(one.id, setting, UNSUPPORTED, reason=str(error)))
+                why = str(error)
+                found.append(Score(one.id, setting, UNSUPPORTED, reason=why, tolerance=tolerance))
                 continue
             with np.errstate(over="ignore", invalid="ignore"):  # states may be huge
                 found.append(scored(one, setting, *checked(one, result, times), tolerance))
