@@ -188,6 +188,14 @@ def pyplot_figure(**options: Any) -> Figure:
     return figure
 
 
+def write(drawn: Artists, name: str | None, *, new: bool) -> None:
+    """Write the whole figure to a file, if there is a name; a new figure then leaves pyplot."""
+    if name is not None:
+        drawn.savefig(name)
+        if new:
+            close(drawn.figure)
+
+
 def close(figure: Figure) -> None:
     """Take a figure out of pyplot; it can still be drawn and written."""
     with _with_figures():

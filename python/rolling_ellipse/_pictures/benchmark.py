@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from .._ask.check import file_name
-from .axes import Artists, axes_of, close, picture
+from .axes import Artists, axes_of, picture, write
 from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 
@@ -35,7 +35,8 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     """Draw the scores; see `Scores.plot`."""
     if not scores:
         raise ValueError("scores must be of at least one problem, got none")
-    name, own = None if path is None else file_name("path", path), ax is None
+    name = None if path is None else file_name("path", path)
+    new = ax is None
     family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
     rows = sorted(family, key=family.__getitem__)
     ax = axes_of(ax, (7.2, 1.3 + 0.24 * len(rows)), figsize)
@@ -68,8 +69,5 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     ax.spines[["left", "right", "top"]].set_visible(False)
     letters = max(20, int(12 * ax.get_window_extent().width / ax.figure.dpi))
     title_beside_legend(ax, fill(f"{scores.verdict().partition('. ')[0]}.", letters))
-    if name is not None:
-        chart.savefig(name)
-        if own:
-            close(chart.figure)
+    write(chart, name, new=new)
     return chart

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from .._ask.check import file_name
 from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
-from .axes import Artists, close, figure_of, picture
+from .axes import Artists, figure_of, picture, write
 from .comparison import Comparison
 from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
@@ -70,6 +70,7 @@ def plot(
     Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
     Where the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
     ranges, as in `plot_forces`; the title then says so.
+
     Parameters
     ----------
     trajectory : Trajectory
@@ -105,14 +106,12 @@ def plot(
     errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
     marks = _dress_panels(panels, shown)
     whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
-    if name is not None:
-        whole.get_figure(root=True).savefig(name)
-        if figure is None:
-            close(whole)
-    return Overview(
+    drawn = Overview(
         (strobe.ax, *panels), strobe, phase, theta, omega, height, normal, friction, limit,
         impulses, total, kinetic, potential, *errors, marks,
     )  # fmt: skip
+    write(drawn, name, new=figure is None)
+    return drawn
 
 
 def _headline(trajectory: Trajectory, note: str) -> str:
