@@ -82,12 +82,3 @@ def reference() -> str:
         lines.append([f"{one:.16g}" if isinstance(one, float) else one for one in row.values()])
     head = [list(row), ["---"] * len(row)]
     return "".join(f"| {' | '.join(row)} |\n" for row in (*head, *lines))
-
-
-def write() -> None:
-    """Write both tables into the page."""
-    for name, part in (("ida", ida()), ("reference", reference())):
-        page = PAGE.read_text(encoding="utf-8")
-        begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
-        before, after = page.partition(begin)[0], page.partition(end)[2]
-        PAGE.write_text(before + begin + part + end + after, encoding="utf-8")

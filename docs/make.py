@@ -82,7 +82,10 @@ def pictures(quick: bool) -> None:
 
 
 def problems(quick: bool) -> None:
-    run(HERE / "make_problems.py")
+    import make_problems
+
+    make_problems.main()
+    write_part(HERE / "benchmark.md", "problems", make_problems.listed())
 
 
 def run(*command: str | Path) -> None:
@@ -116,7 +119,8 @@ def text(quick: bool) -> None:
 def dae(quick: bool) -> None:
     import dae_table
 
-    dae_table.write()
+    for name, table in (("ida", dae_table.ida), ("reference", dae_table.reference)):
+        write_part(HERE / "benchmark_dae.md", name, table())
 
 
 STEPS: dict[str, Callable[[bool], None]] = {
@@ -134,13 +138,22 @@ def quoted(page: str) -> str:
     if not found:
         raise ValueError(f"the page must have a mark of {', '.join(parts)}")
     for name in found:
-        begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
-        before, _, rest = page.partition(begin)
-        _, closed, after = rest.partition(end)
-        if not closed:
-            raise ValueError(f"the page must have {end!r}")
-        page = before + begin + parts[name]() + end + after
+        page = with_part(page, name, parts[name]())
     return page
+
+
+def with_part(page: str, name: str, made: str) -> str:
+    """A page with another text between the marks of a part."""
+    begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
+    before, _, rest = page.partition(begin)
+    _, closed, after = rest.partition(end)
+    if not closed:
+        raise ValueError(f"the page must have {begin!r} and {end!r}")
+    return before + begin + made + end + after
+
+
+def write_part(path: Path, name: str, made: str) -> None:
+    path.write_text(with_part(path.read_text(encoding="utf-8"), name, made), encoding="utf-8")
 
 
 def speed() -> str:

@@ -1,6 +1,6 @@
 """Make a page for each problem of `benchmark`, and their table; a step of `make.py`.
 
-Pages are docs/problems/<id>.md with a picture each; the table is the marked part of benchmark.md.
+Pages are docs/problems/<id>.md with a picture each; `listed` is a marked part of benchmark.md.
 All numbers are those of the files in python/rolling_ellipse/benchmark/problems, digit by digit.
 """
 
@@ -42,8 +42,6 @@ def main() -> None:
     for name, text in pages().items():
         (FOLDER / f"{name}.md").write_text(text, encoding="utf-8")
         make_pictures.save(picture(name), f"problems/{name}.png")
-    page = HERE / "benchmark.md"
-    page.write_text(with_table(page.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 # ------------------------------------------------------------------------------ text
@@ -63,20 +61,15 @@ def pages() -> dict[str, str]:
     return {name: page(data) for name, data in problems().items()}
 
 
-def with_table(text: str) -> str:
-    """The page of the benchmark with its table of problems made anew."""
-    begin, end = "<!-- problems: made by docs/make.py -->\n", "<!-- end of problems -->\n"
-    before, _, rest = text.partition(begin)
-    _, found, after = rest.partition(end)
-    if not found:
-        raise ValueError(f"the page must have {begin!r} and {end!r}")
+def listed() -> str:
+    """The table of the problems."""
     rows = [
         (f"[`{name}`](problems/{name}.md)", data["question"], ", ".join(data["tags"]),
          data["t_end"], worst(data) if data["scored"] else "not scored")
         for name, data in problems().items()
     ]  # fmt: skip
     head = ("problem", "question", "needs", "T [s]", "largest condition")
-    return f"{before}{begin}{table(head, rows)}{end}{after}"
+    return table(head, rows)
 
 
 def table(head: tuple[str, ...], rows: list[Any]) -> str:
@@ -208,7 +201,3 @@ def picture(name: str) -> Figure:
         chart = rl.plot_strobe(motion, count=count, t_end=t_end)
     plt.close(chart.figure)
     return chart.figure
-
-
-if __name__ == "__main__":
-    main()

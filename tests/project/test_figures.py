@@ -63,10 +63,11 @@ def test_the_chart_shows_the_data(name: str) -> None:
     assert source == hashlib.sha256(data).hexdigest(), "python docs/make.py pictures"
 
 
-def test_the_pages_of_problems_are_those_of_their_data() -> None:
+def test_the_pages_of_problems_are_those_of_their_data(make: dict[str, Any]) -> None:
     made = runpy.run_path(str(DOCS / "make_problems.py"))
-    table = (DOCS / "benchmark.md").read_text(encoding="utf-8")
-    assert made["with_table"](table) == table, "python docs/make.py problems"
+    page = (DOCS / "benchmark.md").read_text(encoding="utf-8")
+    listed = make["with_part"](page, "problems", made["listed"]())
+    assert listed == page, "python docs/make.py problems"
     pages, folder = made["pages"](), DOCS / "problems"
     assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 20
     for name, page in pages.items():
