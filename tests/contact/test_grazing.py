@@ -125,8 +125,7 @@ def test_a_slope_may_hold_a_weightless_start_on_its_way_to_the_tip() -> None:
     for _ in range(200):
         a, b, slope = rng.uniform(1.5, 3.0), 1.0, rng.uniform(-1.4, 1.4)
         theta = tip(a, b) + rng.uniform(-0.3, 0.3)
-        s, c = math.sin(theta), math.cos(theta)
-        lead = (a * a - b * b) * s * c / math.hypot(a * s, b * c)
+        lead = float(geometry.support_slope(theta, a=a, b=b))
         omega = math.copysign(weightless_spin(a, b, theta, 9.81 * math.cos(slope)), lead)
         press = lead * (9.81 * math.sin(slope) - lead * omega**2)
         found = Scene(a, b, theta=theta, omega=omega, slope=slope).initial_state.mode
