@@ -183,8 +183,8 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
     gap, slip = gap / length, np.abs(slip)
     touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING
     return {
-        "energy_gained": float(max(change.max(), 0.0)),
-        "energy_lost": float(max(-change.min(), 0.0)),
+        "energy_gained": float(max(0.0, change.max())),
+        "energy_lost": float(max(0.0, -change.min())),
         "penetration": float(max(0.0, -gap.min())),
         "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
         "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
