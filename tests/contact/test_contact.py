@@ -144,17 +144,6 @@ def test_bounces_down_a_steep_slope_are_even() -> None:
     assert np.ptp(motion.energy) <= 8 * EPS * motion.kinetic_energy.max()
 
 
-def test_forces_are_in_newtons_where_only_the_mass_is_no_unit_of_its_own_size() -> None:
-    """This scene has unit length and time in metres and seconds; only its mass unit is 8 kg."""
-    light = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, x_dot=1.0)
-    heavy = dataclasses.replace(light, mass=8.0)
-    one, eight = (simulate(scene, np.linspace(0.0, 3.0, 31)) for scene in (light, heavy))
-    assert np.any(one.normal_force > 0)
-    assert np.array_equal(eight.normal_force, 8 * one.normal_force)
-    assert np.array_equal(eight.friction_force, 8 * one.friction_force)
-    assert np.array_equal(eight.theta, one.theta)
-
-
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
 @pytest.mark.parametrize("side", [1, -1])
 def test_held_on_a_slope(a: float, b: float, side: int) -> None:

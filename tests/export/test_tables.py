@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 import xarray
+from oracles.units import scaled, scene_in_other_units
 from rolling_ellipse._ask.scene import SCENE_UNITS
 from rolling_ellipse._motion.quantities import MODE, MULTIPLIERS, QUANTITIES, TIME
 
@@ -63,39 +64,18 @@ def test_no_array_of_a_trajectory_is_left_out(motion: rl.Trajectory) -> None:
     assert listed | {"multipliers", "q", "q_dot"} == arrays  # q repeats x, z, theta, psi, r
 
 
-LENGTH, DURATION, MASS = 4.0, 2.0, 8.0  # powers of two: the scaled motion has the same digits
-SCALES = {
-    "m": LENGTH, "s": DURATION, "rad": 1.0, "1": 1.0, "s^2": DURATION**2,
-    "N": MASS * LENGTH / DURATION**2, "J": MASS * LENGTH**2 / DURATION**2,
-}  # fmt: skip
-
-
-def scale(unit: str) -> float:
-    """Factor of a quantity in `unit` between a scene and its scaled copy."""
-    over, _, under = unit.partition("/")
-    factors = [SCALES[part] for part in over.split()]
-    return float(np.prod(factors)) / (SCALES[under] if under else 1.0)
-
-
 def test_the_units_are_those_of_the_numbers() -> None:
     """Each quantity of a scene scaled in length, time and mass grows as its unit does."""
+    factors = (2, 1, 3)  # powers of two: the scaled motion has the same digits
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
-    large = dataclasses.replace(
-        small,
-        a=small.a * LENGTH,
-        b=small.b * LENGTH,
-        x=small.x * LENGTH,
-        mass=small.mass * MASS,
-        gravity=small.gravity * LENGTH / DURATION**2,
-        omega=small.omega / DURATION,
-    )
+    large = scene_in_other_units(small, factors)
     times = np.linspace(0.0, 2.0, 21)
     one = rl.simulate(small, times).to_dataframe()
-    other = rl.simulate(large, times * DURATION).to_dataframe()
+    other = rl.simulate(large, scaled(times, "s", factors)).to_dataframe()
     units = one.attrs["units"]
-    assert np.array_equal(other.index, one.index * scale(units["t"]))
+    assert np.array_equal(other.index, scaled(one.index, units["t"], factors))
     for name in one.columns.drop("mode"):
-        expected = one[name].to_numpy() * scale(units[name])
+        expected = scaled(one[name].to_numpy(), units[name], factors)
         largest = np.max(np.abs(expected))
         assert largest > 0 or name == "lambda4"  # lambda4 is zero while the body rolls
         # rounding apart; a wrong unit would change a value by a factor of 2 or more

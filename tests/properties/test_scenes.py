@@ -12,6 +12,7 @@ from oracles.contact import energy
 from oracles.drawn import clock, powers, scenes
 from oracles.numbers import EPS
 from oracles.spread import ROUNDINGS, Floats, roundings, spread
+from oracles.units import assert_same_in_other_units, scaled, scene_in_other_units
 from rolling_ellipse import (
     EventKind,
     Impulse,
@@ -82,36 +83,12 @@ def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
     """Units of length, time and mass change no bits, on a slope, too, and through all events."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
-    metre, second, kilogram = (2.0 ** data.draw(st.integers(-12, 12)) for _ in range(3))
-    speed, impulse = metre / second, kilogram * metre / second
-    units = {
-        "a": metre, "b": metre, "mass": kilogram, "gravity": metre / second**2,
-        "inertia": kilogram * metre**2, "omega": 1 / second, "x": metre, "z": metre,
-        "x_dot": speed, "z_dot": speed,
-    }  # fmt: skip
-    changes: dict[str, Any] = {
-        name: getattr(scene, name) * unit
-        for name, unit in units.items()
-        if getattr(scene, name) is not None
-    }
-    if (blow := scene.impulse) is not None:
-        changes["impulse"] = Impulse(
-            blow.jx * impulse, blow.jz * impulse, dx=blow.dx * metre, dz=blow.dz * metre
-        )
+    units = (*(data.draw(st.integers(-12, 12)) for _ in range(3)),)
     times = np.linspace(0.0, span, 40)
     one = simulate(scene, times, **ENOUGH)
-    other = simulate(scene.replace(**changes), times * second, **ENOUGH)
     event(f"{one.model}, {one.status.name}")
-    force = kilogram * metre / second**2
-    of = {
-        "theta": 1.0, "omega": 1 / second, "x": metre, "z": metre, "x_dot": speed, "z_dot": speed,
-        "normal_force": force, "friction_force": force, "mode": 1, "t": second,
-    }  # fmt: skip
-    for name, unit in of.items():
-        assert np.array_equal(getattr(one, name) * unit, getattr(other, name)), name
-    assert [(each.t * second, each.kind) for each in one.events] == [
-        (each.t, each.kind) for each in other.events
-    ]
+    other = simulate(scene_in_other_units(scene, units), scaled(times, "s", units), **ENOUGH)
+    assert_same_in_other_units(one, other, units)
 
 
 @given(st.data())
