@@ -10,7 +10,7 @@ values.
 import functools
 import itertools
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -19,12 +19,7 @@ from oracles import table
 from oracles.geometry import support
 from rolling_ellipse import EventKind, Scene, Status, simulate
 
-INPUTS = (
-    "a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution", "theta", "omega",
-    "x", "z", "x_dot", "z_dot",
-)  # fmt: skip
 VALUES = ("t", "theta", "omega", "x", "z", "x_dot", "z_dot")
-COLUMNS = {name: name + "0" if name in VALUES else name for name in INPUTS}  # field: column
 UNITS = 8  # claimed largest error, in units of the table
 
 
@@ -32,7 +27,7 @@ class Motion(NamedTuple):
     """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
 
     name: str
-    parameters: dict[str, float]
+    scene: Scene
     kinds: list[str]
     values: list[list[str]]
     units: NDArray[np.float64]
@@ -43,28 +38,15 @@ class Motion(NamedTuple):
         return self.name.rsplit("-")[0]
 
     @property
-    def scene(self) -> Scene:
-        """The scene of the table's parameters."""
-        parameters: dict[str, Any] = dict(self.parameters)
-        return Scene(parameters.pop("a"), parameters.pop("b"), **parameters)
-
-    @property
-    def gyration2(self) -> float:
-        """k^2 = I/m [m^2]."""
-        p = self.parameters
-        disc = p["mass"] * (p["a"] ** 2 + p["b"] ** 2) / 4
-        return p.get("inertia", disc) / p["mass"]
-
-    @property
     def rounding(self) -> NDArray[np.float64]:
         """Rounding of a state of doubles (n, 7): theta is known to an ulp or two.
 
         h, h' and their rates change with theta.
         """
-        p, values = self.parameters, np.array(self.values, float)
+        scene, values = self.scene, np.array(self.values, float)
         ulp: NDArray[np.float64] = np.spacing(np.abs(values))
         theta, omega = values[:, 1], np.abs(values[:, 2])
-        h, dh, ddh = np.abs(np.array([support(each, p["a"], p["b"]) for each in theta], float)).T
+        h, dh, ddh = np.abs(np.array([support(each, scene.a, scene.b) for each in theta], float)).T
         moved = 2 * ulp[:, 1]
         effects = (0, 1, 0, h, dh, dh * omega, ddh * omega)
         return ulp + np.stack([np.broadcast_to(e * moved, theta.shape) for e in effects], axis=1)
@@ -79,10 +61,10 @@ class Motion(NamedTuple):
         turn moves it; for rates the speed V, where m V^2/2 is the kinetic energy plus the weight
         times the longer semi-axis, and V/k.
         """
-        p, values = self.parameters, np.array(self.values, float)
-        longer, k2 = max(p["a"], p["b"]), self.gyration2
+        scene, values = self.scene, np.array(self.values, float)
+        longer, k2 = max(scene.a, scene.b), scene.gyration2
         t, theta, omega, x, z, x_dot, z_dot = np.abs(values).T
-        speed = np.sqrt(x_dot**2 + z_dot**2 + k2 * omega**2 + 2 * p["gravity"] * longer)
+        speed = np.sqrt(x_dot**2 + z_dot**2 + k2 * omega**2 + 2 * scene.gravity * longer)
         columns = (
             t, np.maximum(theta, 1), speed / math.sqrt(k2), np.maximum(x, longer),
             np.maximum(z, longer), speed, speed,
@@ -96,7 +78,7 @@ def read_table() -> list[Motion]:
     return [
         Motion(
             name,
-            {name: float(rows[0][c]) for name, c in COLUMNS.items() if rows[0][c]},
+            table.scene_of(rows[0]),
             [row["kind"] for row in rows],
             [[row[value] for value in VALUES] for row in rows],
             np.array([[float(row[f"unit_{value}"]) for value in VALUES] for row in rows]),
@@ -141,11 +123,7 @@ def answer(number: int) -> Computed:
 
 def errors(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
     """|value - reference| (n, 7)."""
-    differences = [
-        [abs(table.difference(v, e)) for v, e in zip(*pair, strict=True)]
-        for pair in zip(values, motion.values, strict=True)
-    ]
-    return np.array(differences)
+    return table.differences(values, motion.values)
 
 
 def shares(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
@@ -182,9 +160,8 @@ def test_a_small_change_of_an_input_is_seen() -> None:
     for motion in MOTIONS:
         if "jam" in motion.kinds:
             continue
-        heavier = {**motion.parameters, "gravity": motion.parameters["gravity"] * (1 + 1e-9)}
-        changed = motion._replace(parameters=heavier)
-        found = computed(changed.scene, float(motion.values[-1][0]))
+        heavier = motion.scene.replace(gravity=motion.scene.gravity * (1 + 1e-9))
+        found = computed(heavier, float(motion.values[-1][0]))
         if [*found.kinds, "state"] == motion.kinds:
             assert shares(motion, found.values).max() > 1, motion.name
             compared += 1
@@ -201,17 +178,17 @@ def test_table_covers_what_it_promises() -> None:
     least |= {"rest": 3, "jam": 4, "state": 60}
     assert {kind: min(kinds.count(kind), count) for kind, count in least.items()} == least
     assert {kind.name.lower() for kind in EventKind.__members__.values()} == set(least) - {"state"}
-    drops = [one.parameters for one in MOTIONS if one.family == "drop"]
+    scenes = [one.scene for one in MOTIONS]
+    drops = [one.scene for one in MOTIONS if one.family == "drop"]
     wanted = itertools.product((0, 0.3, 0.8, 1), (0, 0.05, 0.2, 0.5, 1, math.inf))
-    assert {(p["restitution"], p["friction"]) for p in drops} == set(wanted)
-    columns = {
-        name: np.array([one.parameters.get(name, math.nan) for one in MOTIONS]) for name in INPUTS
-    }
-    slope, ratio = columns["slope"], columns["a"] / columns["b"]
+    assert {(each.restitution, each.friction) for each in drops} == set(wanted)
+    slope = np.array([each.slope for each in scenes])
+    ratio = np.array([each.a / each.b for each in scenes])
     assert (slope > 0).sum() >= 10 and (slope < 0).sum() >= 10 and (slope == 0).sum() >= 20
     assert (ratio == 1).sum() >= 5 and (ratio < 0.9).sum() >= 15 and (ratio > 1.1).sum() >= 25
     assert (np.maximum(ratio, 1 / ratio) > 10).sum() >= 6
-    assert (columns["mass"] != 1).sum() >= 30 and (columns["gravity"] != 9.81).sum() >= 20
-    assert np.isfinite(columns["inertia"]).sum() >= 20
+    assert sum(each.mass != 1 for each in scenes) >= 30
+    assert sum(each.gravity != 9.81 for each in scenes) >= 20
+    assert sum(each.inertia is not None for each in scenes) >= 20
     # a larger unit would mean that the scene itself does not determine the answer
     assert max(one.units.max() for one in MOTIONS) <= 1e-9

@@ -262,16 +262,6 @@ def test_no_files_import_each_other_in_a_circle() -> None:
         TopologicalSorter(graph).prepare()
 
 
-def test_matplotlib_is_loaded_with_the_first_picture() -> None:
-    script = (
-        "import sys, rolling_ellipse; assert 'matplotlib' not in sys.modules;"
-        "assert {'plot', 'animate', '__version__'} <= set(dir(rolling_ellipse));"
-        "from rolling_ellipse import plot; assert 'matplotlib' in sys.modules;"
-        "assert rolling_ellipse.plot is plot"
-    )
-    run(sys.executable, "-c", script)
-
-
 def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
     """-ffast-math breaks the compensated sums; -march=native would not run on other machines."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")

@@ -16,9 +16,6 @@ from numpy.typing import NDArray
 from oracles import table
 from oracles.geometry import support
 
-PARAMETERS = {"a": "a", "b": "b", "mass": "mass", "inertia": "inertia", "gravity": "gravity"}
-# argument of Scene: column of the table
-PARAMETERS |= {"slope": "slope", "theta": "theta0", "omega": "omega0"}
 ANSWERS = ("theta", "omega", "x", "normal", "friction")
 ROUNDING = 2.2e-16  # change of the inputs in the definition of the units
 
@@ -27,7 +24,7 @@ class Motion(NamedTuple):
     """One scene, its times (3,), answers as decimal text (3, 5) and their units (3, 5)."""
 
     name: str
-    parameters: dict[str, Any]
+    scene: rl.Scene
     times: list[float]
     answers: list[list[str]]
     units: NDArray[np.float64]
@@ -35,7 +32,7 @@ class Motion(NamedTuple):
     @property
     def longer(self) -> float:
         """The longer semi-axis [m]."""
-        return max(self.parameters["a"], self.parameters["b"])
+        return max(self.scene.a, self.scene.b)
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -45,12 +42,12 @@ class Motion(NamedTuple):
     @property
     def farthest(self) -> float:
         """Largest |theta| of the start and the answers, at least 1 [rad]."""
-        return float(max(1.0, abs(self.parameters["theta"]), *np.abs(self.values[:, 0])))
+        return float(max(1.0, abs(self.scene.theta), *np.abs(self.values[:, 0])))
 
     @property
     def half_turns(self) -> float:
         """Half turns from the start to the last time, without those back and forth."""
-        return abs(float(self.values[-1, 0]) - self.parameters["theta"]) / math.pi
+        return abs(float(self.values[-1, 0]) - self.scene.theta) / math.pi
 
 
 def read_table() -> list[Motion]:
@@ -60,7 +57,7 @@ def read_table() -> list[Motion]:
     return [
         Motion(
             f"{rows[0]['kind']}-{i}",
-            {name: float(rows[0][column]) for name, column in PARAMETERS.items()},
+            table.scene_of(rows[0]),
             [float(row["t"]) for row in rows],
             [[row[name] for name in ANSWERS] for row in rows],
             np.array([[float(row[f"unit_{name}"]) for name in ANSWERS] for row in rows]),
@@ -85,19 +82,14 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     with warnings.catch_warnings():
         # N may become negative during the motion
         warnings.simplefilter("ignore", rl.ValidityWarning)
-        found = rl.simulate(
-            rl.Scene(**motion.parameters), motion.times, model="rolling", **settings
-        )
+        found = rl.simulate(motion.scene, motion.times, model="rolling", **settings)
     columns = found.theta, found.omega, found.x, found.normal_force, found.friction_force
     values = np.stack(columns, axis=1).tolist()
-    differences = [
-        [abs(table.difference(v, e)) for v, e in zip(*pair, strict=True)]
-        for pair in zip(values, motion.answers, strict=True)
-    ]
     # an ulp is added, since the nearest double is half an ulp off
     units = motion.units + np.spacing(np.abs(motion.values))
     units[:, 2] += motion.longer * motion.units[:, 0]
-    return np.array(differences) / units
+    found_errors: NDArray[np.float64] = table.differences(values, motion.answers) / units
+    return found_errors
 
 
 def reach_of_series(motion: Motion) -> float:
@@ -106,14 +98,14 @@ def reach_of_series(motion: Motion) -> float:
     The singularity in theta is at k^2 + h^2 + h'^2 = 0 beside a flat side; energy bounds omega. A
     step far below R resolves everything, even the flat side of a thin ellipse that flicks over it.
     """
-    a, b, mass, inertia, gravity, slope, theta, omega = motion.parameters.values()
-    k2, low, high = inertia / mass, min(a, b), max(a, b)
-    height, offset, _ = support(theta, a, b)
+    scene = motion.scene
+    k2, low, high = scene.gyration2, min(scene.a, scene.b), max(scene.a, scene.b)
+    height, offset, _ = support(scene.theta, scene.a, scene.b)
     moment = k2 + height**2 + offset**2
     # between samples the centre is lower than at a sample by at most the body's size
     path = np.abs(motion.values[:, 2]).max() + high
-    drop = (height - low) * math.cos(slope) + path * abs(math.sin(slope))
-    fastest = math.sqrt((moment * omega**2 + 2 * gravity * drop) / (k2 + low**2))
+    drop = (height - low) * math.cos(scene.slope) + path * abs(math.sin(scene.slope))
+    fastest = math.sqrt((moment * scene.omega**2 + 2 * scene.gravity * drop) / (k2 + low**2))
     distance2 = low**2 * (k2 + low**2) / max((high**2 - low**2) * (k2 + low**2 + high**2), 1e-300)
     return min(1.0, math.sqrt(distance2)) / fastest
 
@@ -182,7 +174,9 @@ def test_radau_errs_as_its_order_says() -> None:
     assert checked >= 40
 
 
-@pytest.mark.parametrize("name", PARAMETERS)
+@pytest.mark.parametrize(
+    "name", ["a", "b", "mass", "inertia", "gravity", "slope", "theta", "omega"]
+)
 def test_a_small_change_of_an_input_is_seen(name: str) -> None:
     """A change of any single input by a millionth is noticed in every scene: the judge is sharp.
 
@@ -191,10 +185,10 @@ def test_a_small_change_of_an_input_is_seen(name: str) -> None:
     """
     changed = 0
     for motion in MOTIONS:
-        value = motion.parameters[name]
+        value = getattr(motion.scene, name)
         if value != 0:
-            parameters = {**motion.parameters, name: value * (1 + 1e-6)}
-            seen = dop853_errors(motion._replace(parameters=parameters)).max()
+            scene = motion.scene.replace(**{name: value * (1 + 1e-6)})
+            seen = dop853_errors(motion._replace(scene=scene)).max()
             assert seen > 8, motion.name
             changed += 1
     assert changed >= 40

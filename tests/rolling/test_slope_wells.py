@@ -6,7 +6,7 @@ scene, with a unit for each number: its change by a relative change of 2.2e-16 o
 
 import math
 import warnings
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -14,15 +14,8 @@ import rolling_ellipse as rl
 from oracles import table
 from oracles.numbers import EPS
 
-PARAMETERS = {name: name for name in ("a", "b", "mass", "inertia", "gravity", "slope")}
-PARAMETERS |= {"theta": "theta0", "omega": "omega0"}  # argument of Scene: column of the table
 ANSWERS = ("period", "theta", "omega", "x")
 ROWS = table.rows("well_reference")
-
-
-def scene_of(row: dict[str, str]) -> rl.Scene:
-    parameters: dict[str, Any] = {name: float(row[column]) for name, column in PARAMETERS.items()}
-    return rl.Scene(**parameters)
 
 
 class Equilibrium(NamedTuple):
@@ -61,7 +54,7 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
     omega; the phase after any number of swings has the period's roundings. Found: 0.8 at most; with
     gravity as a difference of two terms a third of the scenes erred by more than 8, up to 3e7.
     """
-    scene, t = scene_of(row), float(row["t"])
+    scene, t = table.scene_of(row), float(row["t"])
     with warnings.catch_warnings():
         # N may become negative during the motion
         warnings.simplefilter("ignore", rl.ValidityWarning)

@@ -1,7 +1,6 @@
 """A motion that most tests of this folder use."""
 
 import pytest
-import rolling_ellipse as rl
 from oracles.trajectory import SCENES
 from rolling_ellipse import Trajectory, simulate
 
@@ -9,8 +8,3 @@ from rolling_ellipse import Trajectory, simulate
 @pytest.fixture(scope="module", params=list(SCENES.values()), ids=list(SCENES))
 def motion(request: pytest.FixtureRequest) -> Trajectory:
     return simulate(request.param, 4.0)
-
-
-@pytest.fixture(scope="module")
-def report() -> Trajectory:
-    return simulate(rl.scenes.report, 6.0)

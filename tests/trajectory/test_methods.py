@@ -85,6 +85,7 @@ def test_nothing_is_loaded_before_it_is_asked_for() -> None:
     script = (
         "import sys, rolling_ellipse as rl; motion = rl.simulate(rl.scenes.rocking, 1.0);"
         "dir(motion), repr(motion), vars(rl.Trajectory), motion.at(1.0), motion._repr_html_();"
+        "assert {'plot', 'animate', '__version__'} <= set(dir(rl));"
         "assert 'matplotlib' not in sys.modules; motion.plot;"
         "assert 'matplotlib' in sys.modules and rl.Trajectory.plot is rl.plot"
     )

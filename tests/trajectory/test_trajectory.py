@@ -154,7 +154,8 @@ def test_a_motion_may_end_before_the_first_sample() -> None:
         trajectory.plot()
 
 
-def test_repr(report: Trajectory) -> None:
+def test_repr() -> None:
+    report = simulate(rl.scenes.report, 6.0)
     text = repr(report)
     assert text.startswith("<Trajectory rolling/exact: 1001 samples, t = 0 ... 6 s, ")
     assert f"{report.turns[-1]:.3g} turns" in text and "COMPLETED" in text
