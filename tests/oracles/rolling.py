@@ -56,6 +56,14 @@ class Forces(NamedTuple):
     normal_error: Long
     friction_error: Long
 
+    def margins(self, friction: Any) -> tuple[Long, Long]:
+        """Margins of N > 0 and of |F| <= mu N (inf without limit), in the errors."""
+        limited = np.isfinite(friction)
+        mu = np.where(limited, friction, 0)
+        grip = mu * self.normal - np.abs(self.friction)
+        grip /= mu * self.normal_error + self.friction_error + np.finfo(float).tiny
+        return self.normal / self.normal_error, np.where(limited, grip, np.inf)
+
 
 def motion(
     a: ArrayLike,

@@ -55,11 +55,7 @@ def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
     consists of rounding."""
     cosine = 1 / np.sqrt(1 + tangent**2)
     found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
-    contact = found.normal / found.normal_error
-    mu = np.where(np.isinf(friction), 0, friction)
-    grip = mu * found.normal - np.abs(found.friction)
-    grip /= mu * found.normal_error + found.friction_error + np.finfo(float).tiny
-    return 1e-12 * np.where(np.isinf(friction), contact, np.minimum(contact, grip))
+    return 1e-12 * np.minimum(*found.margins(friction))
 
 
 def least_slack(sample: Sample) -> Long:

@@ -145,12 +145,9 @@ class Judged(NamedTuple):
         """Least margins of N > 0 and |F| <= mu N, in the oracle's errors."""
         moving, friction, truth = self.sample.motion(), self.sample.friction, self.truth
         there = oracles.rolling.forces(moving, *oracles.rolling.chart(moving).sides(truth.needed_v))
-        limited = np.isfinite(friction)
-        mu = np.where(limited, friction, 0)
-        grip = mu * there.normal - np.abs(there.friction)
-        grip /= mu * there.normal_error + there.friction_error + np.finfo(float).tiny
-        grip = np.where(np.isinf(truth.needed), -np.inf, grip)
-        return truth.normal / truth.normal_error, np.where(limited, grip, np.inf)
+        _, grip = there.margins(friction)
+        lost = np.isinf(truth.needed) & np.isfinite(friction)
+        return truth.normal / truth.normal_error, np.where(lost, -np.inf, grip)
 
     def distance(self) -> Long:
         """Relative distance to the nearer threshold: of friction, or of N/(m g) to 0."""
@@ -368,11 +365,7 @@ def road(moving: Motion, theta: float, omega: float) -> Road:
 def slack(moving: Motion, friction: float, phi: Long) -> Long:
     """Margin of the rolling law at angles, in the errors of double arithmetic."""
     found = oracles.rolling.forces(moving, np.abs(np.sin(phi)), np.abs(np.cos(phi)))
-    contact = found.normal / found.normal_error
-    if math.isinf(friction):
-        return contact
-    grip = friction * found.normal - np.abs(found.friction)
-    return np.minimum(contact, grip / (friction * found.normal_error + found.friction_error))
+    return np.minimum(*found.margins(friction))
 
 
 def assert_ends_there(

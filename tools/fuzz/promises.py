@@ -32,6 +32,22 @@ def of_result(value: Any, finite: bool) -> Finds:
         yield from of_trajectory(value)
     elif (finite or isinstance(value, rl.Scene)) and (where := _nan_in(value)) is not None:
         yield "nan", f"NaN in {where}"
+    elif isinstance(value, rl.Certificate):
+        ends = value.validity in (rl.Validity.INVALID, rl.Validity.EDGE)
+        if (ends and value.ends_at is None) or not value.reason:
+            yield "broken", f"a certificate {value.validity.name} has no end, or no reason"
+        yield from _not_negative(value, "largest_friction_needed")
+    elif isinstance(value, rl.Thresholds):
+        yield from _not_negative(value, "roll_over_speed", "contact_loss_speed", "slip_speed",
+                                 "friction_to_roll_over", "painleve_friction")  # fmt: skip
+    elif isinstance(value, rl.InitialState):
+        yield from _not_negative(value, "reaction_z")
+
+
+def _not_negative(value: Any, *names: str) -> Finds:
+    for name in names:
+        if (getattr(value, name) or 0.0) < 0:
+            yield "broken", f"{name} is negative"
 
 
 def of_trajectory(found: rl.Trajectory) -> Finds:
@@ -54,6 +70,11 @@ def of_trajectory(found: rl.Trajectory) -> Finds:
         yield "broken", "t outside of the times asked for"
     if not np.isin(found.mode, list(rl.Mode)).all():
         yield "broken", "mode holds no codes of Mode"
+    lost = found.status is rl.Status.VALIDITY_LOST
+    if (lost or found.status is rl.Status.COMPLETED) and found.t_end != found.span:
+        yield "broken", "a motion that ran through ends before the last time asked for"
+    if not found.valid_until >= 0 or (lost and found.valid_until >= found.t_end):
+        yield "broken", "valid_until does not fit the status"
     times = [event.t for event in found.events]
     if times != sorted(times) or not all(0 <= t <= found.span for t in times):
         yield "broken", "events are not in the order of time, or outside of it"
