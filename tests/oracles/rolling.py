@@ -189,11 +189,10 @@ def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np
 
 
 class Extremes(NamedTuple):
-    """Smallest N/m and largest |F|/N (inf where N <= 0) of a whole motion, their places v, and
+    """Smallest N/m and largest |F|/N (inf where N <= 0, with its place v) of a whole motion, and
     bounds of the errors of double arithmetic."""
 
     normal: Long
-    normal_v: Long
     normal_error: Long
     needed: Long
     needed_v: Long
@@ -259,9 +258,7 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
     spread = at_peak.friction_error[worst] + at_peak.normal_error[worst] * np.where(
         normal > 0, needed, 0
     )
-    return Extremes(
-        normal, dip[best], at_dip.normal_error[best], needed, peak[worst], spread / support
-    )
+    return Extremes(normal, at_dip.normal_error[best], needed, peak[worst], spread / support)
 
 
 def contact_loss_lift(
