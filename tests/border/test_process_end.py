@@ -73,86 +73,57 @@ def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> N
         assert (done.returncode, done.stderr) == (0, "")
 
 
-# A thread is held inside a property. A child is forked meanwhile and reads the same property of
-# another motion. The alarm ends a child that waits for the thread, which it does not have.
+# A thread is held in its work. A child is forked meanwhile and does this work on another motion.
+# The alarm ends a child that waits for the thread, which it does not have.
 FORK = """
-import os, pickle, signal, threading, warnings
+import os, pickle, signal, sys, threading, types, warnings
+import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from rolling_ellipse._motion import trajectory as _trajectory
 warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
 file = pickle.dumps(rl.simulate(rl.scenes.drop, 2.0))
 held, other = pickle.loads(file), pickle.loads(file)
 begun, go_on = threading.Event(), threading.Event()
-usual = _trajectory.{within}
-
-def slowly(of, *more):
-    if of is held or of is held.scene:
-        begun.set()
-        go_on.wait()
-    return usual(of, *more)
-
-_trajectory.{within} = slowly
-thread = threading.Thread(target=lambda: held{read})
-thread.start()
-begun.wait()
-child = os.fork()
-if child == 0:
-    signal.alarm(30)
-    other{read}
-    os._exit(0)
-code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-go_on.set()
-thread.join()
-raise SystemExit(code)
-"""
-READS = {"energy": (".energy", "touch"), "q": (".q", "details"), "sol": (".sol([1.0])", "solve")}
-
-
-@pytest.mark.parametrize("name", READS)
-def test_a_fork_beside_a_property_goes_on(name: str) -> None:
-    read, within = READS[name]
-    script = FORK.replace("{read}", read).replace("{within}", within)
-    done = subprocess.run([sys.executable, "-c", script], timeout=300, check=False)
-    assert done.returncode == 0
-
-
-# A thread is held while pyplot makes its figure; a forked child draws a figure meanwhile.
-FORK_BESIDE_A_FIGURE = """
-import os, signal, sys, threading, types, warnings
-import matplotlib.pyplot as plt
-import rolling_ellipse as rl
-warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
-motion = rl.simulate(rl.scenes.rocking, 1.0)
-begun, go_on = threading.Event(), threading.Event()
 main = threading.current_thread()
 
-def wait(figure):
+def wait(*_):
     if threading.current_thread() is not main:
         begun.set()
         go_on.wait()
 
-sys.modules["hooks"] = types.SimpleNamespace(wait=wait)
-plt.rcParams["figure.hooks"] = ["hooks:wait"]
-thread = threading.Thread(target=motion.plot_energy)
+{before}
+thread = threading.Thread(target=lambda: held{work})
 thread.start()
 begun.wait()
 child = os.fork()
 if child == 0:
     signal.alarm(30)
-    motion.plot_energy()
+    other{work}
     os._exit(0)
 code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 go_on.set()
 thread.join()
 raise SystemExit(code)
 """
+WITHIN = "usual = _trajectory.{0}; _trajectory.{0} = lambda *of: (wait(), usual(*of))[1]"
+FIGURE = """
+sys.modules["hooks"] = types.SimpleNamespace(wait=wait)
+plt.rcParams["figure.hooks"] = ["hooks:wait"]
+"""
+WORK = {
+    "energy": (".energy", WITHIN.format("touch")),
+    "q": (".q", WITHIN.format("details")),
+    "sol": (".sol([1.0])", WITHIN.format("solve")),
+    "a figure": (".plot_energy()", FIGURE),
+}
 
 
-def test_a_fork_beside_a_figure_goes_on() -> None:
+@pytest.mark.parametrize("name", WORK)
+def test_a_fork_beside_a_property_or_a_figure_goes_on(name: str) -> None:
+    work, before = WORK[name]
+    script = FORK.replace("{work}", work).replace("{before}", before)
     environment = os.environ | {"MPLBACKEND": "agg"}
-    done = subprocess.run(
-        [sys.executable, "-c", FORK_BESIDE_A_FIGURE], env=environment, timeout=300, check=False
-    )
+    done = subprocess.run([sys.executable, "-c", script], env=environment, timeout=300, check=False)
     assert done.returncode == 0
 
 

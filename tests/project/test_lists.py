@@ -66,7 +66,7 @@ KINDS = {
         "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",
         "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
         "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
-        "tests/oracles/golden.py", "tools/fuzz/calls.py", "tools/fuzz_core/fuzz_core.cpp",
+        "tests/oracles/golden.py", "tools/fuzz/calls.py",
     )),
     "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
         "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
