@@ -143,7 +143,8 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
 def any_function(draw: Draw, of: Body) -> list[str]:
     """One call of a public function and a text of its answer."""
     asked = (*["rl.flow"] * 6, *["rl.classify", "rl.certify", "rl.period", "rl.blow_to"] * 3)
-    name = draw.pick(*asked, *["rl.outcome", "rl.thresholds", "rl.impacts.collide"] * 2, *PLAIN)
+    asked += ("rl.outcome", "rl.thresholds", "rl.impacts.collide", "rl.report.simulate") * 2
+    name = draw.pick(*asked, *PLAIN)
     line = f"found = {call(name, **arguments(draw, of, name))}"
     return [line, "(repr(found), str(found), getattr(found, '_repr_html_', str)())"]
 
