@@ -12,6 +12,7 @@ _PACKAGE = __name__.partition(".")[0]
 #: Names of methods by module; the functions have the same names.
 METHODS = {
     "_motion.passages": ("when",),
+    "_motion.sensitivity": ("sensitivity",),
     "_motion.strobe_svg": ("_repr_html_",),
     "_motion.export.files": ("save", "load"),
     "_motion.export.tables": ("to_dataframe", "to_xarray"),
