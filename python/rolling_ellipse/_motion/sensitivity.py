@@ -224,7 +224,7 @@ class _Fan:
 
 
 def _column(motion: Trajectory, name: str, side: int) -> _Column:
-    units, size = _units(motion.scene), _size(motion.scene, name)
+    units, size = _units(motion.scene), size_of(motion.scene, name)
     order, best, problem = _order(motion), None, ""
     for step in size * _STEPS:
         try:
@@ -251,14 +251,20 @@ def _column(motion: Trajectory, name: str, side: int) -> _Column:
 def _moved(motion: Trajectory, name: str, change: float) -> Trajectory:
     """Return the motion from a changed input, by the same model and method."""
     settings = dataclasses.replace(motion.settings, model=motion.model)
-    value = {name: _value(motion.scene, name) + change}
-    impulse = motion.scene.impulse
-    if name in _BLOW and impulse is not None:
-        value = {"impulse": dataclasses.replace(impulse, **value)}
-    return Trajectory.computed(motion.scene.replace(**value), settings, np.array([motion.span]))
+    scene = changed(motion.scene, {name: value_of(motion.scene, name) + change})
+    return Trajectory.computed(scene, settings, np.array([motion.span]))
 
 
-def _value(scene: Scene, name: str) -> float:
+def changed(scene: Scene, values: dict[str, float]) -> Scene:
+    """Return the scene with other values of inputs, also of its impulse."""
+    blow = {name: value for name, value in values.items() if name in _BLOW}
+    others: dict[str, Any] = {name: value for name, value in values.items() if name not in _BLOW}
+    if blow and scene.impulse is not None:
+        others["impulse"] = dataclasses.replace(scene.impulse, **blow)
+    return scene.replace(**others)
+
+
+def value_of(scene: Scene, name: str) -> float:
     if name in _BLOW:
         if scene.impulse is None:
             raise ValueError(f"wrt must be inputs of the scene, got {name!r} without an impulse")
@@ -275,7 +281,7 @@ def _value(scene: Scene, name: str) -> float:
     return float(value)
 
 
-def _size(scene: Scene, name: str) -> float:
+def size_of(scene: Scene, name: str) -> float:
     """Return the natural size of an input: its value, or the unit of its kind if that is more."""
     length, _, one, speed, _, spin = _units(scene).tolist()
     push = scene.mass * speed
@@ -284,14 +290,14 @@ def _size(scene: Scene, name: str) -> float:
         "x_dot": speed, "z_dot": speed, "jx": push, "jz": push, "dx": length, "dz": length,
         "t": 1 / spin, "friction": 1e-3,
     }  # fmt: skip
-    return max(abs(0.0 if name == "t" else _value(scene, name)), units.get(name, 0.0))
+    return max(abs(0.0 if name == "t" else value_of(scene, name)), units.get(name, 0.0))
 
 
 def _distance(motion: Trajectory, name: str, side: int) -> float:
     if name == "t":
         knots = np.append(_knots(motion)[1:-1], math.inf)
         return float((knots[np.searchsorted(knots, motion.t)] - motion.t).min(initial=math.inf))
-    order, farthest = _order(motion), _FARTHEST * _size(motion.scene, name)
+    order, farthest = _order(motion), _FARTHEST * size_of(motion.scene, name)
 
     def same(change: float) -> bool:
         try:
