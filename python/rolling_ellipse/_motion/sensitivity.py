@@ -153,11 +153,7 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     ----------
     .. [1] B. Fornberg, Math. Comp. 51 (1988) 699.
     """
-    names = (wrt,) if isinstance(wrt, str) else tuple(wrt)
-    for name in names:
-        choice("wrt", name, INPUTS)
-    if not names or len(set(names)) < len(names):
-        raise ValueError(f"wrt must be one or more names, each once, got {names}")
+    names = distinct("wrt", wrt, INPUTS)
     if side not in _RULES:
         raise ValueError(f"side must be 0, 1 or -1, got {side!r}")
     if motion.start is not None or motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
@@ -174,6 +170,16 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
         np.array([column.error for column in columns]),
         tuple(column.step for column in columns),
     )  # fmt: skip
+
+
+def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
+    """Return one or more names out of valid ones, each once, or raise ValueError."""
+    found = (names,) if isinstance(names, str) else tuple(names)
+    for name in found:
+        choice(argument, name, valid)
+    if not found or len(set(found)) < len(found):
+        raise ValueError(f"{argument} must be one or more names, each once, got {found}")
+    return found
 
 
 class _Column(NamedTuple):

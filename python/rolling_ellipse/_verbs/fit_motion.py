@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, choice, positive
+from .._ask.check import FloatArray, array, positive
 from .._ask.printing import text_table
 from .._ask.scene import Scene, require_scene
-from .._motion.sensitivity import INPUTS, changed, size_of, value_of
+from .._motion.sensitivity import INPUTS, changed, distinct, size_of, value_of
 from .._motion.trajectory import Trajectory
-from ..geometry import support
 from .simulate import sample_times, simulate
 
-_TRACKS = ("x", "z", "theta")
-_LEAST = 1e-9  # smallest singular value over the largest of what the data can tell
-_BOUNDS = {
-    "friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5),
-}  # fmt: skip
-_POSITIVE = ("a", "b", "mass", "gravity", "inertia")
+TRACKS = ("x", "z", "theta")
+_BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
+_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # at most a hundred times off
+_GUESSES = {"friction": (0.1, 0.3, 1.0), "restitution": (0.2, 0.5, 0.8)}
 _STAGES = (1.0,), (0.15, 0.3, 0.5, 0.7, 1.0)  # shares of the film that are fitted in turn
 _GOOD = 1.5  # chi2 over the degrees of freedom with which the search ends
-_LOST = 1e3  # residual of a scene that cannot be
-_STARTS = {"friction": (0.1, 0.3, 1.0), "restitution": (0.2, 0.5, 0.8)}  # further guesses
+_IMPOSSIBLE = 1e3  # residual of a scene that cannot be
+_LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
+_FIRST = 8  # frames from which the start is guessed
+_EXACT = {"xtol": 1e-10, "ftol": 1e-10, "gtol": 1e-10, "max_nfev": 100}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -38,9 +37,9 @@ class Fit:
     scene : Scene
         The scene with the fitted parameters.
     errors : dict
-        Standard error of each parameter; infinite where the data cannot tell it.
+        Standard error of each parameter; infinite where the film cannot tell it.
     covariance : ndarray, shape (k, k)
-        Covariance of the parameters, in the order of `errors`.
+        Covariance of the parameters in the order of `errors`, from the linearised residuals.
     chi2 : float
         Sum of the squares of residuals over sigma.
     residuals : ndarray, shape (n, 3)
@@ -48,7 +47,7 @@ class Fit:
     trajectory : Trajectory
         The fitted motion at the times of the film.
     message : str
-        One sentence: how many data, chi2 over the degrees of freedom, what the data cannot tell.
+        Number of data, chi2 over the degrees of freedom, and what the film cannot tell.
     """
 
     scene: Scene
@@ -60,10 +59,11 @@ class Fit:
     message: str
 
     def __repr__(self) -> str:
-        rows = [
-            (name, f"{value_of(self.scene, name):.{_digits(value_of(self.scene, name), off)}g}", "±", f"{off:.2g}")
-            for name, off in self.errors.items()
-        ]
+        rows = []
+        for name, error in self.errors.items():
+            places = 6 if not 0 < error < math.inf else max(0, 1 - math.floor(math.log10(error)))
+            value = value_of(self.scene, name)
+            rows.append((name, f"{value:.{places}f}", f"± {error:.{places}f}"))
         return f"{text_table(rows)}\n{self.message}"
 
 
@@ -80,191 +80,218 @@ def fit_motion(
 ) -> Fit:
     """Fit parameters of a scene to a film: places and angles of the body at times.
 
-    Nonlinear least squares from several starts by `scipy.optimize.least_squares` [1]_.
+    Nonlinear least squares [1]_ by SciPy, from the scene itself, from a start guessed from the first
+    frames, and from other coefficients, each for the whole film and for longer and longer parts of
+    it. A standard error grows to a third of the change that raises chi2 by 9 where that is more,
+    as beyond a threshold of friction.
 
     Parameters
     ----------
     t : array_like, shape (n,)
         Increasing times of the frames since the start of the scene [s].
     x, z, theta : array_like, shape (n,), optional
-        Tracks of the centre [m] and of the angle [rad], NaN where they are missing; the angle is
+        Tracks of the centre [m] and of the angle [rad], NaN where they are missing; angles are
         compared modulo pi. At least one is needed.
     scene : Scene
         What is known; its values of the free parameters are first guesses.
     free : iterable of str
-        Names of the unknown parameters, as of `Trajectory.sensitivity`.
+        The unknown parameters, named as for `Trajectory.sensitivity`.
     sigma : float or mapping, optional
-        Standard deviation of the data, one for all or by the names x, z, theta. Without it they
-        are taken as equal in units of max(a, b) and rad, and estimated from the residuals.
+        Standard deviation of all data, or by the names x, z and theta. Default: equal for all in
+        units of max(a, b) and rad, estimated from the residuals.
     loss : str
-        As of `scipy.optimize.least_squares`: "linear", "soft_l1", "huber", "cauchy", "arctan".
-
-    Returns
-    -------
-    Fit
+        As of `scipy.optimize.least_squares`: "linear", or for outliers "soft_l1", "huber",
+        "cauchy", "arctan".
 
     Raises
     ------
     ValueError
-        If names are unknown or repeated, arrays do not fit together, sigma is not positive, or there
-        are fewer data than unknowns.
+        If names are unknown or repeated, arrays do not fit together, sigma is not positive, there
+        are fewer data than unknowns, or no scene of the search moves until the last time.
     ImportError
-        If SciPy is not there: ``pip install rolling-ellipse[fit]``.
+        If SciPy is not installed: ``pip install rolling-ellipse[fit]``.
 
     References
     ----------
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
     """
-    from scipy.optimize import least_squares
+    search = _Search(sample_times(array("t", t)), {"x": x, "z": z, "theta": theta}, scene, free)
+    search.weigh(sigma)
+    return search.fit(loss, estimate=sigma is None)
 
-    times = sample_times(array("t", t))
-    require_scene(scene)
-    names = _names(scene, free)
-    given = {"x": x, "z": z, "theta": theta}
-    data = np.full((times.size, 3), math.nan)
-    for k, name in enumerate(_TRACKS):
-        if given[name] is not None:
-            track = array(name, given[name])
-            if track.shape != times.shape:
-                raise ValueError(f"{name} must have the shape of t, {times.shape}, got {track.shape}")
-            data[:, k] = track
-    known = np.isfinite(data)
-    if known.sum() <= len(names):
-        raise ValueError(f"data must be more than the {len(names)} unknowns, got {known.sum()}")
-    length = max(scene.a, scene.b)
-    weights = np.array(_sigmas(sigma, length))
-    sizes = np.array([size_of(scene, name) for name in names])
 
-    def made(u: FloatArray) -> Scene:
-        return changed(scene, dict(zip(names, (u * sizes).tolist(), strict=True)))
+class _Search:
+    """Films and scenes in the natural sizes of the unknowns."""
 
-    def difference(motion: Trajectory) -> FloatArray:
-        off = data - np.stack([motion.x, motion.z, motion.theta], axis=1)
+    def __init__(self, t: FloatArray, tracks: dict[str, Any], scene: Scene, free: Any) -> None:
+        self.t, self.scene = t, require_scene(scene)
+        self.names = distinct("free", free, INPUTS[:-1])
+        self.data = np.full((t.size, len(TRACKS)), math.nan)
+        for k, (name, track) in enumerate(tracks.items()):
+            if track is not None:
+                values = array(name, track)
+                if values.shape != t.shape:
+                    raise ValueError(f"{name} must have the shape {t.shape}, got {values.shape}")
+                self.data[:, k] = values
+        self.known = np.isfinite(self.data)
+        self.dof = int(self.known.sum()) - len(self.names)
+        if self.dof < 1:
+            known = self.known.sum()
+            raise ValueError(f"free must be fewer names than data, got {len(self.names)}, {known}")
+        self.sizes = np.array([size_of(scene, name) for name in self.names])
+        bounds = [_bounds(value_of(scene, name), name) for name in self.names]
+        self.low, self.high = np.array(bounds).T / self.sizes
+
+    def weigh(self, sigma: Any) -> None:
+        length = max(self.scene.a, self.scene.b)
+        found = dict(zip(TRACKS, (length, length, 1.0), strict=True))
+        if isinstance(sigma, Mapping):
+            distinct("sigma", sigma, TRACKS)
+            found |= {name: positive("sigma", value) for name, value in sigma.items()}
+        elif sigma is not None:
+            found = dict.fromkeys(TRACKS, positive("sigma", sigma))
+        self.sigma = np.array(list(found.values()))
+
+    def made(self, u: FloatArray) -> Scene:
+        values = (u * self.sizes).tolist()
+        return changed(self.scene, dict(zip(self.names, values, strict=True)))
+
+    def off(self, motion: Trajectory) -> FloatArray:
+        """Return measured minus computed tracks; angles modulo pi."""
+        off = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         return off
 
-    def residuals(u: FloatArray) -> FloatArray:
+    def residuals(self, u: FloatArray) -> FloatArray:
         try:
-            motion = simulate(made(u), times, raise_on_failure=False)
-        except ValueError:
-            return np.full(known.sum(), _LOST)
-        if motion.t.size < times.size:
-            return np.full(known.sum(), _LOST)
-        return (difference(motion) / weights)[known]
+            motion = simulate(self.made(u), self.t, raise_on_failure=False)
+            return (self.off(motion) / self.sigma)[self.known]
+        except ValueError:  # no such scene, or it ends too early
+            return np.full(self.known.sum(), _IMPOSSIBLE)
 
-    low, high = np.array([_bounds(scene, name) for name in names]).T / sizes
-    best: Any = None
+    def starts(self) -> list[FloatArray]:
+        own = {name: value_of(self.scene, name) for name in self.names}
+        tracks = self.data.copy()
+        seen = self.known[:, 2]
+        tracks[seen, 2] = np.unwrap(tracks[seen, 2], period=math.pi)
+        guess: dict[str, float] = {}
+        for track, names in zip(
+            tracks.T, (("x", "x_dot"), ("z", "z_dot"), ("theta", "omega")), strict=True
+        ):
+            rows = np.flatnonzero(np.isfinite(track))[:_FIRST]
+            if rows.size > 3:
+                powers = np.polynomial.polynomial.polyfit(self.t[rows], track[rows], 2)
+                guess |= dict(zip(names, powers.tolist(), strict=False))
+        first = own | {name: value for name, value in guess.items() if name in own}
+        guesses = (own, first, *self.others(first))
+        return [np.array(list(one.values())) / self.sizes for one in guesses]
 
-    def solved(u: FloatArray, frames: int) -> Any:
-        def early(u: FloatArray) -> FloatArray:
-            return np.where(np.nonzero(known)[0] < frames, residuals(u), 0.0)
+    def others(self, values: dict[str, float]) -> list[dict[str, float]]:
+        """Return values of the unknowns with other coefficients of the ground."""
+        guesses = ((name, g) for name, guessed in _GUESSES.items() for g in guessed)
+        return [values | {name: guess} for name, guess in guesses if name in values]
 
-        return least_squares(
-            early, u, bounds=(low, high), jac="3-point", loss=loss, xtol=1e-10, ftol=1e-10,
-            gtol=1e-10, max_nfev=100,
-        )
+    def solve(self, u: FloatArray, loss: str, share: float = 1.0, held: int | None = None) -> Any:
+        """Return SciPy's solution for a share of the film, one unknown held in its place or none."""
+        from scipy.optimize import least_squares
 
-    for start in _starts(scene, names, times, data):
-        u = np.clip(np.array(start) / sizes, low + 1e-9, high - 1e-9)
-        if residuals(u)[0] == _LOST:
-            continue
-        for frames in _STAGES:
-            there = u
-            for count in frames:
-                there = np.clip(there, low + 1e-9, high - 1e-9)
-                found = solved(there, round(count * times.size))
-                there = found.x
-            if best is None or found.cost < best.cost:
-                best = found
-        if sigma is not None and 2 * best.cost < _GOOD * (known.sum() - len(names)):
-            break
-    if best is None:
-        raise ValueError("scene must be near enough to the film to move at all its times")
-    fitted = made(best.x)
-    motion = simulate(fitted, times, raise_on_failure=False)
-    off = np.where(known, difference(motion), math.nan)
-    chi2 = float(np.nansum((off / weights) ** 2))
-    dof = int(known.sum()) - len(names)
-    _, singular, v = np.linalg.svd(best.jac, full_matrices=False)
-    told = singular > _LEAST * singular[0]
-    inverse = np.divide(1.0, singular**2, out=np.full(len(names), math.inf), where=told)
-    inverse[~told] = 0.0
-    covariance = (v.T * inverse) @ v * np.outer(sizes, sizes)
-    if sigma is None:
-        covariance *= chi2 / dof
-    errors = np.sqrt(np.diag(covariance))
-    scatter = 1.0 if sigma is not None else chi2 / dof
+        low, high = self.low.copy(), self.high.copy()
+        u = np.clip(u, low + _LEAST, high - _LEAST)
+        if held is not None:
+            low[held], high[held] = u[held] - _LEAST, u[held] + _LEAST
+        used = np.nonzero(self.known)[0] < share * self.t.size
 
-    def rise(u: FloatArray) -> float:
-        return float(np.sum(residuals(u) ** 2) - np.sum(residuals(best.x) ** 2)) / scatter
+        def residuals(u: FloatArray) -> FloatArray:
+            return np.where(used, self.residuals(u), 0.0)
 
-    for k in range(len(names)):
-        if errors[k] > 0:
-            errors[k] *= max(_stretch(rise, best.x, np.eye(len(names))[k] * errors[k] / sizes, sign, low, high) for sign in (-1, 1))
-    lost = [n for n, share in zip(names, (np.abs(v[~told]) > 1e-3).any(axis=0), strict=True) if share]
-    for name in lost:
-        errors[names.index(name)] = math.inf
-    message = f"{known.sum()} data, chi2/{dof} = {chi2 / dof:.3g}"
-    if lost:
-        message += f"; the data cannot tell {', '.join(lost)}"
-    return Fit(fitted, dict(zip(names, errors.tolist(), strict=True)), covariance, chi2, off, motion, message + ".")
+        return least_squares(residuals, u, "3-point", (low, high), loss=loss, **_EXACT)
+
+    def best(self, loss: str, estimate: bool) -> Any:
+        best: Any = None
+        for start in self.starts():
+            if self.residuals(start)[0] == _IMPOSSIBLE:
+                continue
+            for shares in _STAGES:
+                u = start
+                for share in shares:
+                    found = self.solve(u, loss, share)
+                    u = found.x
+                best = found if best is None or found.cost < best.cost else best
+            if not estimate and 2 * best.cost < _GOOD * self.dof:
+                break
+        if best is None:
+            raise ValueError("scene must move until the last time t, got one that does not")
+        return best
+
+    def fit(self, loss: str, estimate: bool) -> Fit:
+        best = self.best(loss, estimate)
+        scene = self.made(best.x)
+        motion = simulate(scene, self.t, raise_on_failure=False)
+        off = self.off(motion)
+        chi2 = float(np.nansum((off / self.sigma) ** 2))
+        _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
+        told = singular > _LEAST * singular[0]
+        inverse = np.divide(1.0, singular**2, out=np.zeros(len(told)), where=told)
+        scatter = chi2 / self.dof if estimate else 1.0
+        covariance = (axes.T * inverse) @ axes * scatter
+        errors = np.sqrt(np.diag(covariance))
+        errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
+        errors = self.widened(best, errors, scatter, loss) * self.sizes
+        lost = [name for name, e in zip(self.names, errors, strict=True) if math.isinf(e)]
+        message = f"{self.known.sum()} data, chi2 / {self.dof} = {chi2 / self.dof:.3g}"
+        message += f"; the film cannot tell {', '.join(lost)}." if lost else "."
+        return Fit(
+            scene, dict(zip(self.names, errors.tolist(), strict=True)),
+            covariance * np.outer(self.sizes, self.sizes), chi2, off, motion, message,
+        )  # fmt: skip
+
+    def widened(self, best: Any, errors: FloatArray, scatter: float, loss: str) -> FloatArray:
+        """Return errors that are not smaller than a third of the change that raises chi2 by 9."""
+        least = np.sum(self.residuals(best.x) ** 2)
+        wide = errors.copy()
+        values = dict(zip(self.names, (best.x * self.sizes).tolist(), strict=True))
+        starts = (np.array(list(one.values())) / self.sizes for one in self.others(values))
+        rivals = [self.solve(start, loss) for start in starts]
+
+        def rise(u: FloatArray) -> float:
+            return float((np.sum(self.residuals(u) ** 2) - least) / scatter)
+
+        for k in range(len(errors)):
+            for sign in (-1, 1):
+                step = np.zeros(len(errors))
+                step[k] = sign * errors[k]
+                found = _stretched(rise, best.x, step, self.low, self.high)
+                if found is None:
+                    continue
+                wide[k] = max(wide[k], abs(found[k] - best.x[k]) / 3)
+                if not ((self.low < found) & (found < self.high))[k]:
+                    wide[k] = math.inf
+                rivals.append(self.solve(found, loss, held=k))
+        for other in rivals:
+            if 2 * (other.cost - best.cost) / scatter < 9:
+                wide = np.maximum(wide, np.abs(other.x - best.x))
+        return wide
 
 
-def _stretch(rise: Any, u: FloatArray, step: FloatArray, sign: int, low: Any, high: Any) -> float:
-    """Return by how much an error grows where chi2 rises too little along its direction.
+def _stretched(
+    rise: Callable[[FloatArray], float], u: FloatArray, step: FloatArray, low: Any, high: Any
+) -> FloatArray | None:
+    """Return where chi2 has risen by 9 along a step, or the bound; None if that is near enough.
 
-    At three standard errors it should rise by 9; half of that is enough.
+    Beyond a threshold chi2 may stay flat: it must not be less at three times the distance.
     """
-    factor = 1.0
-    while True:
-        there = u + 3 * sign * factor * step
-        if not ((there >= low) & (there <= high)).all():
-            return factor if factor == 1 else math.inf
-        farther = np.clip(u + 10 * sign * factor * step, low, high)
-        if rise(there) > (4.5 if factor == 1 else 9.0) and rise(farther) > 9.0:
-            return factor
+    factor = 3.0
+    while math.isfinite(factor * step.sum()):
+        there, far = (np.clip(u + times * factor * step, low, high) for times in (1, 3))
+        if rise(there) > (4.5 if factor == 3 else 9.0) and rise(far) > 9:
+            return None if factor == 3 else there
+        if ((there == low) | (there == high))[step != 0].any():
+            return there
         factor *= 2
+    return None
 
 
-def _names(scene: Scene, free: Iterable[str]) -> list[str]:
-    names = [free] if isinstance(free, str) else list(free)
-    for name in names:
-        choice("free", name, INPUTS[:-1])
-        value_of(scene, name)
-    if not names or len(set(names)) < len(names):
-        raise ValueError(f"free must be one or more names, each once, got {names}")
-    return names
-
-
-def _sigmas(sigma: Any, length: float) -> list[float]:
-    if sigma is None:
-        return [length, length, 1.0]
-    if isinstance(sigma, Mapping):
-        return [positive(f"sigma[{name!r}]", sigma[name]) if name in sigma else 1.0 for name in _TRACKS]
-    return [positive("sigma", sigma)] * 3
-
-
-def _bounds(scene: Scene, name: str) -> tuple[float, float]:
+def _bounds(value: float, name: str) -> tuple[float, float]:
     if name in _POSITIVE:
-        value = value_of(scene, name)
         return 0.01 * value, 100 * value
     return _BOUNDS.get(name, (-math.inf, math.inf))
-
-
-def _starts(scene: Scene, names: list[str], times: FloatArray, data: FloatArray) -> list[list[float]]:
-    """Return guesses: the scene's own, those of the first frames, and others of the ground."""
-    own = {name: value_of(scene, name) for name in names}
-    first = dict(own)
-    unwrapped = data.copy()
-    seen = np.isfinite(data[:, 2])
-    unwrapped[seen, 2] = np.unwrap(data[seen, 2], period=math.pi)
-    for k, (place, speed) in enumerate((("x", "x_dot"), ("z", "z_dot"), ("theta", "omega"))):
-        rows = np.nonzero(np.isfinite(unwrapped[:, k]))[0][:8]
-        if rows.size >= 4:
-            rate, value = np.polynomial.polynomial.polyfit(times[rows], unwrapped[rows, k], 2)[1::-1]
-            first |= {n: float(v) for n, v in ((place, value), (speed, rate)) if n in names}
-    found = [own, first]
-    for name, values in _STARTS.items():
-        if name in names:
-            found += [first | {name: value} for value in values]
-    return [[one[name] for name in names] for one in found]
