@@ -51,6 +51,7 @@ from ._verbs.fit_motion import fit_motion as fit_motion
 from ._verbs.flow import flow as flow
 from ._verbs.flow import period as period
 from ._verbs.flow import rolling_equation as rolling_equation
+from ._verbs.flow_jacobian import flow_jacobian as flow_jacobian
 from ._verbs.outcome import outcome as outcome
 from ._verbs.outcome import required_friction as required_friction
 from ._verbs.simulate import simulate as simulate

@@ -25,7 +25,7 @@ INPUTS = (
     "a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution", "theta", "omega",
     "x", "z", "x_dot", "z_dot", *_BLOW, "t",
 )  # fmt: skip
-_STEPS = 4e-3 * 0.25 ** np.arange(9)  # tried in turn, over the natural size of the input
+STEPS = 4e-3 * 0.25 ** np.arange(9)  # tried in turn, over the natural size of the input
 _GROWN = 30.0  # growth of the error, by rounding, with which smaller steps are not tried
 _WORST = 1e-3  # relative error above which there is no derivative
 _NEAREST, _HALVINGS = 1e-6, 20  # of the search for other events
@@ -36,7 +36,7 @@ _FORWARD = (
     np.array([-147, 360, -450, 400, -225, 72, -10]) / 60,
     np.array([-25, 48, -36, 16, -3, 0, 0]) / 12,
 )
-_RULES = {
+RULES = {
     0: (
         np.array([-3.0, -2, -1, 1, 2, 3]),
         np.array([-1, 9, -45, 45, -9, 1]) / 60,
@@ -168,7 +168,7 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     .. [1] B. Fornberg, Math. Comp. 51 (1988) 699.
     """
     names = distinct("wrt", wrt, INPUTS)
-    if side not in _RULES:
+    if side not in RULES:
         raise ValueError(f"side must be 0, 1 or -1, got {side!r}")
     if motion.start is not None or motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
         raise ValueError(f"motion must go on from its scene to its end, got {motion.status.name}")
@@ -233,7 +233,7 @@ def _best(motion: Trajectory, name: str, side: int) -> tuple[_Fan, _Found, float
     units, size = _units(motion.scene), size_of(motion.scene, name)
     tried: list[tuple[_Fan, _Found, float]] = []
     problem = "differences by smaller steps do not agree"
-    for step in (size * _STEPS).tolist():
+    for step in (size * STEPS).tolist():
         try:
             fan = _fan(motion, name, side, step)
         except ValueError as error:  # no such scene, or other events
@@ -253,7 +253,7 @@ def _best(motion: Trajectory, name: str, side: int) -> tuple[_Fan, _Found, float
 def _fan(motion: Trajectory, name: str, side: int, step: float) -> _Fan:
     if name == "t":
         return _Fan(name, side, step, (), np.empty((0, 0)))
-    near = tuple(_moved(motion, name, step * place) for place in _RULES[side][0].tolist())
+    near = tuple(_moved(motion, name, step * place) for place in RULES[side][0].tolist())
     return _Fan(name, side, step, near, np.array([_knots(each) for each in near]))
 
 
@@ -288,7 +288,7 @@ def _derivatives(motion: Trajectory, fan: _Fan, there: Trajectory) -> _Found:
         shift = moves[arc] + share * (moves[arc + 1] - moves[arc])
         return np.tensordot(weights, states, 1) / fan.step - rates * shift[:, None], moves[1:-1]
 
-    _, sixth, fourth = _RULES[fan.side]
+    _, sixth, fourth = RULES[fan.side]
     (state, event_times), units = by(sixth), _units(motion.scene)
     off = np.abs((state - by(fourth)[0]) / units).max(initial=0.0)
     rounding = np.finfo(float).eps * np.abs(states / units).max(initial=0.0) / fan.step
