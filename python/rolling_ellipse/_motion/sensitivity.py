@@ -6,14 +6,15 @@ import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, choice, number
+from .._ask.check import FloatArray, choice, number, whole
 from .._ask.printing import brief, text_table
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
+from .._ask.settings import Settings
 from .._core import Mode
 from .status import Status
 from .trajectory import Trajectory
@@ -25,26 +26,25 @@ INPUTS = (
     "a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution", "theta", "omega",
     "x", "z", "x_dot", "z_dot", *_BLOW, "t",
 )  # fmt: skip
-STEPS = 4e-3 * 0.25 ** np.arange(9)  # tried in turn, over the natural size of the input
-_GROWN = 30.0  # growth of the error, by rounding, with which smaller steps are not tried
-_WORST = 1e-3  # relative error above which there is no derivative
-_NEAREST, _HALVINGS = 1e-6, 20  # of the search for other events
+STEPS = 0.016 * 0.25 ** np.arange(12)  # tried in turn, over the natural size of the input
+WORST = 1e-3  # relative error above which there is no derivative
+_FINE, _GROWN = 1e-8, 30.0  # an error after which one that many times larger ends the trials
+_NEAREST = 1e-6  # first distance of the search for other events, and where it ends
 
-# By side: places over the step, and weights of sixth and of fourth order (Fornberg [1])
-_FORWARD = (
-    np.arange(7.0),
-    np.array([-147, 360, -450, 400, -225, 72, -10]) / 60,
-    np.array([-25, 48, -36, 16, -3, 0, 0]) / 12,
-)
+# By side: places over the step, and weights of sixth order (Fornberg [1])
+_FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
 RULES = {
-    0: (
-        np.array([-3.0, -2, -1, 1, 2, 3]),
-        np.array([-1, 9, -45, 45, -9, 1]) / 60,
-        np.array([0, 1, -8, 8, -1, 0]) / 12,
-    ),
+    0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),
     1: _FORWARD,
-    -1: tuple(-values for values in _FORWARD),
+    -1: (-_FORWARD[0], -_FORWARD[1]),
 }
+
+
+def differenced(values: FloatArray, step: Any, side: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives from values at the places of a rule (first axis), and their rounding."""
+    _, weights = RULES[side]
+    rounding = np.finfo(float).eps * np.abs(weights).sum() * np.abs(values).max(axis=0) / step
+    return np.tensordot(weights, values, 1) / step, rounding
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,12 +65,7 @@ class Sensitivity(FieldsOnly):
     error : ndarray, shape (k,)
         Estimated error of each column of `state` over its largest entry (or over one unit of the
         state for the natural size of the input, if that is more). Units of the state are L, L, 1,
-        sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
-
-    Other Parameters
-    ----------------
-    fans : tuple
-        Neighbours of the motion, for `at`.
+        sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b). Errors of a method with steps count.
     """
 
     trajectory: Trajectory
@@ -79,13 +74,14 @@ class Sensitivity(FieldsOnly):
     state: FloatArray
     event_times: FloatArray
     error: FloatArray
-    fans: tuple[_Fan, ...]
 
     def at(self, t: float) -> FloatArray:
-        """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as of `state`."""
+        """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as of `state`.
+
+        It takes new differences; for many times ``motion.sol(times).sensitivity(wrt)`` is faster.
+        """
         there = self.trajectory.sol(number("t", t))
-        columns = [_derivatives(self.trajectory, fan, there).state[0] for fan in self.fans]
-        return np.stack(columns, axis=-1)
+        return sensitivity(there, self.wrt, side=self.side).state[0]
 
     def forecast(self, **changes: float) -> FloatArray:
         """Return the states at the samples to first order in changes, shape (n, 6).
@@ -98,7 +94,7 @@ class Sensitivity(FieldsOnly):
         added = np.zeros(len(self.wrt))
         for name, change in changes.items():
             added[self.wrt.index(choice("changes", name, self.wrt))] = number(name, change)
-        found: FloatArray = _states(self.trajectory) + self.state @ added
+        found: FloatArray = _columns(self.trajectory, STATE) + self.state @ added
         return found
 
     @cached_property
@@ -107,6 +103,7 @@ class Sensitivity(FieldsOnly):
 
         It is found by doubling from a millionth of the natural size of the input, which is also the
         largest distance, and bisection. For "t": the least time from a sample to the next event.
+        The impacts of a body that settles are counted down to those at the `rest_speed`.
         """
         return np.array([_distance(self.trajectory, name, self.side) for name in self.wrt])
 
@@ -119,31 +116,14 @@ class Sensitivity(FieldsOnly):
         return text_table([("input", "largest derivative", "error"), *rows])
 
 
-class _Fan(NamedTuple):
-    """Neighbours of a motion at the places of a rule along one input, and their arcs' ends."""
-
-    name: str
-    side: int
-    step: float
-    near: tuple[Trajectory, ...]
-    knots: FloatArray
-
-
-class _Found(NamedTuple):
-    """Derivatives of states and events, and the difference of two orders, over the units."""
-
-    state: FloatArray
-    event_times: FloatArray
-    off: float
-
-
 def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) -> Sensitivity:
     """Return the derivatives of the motion with respect to arguments of its scene.
 
     The motion is solved again at six or seven values of each input, and differences of sixth order
     [1]_ are taken. The time between two events is stretched to that of the motion, so that states
-    of the same arc are compared; what the motion does during that shift is subtracted. The step is
-    the one whose differences of fourth order are nearest.
+    of the same arc are compared; what the motion does during that shift is subtracted. The best of
+    twelve steps, each a quarter of the one before, is that with the least difference from the one
+    before and the least rounding.
 
     Parameters
     ----------
@@ -168,24 +148,27 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     .. [1] B. Fornberg, Math. Comp. 51 (1988) 699.
     """
     names = distinct("wrt", wrt, INPUTS)
-    if side not in RULES:
+    if whole("side", side) not in RULES:
         raise ValueError(f"side must be 0, 1 or -1, got {side!r}")
-    if motion.start is not None or motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
-        raise ValueError(f"motion must go on from its scene to its end, got {motion.status.name}")
+    if motion.start is not None:
+        raise ValueError("motion must be that of its scene, got one from coordinates")
+    if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
+        ended = f"{motion.status.name} at t = {motion.t_end:.6g} s"
+        raise ValueError(f"motion must go on to its end, got {ended}")
     if motion.scene.initial_state.mode is Mode.REST:
-        raise ValueError("motion must not start at rest, where derivatives have no one value")
-    fans, found, errors = zip(*(_best(motion, name, side) for name in names), strict=True)
+        raise ValueError(
+            "motion must not start at rest, where derivatives differ, got REST at t = 0 s"
+        )
+    states, times, errors = zip(*(_column(motion, name, side) for name in names), strict=True)
     return Sensitivity(
-        motion, names, side, np.stack([column.state for column in found], axis=-1),
-        np.stack([column.event_times for column in found], axis=-1), np.array(errors), fans,
-    )  # fmt: skip
+        motion, names, side, np.stack(states, -1), np.stack(times, -1), np.array(errors)
+    )
 
 
 def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
     """Return one or more names out of valid ones, each once, or raise ValueError."""
-    found = (names,) if isinstance(names, str) else tuple(names)
-    for name in found:
-        choice(argument, name, valid)
+    several = isinstance(names, Iterable) and not isinstance(names, str)
+    found = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
     if not found or len(set(found)) < len(found):
         raise ValueError(f"{argument} must be one or more names, each once, got {found}")
     return found
@@ -221,78 +204,87 @@ def size_of(scene: Scene, name: str) -> float:
     length, _, one, speed, _, spin = _units(scene).tolist()
     push = scene.mass * speed
     units = {
-        "slope": one, "restitution": one, "theta": one, "omega": spin, "x": length, "z": length,
+        "slope": one, "restitution": one, "omega": spin, "x": length, "z": length,
         "x_dot": speed, "z_dot": speed, "jx": push, "jz": push, "dx": length, "dz": length,
         "friction": 1e-3,
     }  # fmt: skip
-    return 1 / spin if name == "t" else max(abs(value_of(scene, name)), units.get(name, 0.0))
+    alone = {"theta": one, "t": 1 / spin}
+    return alone.get(name) or max(abs(value_of(scene, name)), units.get(name, 0.0))
 
 
-def _best(motion: Trajectory, name: str, side: int) -> tuple[_Fan, _Found, float]:
-    """Return neighbours, derivatives and their error for the best of the steps."""
-    units, size = _units(motion.scene), size_of(motion.scene, name)
-    tried: list[tuple[_Fan, _Found, float]] = []
-    problem = "differences by smaller steps do not agree"
+def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, FloatArray, float]:
+    """Return derivatives of states and of event times, and the error of the best of the steps."""
+    if name == "t":
+        return _columns(motion, _RATES), np.zeros(len(motion.events)), 0.0
+    size, units = size_of(motion.scene, name), _units(motion.scene)
+
+    def relative(off: FloatArray, state: FloatArray) -> FloatArray:
+        largest = max(np.abs(state / units).max(initial=0.0), 1 / size)
+        found: FloatArray = (off / units).max(axis=1, initial=0.0) / largest
+        return found
+
+    problem, least, best, last = "", math.inf, None, np.array(math.inf)
     for step in (size * STEPS).tolist():
         try:
-            fan = _fan(motion, name, side, step)
+            state, times, rounding = _differences(motion, motion.settings, name, side, step)
         except ValueError as error:  # no such scene, or other events
-            problem = str(error)
+            problem = problem if best else str(error)
             continue
-        found = _derivatives(motion, fan, motion)
-        largest = float(np.abs(found.state / units).max(initial=0.0))
-        tried.append((fan, found, found.off / max(largest, 1 / size)))
-        if tried[-1][2] > _GROWN * min(error for *_, error in tried):
+        off = relative(np.abs(state - last) + rounding, state)
+        last, error = state, float(off.max(initial=0.0))
+        if best is None or error < least:
+            best, least = (state, times, step), error
+            place = motion.t[off.argmax()]
+            problem = f"steps agree to {error:.1g} only at t = {place:.6g} s"
+        elif least < _FINE and error > _GROWN * least:
             break
-    best = min(tried, key=lambda one: one[2], default=None)
-    if best is None or not best[2] < _WORST:
+    if best is None or not least < WORST:
         raise ValueError(f"wrt must be inputs with a derivative, got {name!r}: {problem}")
-    return best
+    state, times, step = best
+    if motion.method != "exact":
+        off = state - _differences(motion, _finer(motion.settings), name, side, step)[0]
+        least += float(relative(np.abs(off), state).max(initial=0.0))
+    return state, times, least
 
 
-def _fan(motion: Trajectory, name: str, side: int, step: float) -> _Fan:
-    if name == "t":
-        return _Fan(name, side, step, (), np.empty((0, 0)))
-    near = tuple(_moved(motion, name, step * place) for place in RULES[side][0].tolist())
-    return _Fan(name, side, step, near, np.array([_knots(each) for each in near]))
+def _differences(
+    motion: Trajectory, settings: Settings, name: str, side: int, step: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return derivatives of states at samples and of event times, and rounding of the former.
+
+    Neighbours are compared at equal shares of the arcs between events.
+    """
+    near = [_moved(motion, settings, name, step * place) for place in RULES[side][0].tolist()]
+    knots, moved = _knots(motion), np.array([_knots(each) for each in near])
+    arc = np.searchsorted(knots[:-1], motion.t, side="right") - 1
+    length = knots[arc + 1] - knots[arc]
+    share = np.divide(motion.t - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
+    begin, end = moved[:, arc], moved[:, arc + 1]
+    within = np.where(arc < len(knots) - 2, np.nextafter(end, begin), end)  # before the next event
+    times = np.clip(begin + share * (end - begin), begin, within)
+    states = [_columns(each.sol(t), STATE) for each, t in zip(near, times, strict=True)]
+    drift = _columns(motion, _RATES) * (times - motion.t)[..., None]
+    state, rounding = differenced(np.array(states) - drift, step, side)
+    return state, differenced(moved, step, side)[0][1:-1], rounding
 
 
-def _moved(motion: Trajectory, name: str, change: float) -> Trajectory:
+def _moved(motion: Trajectory, settings: Settings, name: str, change: float) -> Trajectory:
     """Return the motion from a changed input, by the same model; ValueError for other events."""
-    settings = dataclasses.replace(motion.settings, model=motion.model)
     scene = changed(motion.scene, {name: value_of(motion.scene, name) + change})
+    settings = dataclasses.replace(settings, model=motion.model)
     moved = Trajectory.computed(scene, settings, np.array([motion.span]))
-    pair = zip(_order(motion), _order(moved), strict=False)
-    for (known, t), (other, _) in pair:
+    for (known, t), (other, _) in zip(_order(motion), _order(moved), strict=False):
         if known != other:
             at = f"with a change of {change:.2g} there is {other} in place of {known}"
             raise ValueError(f"{at} at t = {t:.6g} s")
     return moved
 
 
-def _derivatives(motion: Trajectory, fan: _Fan, there: Trajectory) -> _Found:
-    """Return the derivatives at samples, by the neighbours at the same shares of the arcs."""
-    rates = np.stack([getattr(there, name) for name in _RATES], axis=1)
-    knots = _knots(motion)
-    if fan.name == "t":
-        return _Found(rates, np.zeros(len(knots) - 2), 0.0)
-    arc = np.searchsorted(knots[:-1], there.t, side="right") - 1
-    length = knots[arc + 1] - knots[arc]
-    share = np.divide(there.t - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
-    begin, end = fan.knots[:, arc], fan.knots[:, arc + 1]
-    times = np.clip(begin + share * (end - begin), begin, motion.t_end)
-    states = np.array([_states(near.sol(t)) for near, t in zip(fan.near, times, strict=True)])
-
-    def by(weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        moves = weights @ fan.knots / fan.step
-        shift = moves[arc] + share * (moves[arc + 1] - moves[arc])
-        return np.tensordot(weights, states, 1) / fan.step - rates * shift[:, None], moves[1:-1]
-
-    _, sixth, fourth = RULES[fan.side]
-    (state, event_times), units = by(sixth), _units(motion.scene)
-    off = np.abs((state - by(fourth)[0]) / units).max(initial=0.0)
-    rounding = np.finfo(float).eps * np.abs(states / units).max(initial=0.0) / fan.step
-    return _Found(state, event_times, float(off + rounding))
+def _finer(settings: Settings) -> Settings:
+    """Return settings with which a method with steps is several times as accurate."""
+    step = None if settings.step is None else settings.step / 2
+    finer = {"rtol": settings.rtol / 8, "atol": settings.atol / 8, "step": step}
+    return dataclasses.replace(settings, **finer)
 
 
 def _distance(motion: Trajectory, name: str, side: int) -> float:
@@ -303,17 +295,15 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
 
     def same(change: float) -> bool:
         try:
-            return bool(_moved(motion, name, change))
+            return bool(_moved(motion, motion.settings, name, change))
         except ValueError:
             return False
 
     def reach(sign: int) -> float:
         near, far = 0.0, _NEAREST * farthest
-        while same(sign * far):
-            if far >= farthest:
-                return farthest
+        while near < farthest and same(sign * far):
             near, far = far, min(2 * far, farthest)
-        for _ in range(_HALVINGS):
+        while far - near > _NEAREST * max(far, _NEAREST * farthest):
             middle = (near + far) / 2
             near, far = (middle, far) if same(sign * middle) else (near, middle)
         return near
@@ -322,8 +312,8 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return what neighbours share: start, kinds of events and the ending, each with its time."""
-    events = [(event.kind.name, event.t) for event in motion.events]
+    """Return what neighbours share, with times: start, events with the next mode, ending."""
+    events = [(f"{e.kind.name} to {e.state_after.mode.name}", e.t) for e in motion.events]
     start = motion.scene.initial_state.mode.name
     return [(start, 0.0), *events, (motion.status.name, motion.t_end)]
 
@@ -332,8 +322,8 @@ def _knots(motion: Trajectory) -> FloatArray:
     return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
 
 
-def _states(motion: Trajectory) -> FloatArray:
-    return np.stack([getattr(motion, name) for name in STATE], axis=1)
+def _columns(motion: Trajectory, names: tuple[str, ...]) -> FloatArray:
+    return np.stack([getattr(motion, name) for name in names], axis=1)
 
 
 def _units(scene: Scene) -> FloatArray:

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from .._ask.check import FloatArray, array, common_shape
-from .._motion.sensitivity import RULES, STEPS, distinct
+from .._motion.sensitivity import RULES, STEPS, WORST, differenced, distinct
 from .flow import flow
 
 _FREE = ("t", "a", "b", "theta", "omega", "gravity", "gyration2")
-_WORST = 1e-3  # relative error above which there is no derivative
+_TRIED = 10  # number of steps
 
 
 def flow_jacobian(
@@ -29,8 +29,8 @@ def flow_jacobian(
 ) -> FloatArray:
     """Return the derivatives of `flow` with respect to some of its arguments.
 
-    They are differences of sixth order by the one of nine steps for which those of fourth order are
-    nearest. Steps shrink with the time, which magnifies changes. All arguments broadcast.
+    They are differences of sixth order, by the best of ten steps as in `Trajectory.sensitivity`.
+    Steps shrink with the time, which magnifies changes. All arguments broadcast.
 
     Parameters
     ----------
@@ -60,24 +60,20 @@ def flow_jacobian(
     spin = np.sqrt(known["gravity"] / length)
     units = np.stack([np.broadcast_to(unit, shape) for unit in (1.0, spin, length)])
     magnified = 1 + np.abs(known["t"]) * np.maximum(spin, np.abs(known["omega"]))
-    least = {"theta": np.ones(()), "omega": spin, "t": 1 / spin}
-    places, sixth, fourth = RULES[0]
+    sizes = known | {"theta": 1.0, "t": 1 / spin, "omega": np.maximum(np.abs(known["omega"]), spin)}
     columns = []
     for name in names:
-        size = least["t"] if name == "t" else np.maximum(np.abs(known[name]), least.get(name, 0))
-        best, error = np.zeros((3, *shape)), np.full(shape, np.inf)
-        for share in STEPS:
-            step = np.broadcast_to(share * size / magnified, shape)
-            moved = (known | {name: known[name] + place * step} for place in places.tolist())
+        best, last, error = np.zeros((3, *shape)), np.array(np.inf), np.full(shape, np.inf)
+        for share in STEPS[:_TRIED]:
+            step = np.broadcast_to(share * sizes[name] / magnified, shape)
+            moved = (known | {name: known[name] + place * step} for place in RULES[0][0].tolist())
             found = np.array([flow(**one, workers=workers) for one in moved])
-            column = np.tensordot(sixth, found, 1) / step
-            off = np.abs(column - np.tensordot(fourth, found, 1) / step) / units
-            rounding = np.finfo(float).eps * np.abs(found / units).max(axis=0) / step
-            largest = np.maximum(np.abs(column / units).max(axis=0), magnified / size)
-            relative = (off + rounding).max(axis=0) / largest
-            best = np.where(relative < error, column, best)
-            error = np.minimum(relative, error)
-        if not (error < _WORST).all():
+            column, rounding = differenced(found, step)
+            off = ((np.abs(column - last) + rounding) / units).max(axis=0)
+            largest = np.maximum(np.abs(column / units).max(axis=0), magnified / sizes[name])
+            best = np.where(off / largest < error, column, best)
+            last, error = column, np.minimum(off / largest, error)
+        if not (error < WORST).all():
             place = [int(k) for k in np.unravel_index(int(np.argmax(error)), shape)]
             raise ValueError(
                 f"wrt must be inputs with a derivative, got {name!r} at {place}, where steps agree "
