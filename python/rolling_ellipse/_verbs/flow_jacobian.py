@@ -12,7 +12,6 @@ from .._motion.sensitivity import RULES, STEPS, WORST, differenced, distinct
 from .flow import flow
 
 _FREE = ("t", "a", "b", "theta", "omega", "gravity", "gyration2")
-_TRIED = 10  # number of steps
 
 
 def flow_jacobian(
@@ -29,7 +28,7 @@ def flow_jacobian(
 ) -> FloatArray:
     """Return the derivatives of `flow` with respect to some of its arguments.
 
-    They are differences of sixth order, by the best of ten steps as in `Trajectory.sensitivity`.
+    They are differences of sixth order, by the best of twelve steps as in `Trajectory.sensitivity`.
     Steps shrink with the time, which magnifies changes. All arguments broadcast.
 
     Parameters
@@ -64,7 +63,7 @@ def flow_jacobian(
     columns = []
     for name in names:
         best, last, error = np.zeros((3, *shape)), np.array(np.inf), np.full(shape, np.inf)
-        for share in STEPS[:_TRIED]:
+        for share in STEPS[::2]:
             step = np.broadcast_to(share * sizes[name] / magnified, shape)
             moved = (known | {name: known[name] + place * step} for place in RULES[0][0].tolist())
             found = np.array([flow(**one, workers=workers) for one in moved])
