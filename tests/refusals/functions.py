@@ -55,6 +55,12 @@ REFUSALS: list[Row] = [
         gyration2=[*NOT_POSITIVE, 1e40, 3.6e-6, 4.4e6],
         theta=[*NOT_FINITE, [1.0, NAN]], omega=[*NOT_FINITE, [1.0, NAN]], workers=WORKERS,
     ),
+    *wrong(
+        rl.flow_jacobian, FLOW, wrt=[[], "x", 3, ["t", "t"], "gyration2"], t=[*NOT_FINITE, "x"],
+        a=NOT_POSITIVE, workers=WORKERS,
+    ),
+    # the body almost stops on its tip: a change by a rounding is a swing or a turn
+    ("wrt", lambda _: rl.flow_jacobian(1e9, **AXES, theta=1.0, omega=3.0)),
     *wrong(rl.classify, TURN, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
            gyration2=NOT_POSITIVE, theta=NOT_FINITE, omega=NOT_FINITE, friction=[-1.0, NAN],
            workers=WORKERS),

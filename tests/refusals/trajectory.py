@@ -15,6 +15,14 @@ from refusals import INF, NAN, Row, wrong
 MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 TURNING = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 1e9])
 CONTACT = rl.simulate(scenes.jump, np.linspace(0.0, 2.0, 6))
+DROPPED = rl.simulate(Scene(2.0, 1.0, theta=0.5, z=2.5, restitution=0.0), 0.6)
+FLAT = Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.3)
+AT_REST = rl.simulate(Scene(2.0, 1.0), 1.0)
+JAMMED = rl.simulate(Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0), 1.0)
+NOISY = rl.simulate(scenes.rolling, 3.0, model="rolling", method="dop853", rtol=1e-4)
+STARTED = rl.report.simulate(
+    *rl.kinematics(0.3, 1.0, a=2.0, b=1.0), a=2.0, b=1.0, t=1.0, equations="corrected",
+)  # fmt: skip
 N = MOTION.t.size
 
 
@@ -55,6 +63,20 @@ REFUSALS: list[Row] = [
     ),
     *wrong(MOTION.when, {"theta": 0.1}, direction=[2, True]),
     ("function's result", lambda _: MOTION.when(function=lambda at: "x")),
+    *wrong(DROPPED.sensitivity, {}, wrt=[
+        [], "psi", 5, [5], ["theta", "theta"], "jx", "friction", "restitution"]),
+    *wrong(DROPPED.sensitivity, {"wrt": "theta"}, side=[2, 0.5, [1], None, True]),
+    *wrong(MOTION.sensitivity, {}, wrt=["x_dot", "z"]),  # which follow rolling
+    *(("wrt", lambda _, motion=motion, wrt=wrt: motion.sensitivity(wrt)) for motion, wrt in (
+        (rl.simulate(FLAT, 2.0), "theta"),  # settles on its side: what would it do beside it?
+        (rl.simulate(DROPPED.scene, DROPPED.events[0].t), "theta"),  # ends in an impact
+        (rl.simulate(FLAT, 2.0), "slope"),
+        (NOISY, "theta"))),
+    *(("motion", lambda _, motion=motion: motion.sensitivity("theta"))
+      for motion in (STARTED, AT_REST, JAMMED)),
+    ("changes", lambda _: DROPPED.sensitivity("theta").forecast(omega=1.0)),
+    *wrong(DROPPED.sensitivity("theta").forecast, {}, theta=["x"]),
+    *wrong(DROPPED.sensitivity("theta").at, {}, t=[-1.0, 9.0, "now"]),
     ("event", lambda _: TURNING.when(event="roll_over")),
     ("event", lambda _: MOTION.when(event="impacts")),
     *(("exactly one of theta", lambda _, given=given: MOTION.when(**given))

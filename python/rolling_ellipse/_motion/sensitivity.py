@@ -47,7 +47,8 @@ def differenced(values: FloatArray, step: Any, side: int = 0) -> tuple[FloatArra
     """
     _, weights = RULES[side]
     rounding = 8 * np.finfo(float).eps * np.abs(weights).sum() * np.abs(values).max(axis=0)
-    return np.tensordot(weights, values, 1) / step, rounding / step
+    found = sum(weight * value for weight, value in zip(weights.tolist(), values, strict=True))
+    return found / step, rounding / step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -220,6 +221,7 @@ def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, Float
     if name == "t":
         return _columns(motion, _RATES), np.zeros(len(motion.events)), 0.0
     size, units = size_of(motion.scene, name), _units(motion.scene)
+    settings = dataclasses.replace(motion.settings, model=motion.model)
 
     def relative(off: FloatArray, state: FloatArray) -> FloatArray:
         largest = max(np.abs(state / units).max(initial=0.0), 1 / size)
@@ -229,7 +231,7 @@ def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, Float
     problem, least, best, last = "", math.inf, None, np.array(math.inf)
     for step in (size * STEPS).tolist():
         try:
-            state, times, rounding = _differences(motion, motion.settings, name, side, step)
+            state, times, rounding = _differences(motion, settings, name, side, step)
         except ValueError as error:  # no such scene, or other events
             problem = problem if best else str(error)
             continue
@@ -245,7 +247,7 @@ def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, Float
         raise ValueError(f"wrt must be inputs with a derivative, got {name!r}: {problem}")
     state, times, step = best
     if motion.method != "exact":
-        off = state - _differences(motion, _finer(motion.settings), name, side, step)[0]
+        off = state - _differences(motion, _finer(settings), name, side, step)[0]
         least += float(relative(np.abs(off), state).max(initial=0.0))
     return state, times, least
 
@@ -274,7 +276,6 @@ def _differences(
 def _moved(motion: Trajectory, settings: Settings, name: str, change: float) -> Trajectory:
     """Return the motion from a changed input, by the same model; ValueError for other events."""
     scene = changed(motion.scene, {name: value_of(motion.scene, name) + change})
-    settings = dataclasses.replace(settings, model=motion.model)
     moved = Trajectory.computed(scene, settings, np.array([motion.span]))
     for (known, t), (other, _) in zip(_order(motion), _order(moved), strict=False):
         if known != other:
@@ -295,10 +296,11 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
         events = np.append(_knots(motion)[1:-1], math.inf)
         return float((events[np.searchsorted(events, motion.t)] - motion.t).min(initial=math.inf))
     farthest = size_of(motion.scene, name)
+    settings = dataclasses.replace(motion.settings, model=motion.model)
 
     def same(change: float) -> bool:
         try:
-            return bool(_moved(motion, motion.settings, name, change))
+            return bool(_moved(motion, settings, name, change))
         except ValueError:
             return False
 
