@@ -21,6 +21,7 @@ from ._motion.constraints import kinematics as kinematics
 from ._motion.events import Event as Event
 from ._motion.export import load as load
 from ._motion.samples import Sample as Sample
+from ._motion.sensitivity import Sensitivity as Sensitivity
 from ._motion.status import IntegrationError as IntegrationError
 from ._motion.status import Status as Status
 from ._motion.status import WorkerError as WorkerError

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from .._pictures.phase import Phase
     from .._pictures.stills import Paths, Strobe
     from . import passages, strobe_svg
+    from . import sensitivity as derivatives
     from .export import files, tables
 
     _Path = str | os.PathLike[str]
@@ -362,7 +363,7 @@ class Trajectory(FieldsOnly):
     # -- methods of other modules, bound by `_show.methods` ----------------------------------------
 
     if TYPE_CHECKING:
-        when = passages.when
+        when, sensitivity = passages.when, derivatives.sensitivity
         save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
         _repr_html_ = strobe_svg._repr_html_
 
