@@ -2,6 +2,7 @@
 
 import math
 import re
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -69,40 +70,37 @@ def test_drawn_scenes_agree_with_the_chain(seed: int) -> None:
 
 
 def test_motions_of_the_reference() -> None:
-    """Errors stay below 1e-10 but for rounding, which a step of 1e-4 magnifies 10^4 times.
+    """94 of 106 motions are within 1e-10; the others magnify roundings, as `error` says.
 
-    The unit of the table is the effect of one rounding on the last state. `error` bounds the true
-    error up to a factor of 10 in 99 of 100 columns. Three flat drops and one rest have no
-    derivative by what would tilt them; bounds of inputs have one side.
+    An estimate is of the order of the error, so that it bounds it up to a factor of 10. Derivatives
+    at bounds have one side. A flat drop has none by what tilts it, and a table on one side only.
     """
     last = {row["name"]: row for row in table.rows("contact_reference")}
-    good, refused, ratios = set(last), set(), []
+    good, refused, ratios = {name for name in last if name[:3] != "jam"}, [], []
     for row in table.rows("sensitivity_reference"):
         start, name = last[row["name"]], row["wrt"]
         given: dict[str, Any] = {key.removesuffix("0"): start[key] for key in list(start)[1:15]}
-        scene = Scene(**{key: float(text) for key, text in given.items() if text})
+        numbers: dict[str, Any] = {key: float(text) for key, text in given.items() if text}
+        scene = Scene(**numbers)
         motion = simulate(scene, [float(start["t"])], model="contact")
-        side = {"0.0": 1, "1.0": -1}[given[name]] if at_a_bound(name, given[name]) else 0
         true = np.array([float(row[key]) for key in STATE])[:, None]
-        try:
-            found = motion.sensitivity(name, side=side)
-        except ValueError:
-            refused.add((row["name"], name))
+        found = by_any_side(motion, name)
+        if found is None:
+            refused.append((row["name"], name))
             continue
         (error,) = off(scene, found.state[0], true, [name])
-        unit = np.array([float(start[f"unit_{key}"]) for key in STATE]) / units(scene)
-        size = sizes(scene, true, [name]) * size_of(scene, name)
-        assert error < 1e-10 + 1e4 * unit.max() / size, row
+        assert error < max(1e-10, 10 * found.error[0]) < 1e-5, row
         ratios.append(error / found.error[0])
         good -= {row["name"]} if error > 1e-10 else set()
-    print(len(good), sorted(refused), np.quantile(ratios, [0.5, 0.9, 0.99, 1]))
-    assert len(good) >= 94 and np.mean(np.array(ratios) > 10) < 0.01
+    assert len(good) >= 94 and np.mean(np.array(ratios) > 1) < 0.1
+    assert {name for name, _ in refused} == {"rest-4", "hops-1"} and len(refused) == 5
 
 
-def at_a_bound(name: str, text: str) -> bool:
-    return (name in ("friction", "restitution") and text == "0.0") or (name, text) == (
-        "restitution", "1.0",
-    )  # fmt: skip
+def by_any_side(motion: Trajectory, name: str) -> Any:
+    for side in (0, 1, -1):
+        with suppress(ValueError):
+            return motion.sensitivity(name, side=side)
+    return None
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
@@ -127,7 +125,7 @@ def test_rolling_keeps_areas() -> None:
     # the same by `sensitivity`, for scalars, and in the same bits by any workers
     assert np.array_equal(found, flow_jacobian(t, **given, workers=2))
     for k in range(5):
-        one = {name: float(values[k]) for name, values in given.items()}
+        one: dict[str, Any] = {name: float(values[k]) for name, values in given.items()}
         assert np.array_equal(found[k], flow_jacobian(t[k], **one))
         scene = Scene(**one)
         state = simulate(scene, [t[k]], model="rolling").sensitivity(("theta", "omega")).state[0]
@@ -176,7 +174,8 @@ def test_one_side_other_times_and_methods_with_steps() -> None:
     assert ice.sensitivity("restitution", side=-1).error < 1e-9
     exact = simulate(scenes.rolling, 3.0).sensitivity("omega")
     for method, model, step in (("dop853", "rolling", None), ("rk4", "multipliers", 0.02)):
-        found = simulate(scenes.rolling, 3.0, model=model, method=method, step=step)
+        options: Any = {"model": model, "method": method, "step": step}
+        found = simulate(scenes.rolling, 3.0, **options)
         rough = found.sensitivity("omega")
         true = off(scenes.rolling, rough.state, exact.state, ["omega"])[0]
         assert 1e-10 < true < 10 * rough.error[0]

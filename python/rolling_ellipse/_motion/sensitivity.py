@@ -47,8 +47,9 @@ def differenced(values: FloatArray, step: Any, side: int = 0) -> tuple[FloatArra
     """
     _, weights = RULES[side]
     rounding = 8 * np.finfo(float).eps * np.abs(weights).sum() * np.abs(values).max(axis=0)
-    found = sum(weight * value for weight, value in zip(weights.tolist(), values, strict=True))
-    return found / step, rounding / step
+    shares = [weight * value for weight, value in zip(weights.tolist(), values, strict=True)]
+    found: FloatArray = sum(shares, np.zeros(())) / step  # in the same order for one and for many
+    return found, rounding / step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +86,8 @@ class Sensitivity(FieldsOnly):
         It takes new differences; for many times ``motion.sol(times).sensitivity(wrt)`` is faster.
         """
         there = self.trajectory.sol(number("t", t))
-        return sensitivity(there, self.wrt, side=self.side).state[0]
+        found: FloatArray = sensitivity(there, self.wrt, side=self.side).state[0]
+        return found
 
     def forecast(self, **changes: float) -> FloatArray:
         """Return the states at the samples to first order in changes, shape (n, 6).
@@ -180,7 +182,7 @@ def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) 
 
 def changed(scene: Scene, values: dict[str, float]) -> Scene:
     """Return the scene with other values of inputs, also of its impulse."""
-    blow = {name: value for name, value in values.items() if name in _BLOW}
+    blow: dict[str, Any] = {name: value for name, value in values.items() if name in _BLOW}
     others: dict[str, Any] = {name: value for name, value in values.items() if name not in _BLOW}
     if blow and scene.impulse is not None:
         others["impulse"] = dataclasses.replace(scene.impulse, **blow)
@@ -213,7 +215,7 @@ def size_of(scene: Scene, name: str) -> float:
         "friction": 1e-3,
     }  # fmt: skip
     alone = {"theta": one, "t": 1 / spin}
-    return alone.get(name) or max(abs(value_of(scene, name)), units.get(name, 0.0))
+    return float(alone.get(name) or max(abs(value_of(scene, name)), units.get(name, 0.0)))
 
 
 def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, FloatArray, float]:
@@ -232,8 +234,8 @@ def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, Float
     for step in (size * STEPS).tolist():
         try:
             state, times, rounding = _differences(motion, settings, name, side, step)
-        except ValueError as error:  # no such scene, or other events
-            problem = problem if best else str(error)
+        except ValueError as refusal:  # no such scene, or other events
+            problem = problem if best else str(refusal)
             continue
         off = relative(np.abs(state - last) + rounding, state)
         last, error = state, float(off.max(initial=0.0))
@@ -287,8 +289,7 @@ def _moved(motion: Trajectory, settings: Settings, name: str, change: float) -> 
 def _finer(settings: Settings) -> Settings:
     """Return settings with which a method with steps is several times as accurate."""
     step = None if settings.step is None else settings.step / 2
-    finer = {"rtol": settings.rtol / 8, "atol": settings.atol / 8, "step": step}
-    return dataclasses.replace(settings, **finer)
+    return dataclasses.replace(settings, rtol=settings.rtol / 8, atol=settings.atol / 8, step=step)
 
 
 def _distance(motion: Trajectory, name: str, side: int) -> float:
