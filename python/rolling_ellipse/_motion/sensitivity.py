@@ -230,23 +230,27 @@ def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, Float
         found: FloatArray = (off / units).max(axis=1, initial=0.0) / largest
         return found
 
+    cause: ValueError | None = None
     problem, least, best, last = "", math.inf, None, np.array(math.inf)
     for step in (size * STEPS).tolist():
         try:
             state, times, rounding = _differences(motion, settings, name, side, step)
         except ValueError as refusal:  # no such scene, or other events
-            problem = problem if best else str(refusal)
+            if best is None:
+                problem, cause = str(refusal), refusal
             continue
         off = relative(np.abs(state - last) + rounding, state)
         last, error = state, float(off.max(initial=0.0))
         if best is None or error < least:
-            best, least = (state, times, step), error
+            best, least, cause = (state, times, step), error, None
             place = motion.t[off.argmax()]
             problem = f"steps agree to {error:.1g} only at t = {place:.6g} s"
         elif least < _FINE and error > _GROWN * least:
             break
     if best is None or not least < WORST:
-        raise ValueError(f"wrt must be inputs with a derivative, got {name!r}: {problem}")
+        raise ValueError(
+            f"wrt must be inputs with a derivative, got {name!r}: {problem}"
+        ) from cause
     state, times, step = best
     if motion.method != "exact":
         off = state - _differences(motion, _finer(settings), name, side, step)[0]
