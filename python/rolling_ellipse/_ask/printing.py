@@ -94,11 +94,11 @@ class Listed:
         return html_table(type(self).__name__, self._rows())
 
 
-def required(package: str, method: str) -> Any:
-    """Return an imported package of the extra "data"; an ImportError names that extra."""
+def required(package: str, method: str, extra: str = "data") -> Any:
+    """Return an imported package of an extra; an ImportError names that extra."""
     try:
         return importlib.import_module(package)
     except ImportError as error:
         raise ImportError(
-            f"{method} needs {package}: pip install 'rolling_ellipse[data]'"
+            f"{method} needs {package}: pip install 'rolling_ellipse[{extra}]'"
         ) from error

@@ -2,30 +2,46 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, positive
-from .._ask.printing import text_table
+from .._ask.check import FloatArray, array, choice, positive
+from .._ask.printing import Row, html_table, text_table
 from .._ask.scene import Scene, require_scene
+from .._ask.printing import required
+from .._motion.samples import vector
 from .._motion.sensitivity import INPUTS, changed, distinct, size_of, value_of
 from .._motion.trajectory import Trajectory
 from .simulate import sample_times, simulate
 
+if TYPE_CHECKING:
+    from .._pictures.fit import FitChart
+
 TRACKS = ("x", "z", "theta")
+_RATES = ("x_dot", "z_dot", "omega")
+_LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # at most a hundred times off
-_GUESSES = {"friction": (0.1, 0.3, 1.0), "restitution": (0.2, 0.5, 0.8)}
+_GUESSES = {
+    "friction": (0.1, 0.3, 1.0),
+    "restitution": (0.2, 0.5, 0.8),
+    "inertia": (0.5, 2.0),  # over the first guess
+    "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
+}
 _STAGES = (1.0,), (0.15, 0.3, 0.5, 0.7, 1.0)  # shares of the film that are fitted in turn
-_GOOD = 1.5  # chi2 over the degrees of freedom with which the search ends
-_IMPOSSIBLE = 1e3  # residual of a scene that cannot be
+_IMPOSSIBLE = 1e9  # residual of a scene that cannot be
 _LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
+_FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
 _FIRST = 8  # frames from which the start is guessed
+_NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
 _EXACT = {"xtol": 1e-10, "ftol": 1e-10, "gtol": 1e-10, "max_nfev": 100}
+_ROUGH = {"ftol": 1e-4, "max_nfev": 20}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,10 +60,13 @@ class Fit:
         Sum of the squares of residuals over sigma.
     residuals : ndarray, shape (n, 3)
         Measured minus fitted x, z [m] and theta [rad], NaN where nothing was measured.
+    sigma : ndarray, shape (3,)
+        Standard deviations of the data [m, m, rad], as given or estimated.
     trajectory : Trajectory
         The fitted motion at the times of the film.
     message : str
-        Number of data, chi2 over the degrees of freedom, and what the film cannot tell.
+        Number of data, chi2 over the degrees of freedom, what the film cannot tell, and whether
+        the scene does not fit.
     """
 
     scene: Scene
@@ -55,16 +74,35 @@ class Fit:
     covariance: FloatArray
     chi2: float
     residuals: FloatArray
+    sigma: FloatArray
     trajectory: Trajectory
     message: str
 
-    def __repr__(self) -> str:
+    def _rows(self) -> list[Row]:
         rows = []
         for name, error in self.errors.items():
             places = 6 if not 0 < error < math.inf else max(0, 1 - math.floor(math.log10(error)))
             value = value_of(self.scene, name)
             rows.append((name, f"{value:.{places}f}", f"± {error:.{places}f}"))
-        return f"{text_table(rows)}\n{self.message}"
+        return rows
+
+    def __repr__(self) -> str:
+        return f"{text_table(self._rows())}\n{self.message}"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.message, self._rows())
+
+    def plot(self, path: Any = None, *, figure: Any = None, figsize: Any = None) -> FitChart:
+        """Draw each track over the fitted motion and, below, residuals in units of sigma.
+
+        Parameters
+        ----------
+        path, figure, figsize
+            As in `rolling_ellipse.plot`, with its errors.
+        """
+        from .._pictures.fit import draw
+
+        return draw(self, path, figure, figsize=figsize)
 
 
 def fit_motion(
@@ -80,10 +118,11 @@ def fit_motion(
 ) -> Fit:
     """Fit parameters of a scene to a film: places and angles of the body at times.
 
-    Nonlinear least squares [1]_ by SciPy, from the scene itself, from a start guessed from the first
-    frames, and from other coefficients, each for the whole film and for longer and longer parts of
-    it. A standard error grows to a third of the change that raises chi2 by 9 where that is more,
-    as beyond a threshold of friction.
+    Nonlinear least squares [1]_ by SciPy, from the scene itself, from a start guessed from the
+    first frames, and from other coefficients, each for the whole film and for longer and longer
+    parts of it. Then each parameter is moved by three errors, and further, with the others fitted
+    anew: an error grows to the change over the root of the rise of chi2 where that is more, as
+    beyond a threshold of friction or where another scene fits as well.
 
     Parameters
     ----------
@@ -99,9 +138,8 @@ def fit_motion(
     sigma : float or mapping, optional
         Standard deviation of all data, or by the names x, z and theta. Default: equal for all in
         units of max(a, b) and rad, estimated from the residuals.
-    loss : str
-        As of `scipy.optimize.least_squares`: "linear", or for outliers "soft_l1", "huber",
-        "cauchy", "arctan".
+    loss : {"linear", "soft_l1", "huber", "cauchy", "arctan"}
+        As of `scipy.optimize.least_squares`; all but "linear" are for films with outliers.
 
     Raises
     ------
@@ -109,41 +147,57 @@ def fit_motion(
         If names are unknown or repeated, arrays do not fit together, sigma is not positive, there
         are fewer data than unknowns, or no scene of the search moves until the last time.
     ImportError
-        If SciPy is not installed: ``pip install rolling-ellipse[fit]``.
+        If SciPy is not installed.
 
     References
     ----------
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
     """
-    search = _Search(sample_times(array("t", t)), {"x": x, "z": z, "theta": theta}, scene, free)
-    search.weigh(sigma)
-    return search.fit(loss, estimate=sigma is None)
+    choice("loss", loss, _LOSSES)
+    tracks = {"x": x, "z": z, "theta": theta}
+    search = _Search(sample_times(array("t", t)), tracks, scene, free, sigma, loss)
+    best = search.best(search.starts())
+    if sigma is None:
+        search.estimate(best)
+    rivals = [search.solve(u) for u in (best.x, *search.others(best.x))]
+    best = min(rivals, key=lambda one: one.cost)
+    errors, covariance = search.errors(best, rivals)
+    motion = simulate(search.made(best.x), search.t, raise_on_failure=False)
+    off = search.off(motion)
+    by_name = dict(zip(search.names, errors.tolist(), strict=True))
+    return Fit(
+        motion.scene, by_name, covariance, float(np.nansum((off / search.sigma) ** 2)), off,
+        search.sigma, motion, search.message(best, by_name),
+    )  # fmt: skip
 
 
 class _Search:
-    """Films and scenes in the natural sizes of the unknowns."""
+    """A film, and the unknowns of its scene in their natural sizes."""
 
-    def __init__(self, t: FloatArray, tracks: dict[str, Any], scene: Scene, free: Any) -> None:
-        self.t, self.scene = t, require_scene(scene)
+    def __init__(
+        self, t: FloatArray, tracks: dict[str, Any], scene: Scene, free: Any, sigma: Any, loss: str
+    ) -> None:
+        self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
+        self.t, self.scene, self.loss = t, require_scene(scene), loss
         self.names = distinct("free", free, INPUTS[:-1])
         self.data = np.full((t.size, len(TRACKS)), math.nan)
         for k, (name, track) in enumerate(tracks.items()):
             if track is not None:
-                values = array(name, track)
-                if values.shape != t.shape:
-                    raise ValueError(f"{name} must have the shape {t.shape}, got {values.shape}")
-                self.data[:, k] = values
+                self.data[:, k] = vector(name, track, t.size)
         self.known = np.isfinite(self.data)
-        self.dof = int(self.known.sum()) - len(self.names)
+        count = int(self.known.sum())
+        self.dof = count - len(self.names)
         if self.dof < 1:
-            known = self.known.sum()
-            raise ValueError(f"free must be fewer names than data, got {len(self.names)}, {known}")
+            raise ValueError(f"free must be fewer names than data, got {len(self.names)}, {count}")
+        try:
+            self.own = np.array([value_of(scene, name) for name in self.names])
+        except ValueError as error:  # the scene has no such number
+            raise ValueError(f"free{str(error).removeprefix('wrt')}") from None
         self.sizes = np.array([size_of(scene, name) for name in self.names])
-        bounds = [_bounds(value_of(scene, name), name) for name in self.names]
+        self.sizes[np.array(self.names) == "friction"] = 1.0
+        bounds = [_bounds(*pair) for pair in zip(self.names, self.own, strict=True)]
         self.low, self.high = np.array(bounds).T / self.sizes
-
-    def weigh(self, sigma: Any) -> None:
-        length = max(self.scene.a, self.scene.b)
+        length = max(scene.a, scene.b)
         found = dict(zip(TRACKS, (length, length, 1.0), strict=True))
         if isinstance(sigma, Mapping):
             distinct("sigma", sigma, TRACKS)
@@ -151,10 +205,10 @@ class _Search:
         elif sigma is not None:
             found = dict.fromkeys(TRACKS, positive("sigma", sigma))
         self.sigma = np.array(list(found.values()))
+        self.good = 0.0 if sigma is None else 1 + 3 * math.sqrt(2 / self.dof)  # chi2 / dof
 
     def made(self, u: FloatArray) -> Scene:
-        values = (u * self.sizes).tolist()
-        return changed(self.scene, dict(zip(self.names, values, strict=True)))
+        return changed(self.scene, dict(zip(self.names, (u * self.sizes).tolist(), strict=True)))
 
     def off(self, motion: Trajectory) -> FloatArray:
         """Return measured minus computed tracks; angles modulo pi."""
@@ -163,135 +217,110 @@ class _Search:
         return off
 
     def residuals(self, u: FloatArray) -> FloatArray:
-        try:
+        with suppress(ValueError):  # no such scene
             motion = simulate(self.made(u), self.t, raise_on_failure=False)
-            return (self.off(motion) / self.sigma)[self.known]
-        except ValueError:  # no such scene, or it ends too early
-            return np.full(self.known.sum(), _IMPOSSIBLE)
+            if motion.t.size == self.t.size:
+                return (self.off(motion) / self.sigma)[self.known]
+        return np.full(self.known.sum(), _IMPOSSIBLE)
 
     def starts(self) -> list[FloatArray]:
-        own = {name: value_of(self.scene, name) for name in self.names}
-        tracks = self.data.copy()
+        """Return the scene's own values, those of the first frames, and other coefficients."""
+        tracks, first, names = self.data.copy(), self.own.copy(), np.array(self.names)
         seen = self.known[:, 2]
         tracks[seen, 2] = np.unwrap(tracks[seen, 2], period=math.pi)
-        guess: dict[str, float] = {}
-        for track, names in zip(
-            tracks.T, (("x", "x_dot"), ("z", "z_dot"), ("theta", "omega")), strict=True
-        ):
+        for track, pair in zip(tracks.T, zip(TRACKS, _RATES, strict=True), strict=True):
             rows = np.flatnonzero(np.isfinite(track))[:_FIRST]
             if rows.size > 3:
                 powers = np.polynomial.polynomial.polyfit(self.t[rows], track[rows], 2)
-                guess |= dict(zip(names, powers.tolist(), strict=False))
-        first = own | {name: value for name, value in guess.items() if name in own}
-        guesses = (own, first, *self.others(first))
-        return [np.array(list(one.values())) / self.sizes for one in guesses]
+                for name, value in zip(pair, powers.tolist(), strict=False):
+                    first[names == name] = value
+        turned = math.pi * np.round((first - self.own) / math.pi)
+        u = np.where(names == "theta", first - turned, first) / self.sizes
+        return [self.own / self.sizes, u, *self.others(u)]
 
-    def others(self, values: dict[str, float]) -> list[dict[str, float]]:
-        """Return values of the unknowns with other coefficients of the ground."""
-        guesses = ((name, g) for name, guessed in _GUESSES.items() for g in guessed)
-        return [values | {name: guess} for name, guess in guesses if name in values]
+    def others(self, u: FloatArray) -> list[FloatArray]:
+        """Return values of the unknowns, each with another guess of one of them."""
+        found = []
+        for k, name in enumerate(self.names):
+            if name in _GUESSES and not (name == "theta" and self.known[:, 2].any()):
+                values = np.tile(u, (len(_GUESSES[name]), 1))
+                values[:, k] = np.array(_GUESSES[name]) * (u[k] if name == "inertia" else 1.0)
+                found += list(values)
+        return found
 
-    def solve(self, u: FloatArray, loss: str, share: float = 1.0, held: int | None = None) -> Any:
-        """Return SciPy's solution for a share of the film, one unknown held in its place or none."""
-        from scipy.optimize import least_squares
-
+    def solve(self, u: FloatArray, share: float = 1.0, held: int | None = None) -> Any:
+        """Return SciPy's solution for a share of the film, with one unknown held or none."""
         low, high = self.low.copy(), self.high.copy()
         u = np.clip(u, low + _LEAST, high - _LEAST)
         if held is not None:
             low[held], high[held] = u[held] - _LEAST, u[held] + _LEAST
         used = np.nonzero(self.known)[0] < share * self.t.size
+        return self.least_squares(
+            lambda u: np.where(used, self.residuals(u), 0.0), u, "3-point", (low, high),
+            loss=self.loss, **(_EXACT if held is None else _ROUGH),
+        )  # fmt: skip
 
-        def residuals(u: FloatArray) -> FloatArray:
-            return np.where(used, self.residuals(u), 0.0)
-
-        return least_squares(residuals, u, "3-point", (low, high), loss=loss, **_EXACT)
-
-    def best(self, loss: str, estimate: bool) -> Any:
+    def best(self, starts: list[FloatArray]) -> Any:
         best: Any = None
-        for start in self.starts():
+        for start in starts:
             if self.residuals(start)[0] == _IMPOSSIBLE:
                 continue
             for shares in _STAGES:
                 u = start
                 for share in shares:
-                    found = self.solve(u, loss, share)
+                    found = self.solve(u, share)
                     u = found.x
                 best = found if best is None or found.cost < best.cost else best
-            if not estimate and 2 * best.cost < _GOOD * self.dof:
+            if 2 * best.cost < self.good * self.dof:
                 break
         if best is None:
             raise ValueError("scene must move until the last time t, got one that does not")
         return best
 
-    def fit(self, loss: str, estimate: bool) -> Fit:
-        best = self.best(loss, estimate)
-        scene = self.made(best.x)
-        motion = simulate(scene, self.t, raise_on_failure=False)
-        off = self.off(motion)
-        chi2 = float(np.nansum((off / self.sigma) ** 2))
+    def estimate(self, best: Any) -> None:
+        """Scale sigma by the residuals, whose outliers do not count for other losses."""
+        sizes = np.abs(self.residuals(best.x))
+        scale = math.sqrt(2 * best.cost / self.dof)
+        self.sigma *= max(scale if self.loss == "linear" else _NORMAL * np.median(sizes), _LEAST)
+
+    def errors(self, best: Any, rivals: list[Any]) -> tuple[FloatArray, FloatArray]:
+        """Return standard errors and covariance; rivals are other solutions."""
         _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
         told = singular > _LEAST * singular[0]
         inverse = np.divide(1.0, singular**2, out=np.zeros(len(told)), where=told)
-        scatter = chi2 / self.dof if estimate else 1.0
-        covariance = (axes.T * inverse) @ axes * scatter
+        covariance = (axes.T * inverse) @ axes
         errors = np.sqrt(np.diag(covariance))
         errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
-        errors = self.widened(best, errors, scatter, loss) * self.sizes
-        lost = [name for name, e in zip(self.names, errors, strict=True) if math.isinf(e)]
-        message = f"{self.known.sum()} data, chi2 / {self.dof} = {chi2 / self.dof:.3g}"
-        message += f"; the film cannot tell {', '.join(lost)}." if lost else "."
-        return Fit(
-            scene, dict(zip(self.names, errors.tolist(), strict=True)),
-            covariance * np.outer(self.sizes, self.sizes), chi2, off, motion, message,
-        )  # fmt: skip
-
-    def widened(self, best: Any, errors: FloatArray, scatter: float, loss: str) -> FloatArray:
-        """Return errors that are not smaller than a third of the change that raises chi2 by 9."""
-        least = np.sum(self.residuals(best.x) ** 2)
         wide = errors.copy()
-        values = dict(zip(self.names, (best.x * self.sizes).tolist(), strict=True))
-        starts = (np.array(list(one.values())) / self.sizes for one in self.others(values))
-        rivals = [self.solve(start, loss) for start in starts]
-
-        def rise(u: FloatArray) -> float:
-            return float((np.sum(self.residuals(u) ** 2) - least) / scatter)
-
-        for k in range(len(errors)):
-            for sign in (-1, 1):
-                step = np.zeros(len(errors))
-                step[k] = sign * errors[k]
-                found = _stretched(rise, best.x, step, self.low, self.high)
-                if found is None:
-                    continue
-                wide[k] = max(wide[k], abs(found[k] - best.x[k]) / 3)
-                if not ((self.low < found) & (found < self.high))[k]:
-                    wide[k] = math.inf
-                rivals.append(self.solve(found, loss, held=k))
+        for k, sign in itertools.product(range(len(errors)), (-1, 1)):
+            reach, rise = 3 * errors[k], 0.0
+            while rise < 4.5 and reach < _FAR:
+                there = best.x + sign * reach / errors[k] ** 2 * covariance[k]
+                other = self.solve(there, held=k)
+                rivals.append(other)
+                outside = not self.low[k] < there[k] < self.high[k]
+                rise, reach = math.inf if outside else 2 * (other.cost - best.cost), 2 * reach
+            if rise < 4.5:
+                wide[k] = math.inf
         for other in rivals:
-            if 2 * (other.cost - best.cost) / scatter < 9:
-                wide = np.maximum(wide, np.abs(other.x - best.x))
-        return wide
+            rise = 2 * (other.cost - best.cost)
+            if rise < 9:
+                wide = np.maximum(wide, np.abs(other.x - best.x) / math.sqrt(max(rise, 1.0)))
+        covariance[np.diag_indices(len(wide))] = np.where(np.isinf(wide), wide, np.diag(covariance))
+        return wide * self.sizes, covariance * np.outer(self.sizes, self.sizes)
+
+    def message(self, best: Any, errors: dict[str, float]) -> str:
+        lost = ", ".join(name for name, error in errors.items() if math.isinf(error))
+        chi2 = 2 * best.cost / self.dof
+        said = [f"{self.known.sum()} data, chi2 / {self.dof} = {chi2:.3g}"]
+        said += [f"the film cannot tell {lost}"] if lost else []
+        said += (
+            ["the scene does not fit the film"] if chi2 > 1 + 5 * math.sqrt(2 / self.dof) else []
+        )
+        return f"{'; '.join(said)}."
 
 
-def _stretched(
-    rise: Callable[[FloatArray], float], u: FloatArray, step: FloatArray, low: Any, high: Any
-) -> FloatArray | None:
-    """Return where chi2 has risen by 9 along a step, or the bound; None if that is near enough.
-
-    Beyond a threshold chi2 may stay flat: it must not be less at three times the distance.
-    """
-    factor = 3.0
-    while math.isfinite(factor * step.sum()):
-        there, far = (np.clip(u + times * factor * step, low, high) for times in (1, 3))
-        if rise(there) > (4.5 if factor == 3 else 9.0) and rise(far) > 9:
-            return None if factor == 3 else there
-        if ((there == low) | (there == high))[step != 0].any():
-            return there
-        factor *= 2
-    return None
-
-
-def _bounds(value: float, name: str) -> tuple[float, float]:
+def _bounds(name: str, value: float) -> tuple[float, float]:
     if name in _POSITIVE:
         return 0.01 * value, 100 * value
     return _BOUNDS.get(name, (-math.inf, math.inf))
