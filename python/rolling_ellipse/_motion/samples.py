@@ -132,6 +132,13 @@ def _untouchable(values: _Values) -> _Values:
     return values
 
 
+def sentence(name: str, value: Any) -> str:
+    """Return a plain str, even if the value is of a subclass, or raise TypeError."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a sentence, got {shown(value)}")
+    return str.__str__(value)
+
+
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
     """Return a 1-D array of numbers, read-only, of the given size (None: of any size)."""
     found = array(name, values)

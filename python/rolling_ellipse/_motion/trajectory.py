@@ -19,6 +19,7 @@ from .._ask.settings import METHODS, MODELS, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events
+from .from_arrays import GIVEN, between_samples
 from .quantities import MODE, QUANTITIES
 from .samples import (
     ContactSamples,
@@ -30,6 +31,7 @@ from .samples import (
     first_sample,
     frozen,
     sampled,
+    sentence,
     touch,
     vector,
 )
@@ -175,9 +177,9 @@ class Trajectory(FieldsOnly):
         for name in ("valid_until", "t_end", "span"):
             checked[name] = number(name, getattr(self, name))
         for name in ("message", "reason"):
-            checked[name] = _sentence(name, getattr(self, name))
+            checked[name] = sentence(name, getattr(self, name))
         checked["model"] = choice("model", self.model, MODELS[1:])  # all models but "auto"
-        checked["method"] = choice("method", self.method, METHODS[1:])
+        checked["method"] = choice("method", self.method, (*METHODS[1:], GIVEN))
         require_scene(self.scene)
         for name, kind in (("settings", Settings), ("status", Status)):
             if not isinstance(value := getattr(self, name), kind):
@@ -224,6 +226,8 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def _solution(self) -> _core.Solution:
+        if self.method == GIVEN:
+            return between_samples(self)
         return solve(self.scene, self.settings, self.span, self.start)
 
     # -- what follows from the samples ----------------------------------------------------------
@@ -378,6 +382,8 @@ class Trajectory(FieldsOnly):
         def animate(self, path: _Path | None = None, **options: Any) -> RollingAnimation: ...
         @classmethod
         def load(cls, path: _Path) -> Self: ...
+        @classmethod
+        def from_arrays(cls, t: Any, x: Any, z: Any, theta: Any, *, scene: Scene) -> Self: ...
 
     else:  # a type checker would take every name for an attribute
 
@@ -422,12 +428,6 @@ class Trajectory(FieldsOnly):
             f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
             f"{self.status.name}>"
         )
-
-
-def _sentence(name: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"{name} must be a sentence, got {shown(value)}")
-    return str.__str__(value)  # a plain str, even if `value` is of a subclass
 
 
 def _kept(found: Any) -> tuple[Event, ...] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,11 +47,15 @@ def draw(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
     how: dict[str, Any] = {"ls": "", "ms": 3, "mew": 0}
     looks = zip("osD", (shades.blue, shades.orange, shades.ink), strict=True)
     for ax, track, (marker, color), sigma in zip(axes, seen, looks, fit.sigma, strict=False):
-        (chart.curves[track],) = ax.plot(curve.t, getattr(curve, track), color=shades.grey, lw=1)
+        (chart.curves[track],) = ax.plot(
+            curve.t, getattr(curve, track), color=shades.text, lw=0.8, zorder=3
+        )
         measured = getattr(motion, track) + off[track]
         how |= {"marker": marker, "color": color}
         (chart.tracks[track],) = ax.plot(motion.t, measured, **how)
-        (chart.residuals[track],) = bottom.plot(motion.t, off[track] / sigma, label=track, **how)
+        (chart.residuals[track],) = bottom.plot(
+            motion.t, off[track] / sigma, label=_LABELS[track][0], **how
+        )
         ax.set_ylabel(_LABELS[track])
     bottom.axhspan(-2, 2, color=shades.shade(0.07), lw=0, zorder=0)  # 95 % of normal residuals
     bottom.set(xlabel="t [s]", ylabel="residual / σ")
@@ -58,7 +63,8 @@ def draw(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
         dress_grid(ax)
     whole.align_ylabels(axes)
     name_curves(bottom)
-    title_beside_legend(axes[0], fit.message)
+    letters = int(12 * axes[0].get_window_extent().width / whole.get_figure(root=True).dpi)
+    title_beside_legend(axes[0], fill(fit.message, max(20, letters)))
     if name is not None:
         chart.savefig(name)
         if figure is None:

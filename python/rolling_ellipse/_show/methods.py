@@ -22,7 +22,7 @@ METHODS = {
     ),
     "_player": ("animate",),
 }  # fmt: skip
-_OF_THE_CLASS = ("load",)
+_OF_THE_CLASS = ("load", "from_arrays")
 
 
 class _Later:

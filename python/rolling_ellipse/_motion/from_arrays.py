@@ -1,0 +1,101 @@
+"""Trajectories of samples from elsewhere: a tracker's, or another simulator's."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from .._ask.check import FloatArray, finite
+from .._ask.scene import Scene, require_scene
+from .._ask.settings import DEFAULTS
+from .._core import Mode
+from ..geometry import support
+from .samples import of_contact, vector
+from .status import COMPLETED
+
+if TYPE_CHECKING:
+    from .trajectory import Trajectory
+
+_Made = TypeVar("_Made", bound="Trajectory")
+GIVEN = "arrays"  # the method of such a trajectory
+_NEAR = 5  # samples of a local polynomial
+_SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
+_SAID = "Samples from arrays: nothing is proved of them."
+
+
+def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene: Scene) -> _Made:
+    """Make a trajectory of samples from elsewhere: a tracker's, or another simulator's.
+
+    Each track is the polynomial of fourth degree through five samples about the nearest one: rates
+    have errors of fourth order, accelerations, from which forces follow, of third. Before the first
+    sample the body stays there. It flies where its gap is more than 0.01 max(a, b), else slides
+    where its contact slips by more than 0.01 sqrt(gravity max(a, b)), else rolls. There are no
+    events: within two samples of an impact, rates and forces are wrong.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,)
+        Increasing times since the start of the scene, n >= 5 [s].
+    x, z, theta : array_like, shape (n,)
+        Centre [m] and angle [rad] without steps of half turns.
+    scene : Scene
+        Body and ground; its start is what `plot_error` compares with.
+
+    Raises
+    ------
+    ValueError
+        If times do not increase or are negative, or arrays are not of one length or not finite.
+    """
+    times = vector("t", finite("t", t))
+    if times.size < _NEAR or times[0] < 0 or not (np.diff(times) > 0).all():
+        raise ValueError(f"t must be {_NEAR} or more increasing times [s] from 0 on, got {t!r}")
+    tracks = {"x": finite("x", x), "z": finite("z", z), "theta": finite("theta", theta)}
+    held = [vector(name, values, times.size) for name, values in tracks.items()]
+    samples = _Samples(require_scene(scene), times, np.stack(held, axis=1))
+    return kind(
+        **of_contact(samples.sample_contact(times) | {"t": times}), scene=scene, model="contact",
+        method=GIVEN, status=COMPLETED, message=COMPLETED.value, reason=_SAID, settings=DEFAULTS,
+        valid_until=math.inf, t_end=float(times[-1]), span=float(times[-1]), kept_events=(),
+    )  # fmt: skip
+
+
+def between_samples(of: Trajectory) -> Any:
+    """Return what samples a trajectory from arrays between its samples, as the core's Solution."""
+    times, first = np.unique(of.t, return_index=True)
+    return _Samples(of.scene, times, np.stack([of.x, of.z, of.theta], axis=1)[first])
+
+
+class _Samples(NamedTuple):
+    scene: Scene
+    t: FloatArray
+    tracks: FloatArray
+    model: str = "contact"
+
+    def sample_contact(self, times: FloatArray) -> dict[str, Any]:
+        scene, times, near = self.scene, np.maximum(times, self.t[0]), min(_NEAR, self.t.size)
+        nearest = np.searchsorted((self.t[1:] + self.t[:-1]) / 2, times)
+        first = np.clip(nearest - near // 2, 0, self.t.size - near)
+        places = first[:, None] + np.arange(near)
+        span = np.ptp(self.t[places], axis=1)[:, None] + (near == 1)
+        s = (self.t[places] - times[:, None]) / span
+        powers = np.zeros((times.size, _NEAR, 3))
+        powers[:, :near] = np.linalg.solve(s[..., None] ** np.arange(near), self.tracks[places])
+        (x, z, theta), (x_dot, z_dot, omega) = powers[:, 0].T, (powers[:, 1] / span).T
+        x_ddot, z_ddot, _ = (2 * powers[:, 2] / span**2).T
+        length, g, h = max(scene.a, scene.b), scene.gravity, support(theta, a=scene.a, b=scene.b)
+        slides = np.abs(x_dot - h * omega) > _SMALL * math.sqrt(g * length)
+        mode = np.where(slides, Mode.SLIDING, Mode.ROLLING).astype(np.int8)
+        mode[z - h > _SMALL * length] = Mode.FLIGHT
+        found = {
+            "x": x, "z": z, "theta": theta, "x_dot": x_dot, "z_dot": z_dot, "omega": omega,
+            "normal_force": scene.mass * (z_ddot + g * math.cos(scene.slope)),
+            "friction_force": scene.mass * (x_ddot - g * math.sin(scene.slope)),
+        }  # fmt: skip
+        return {name: values.copy() for name, values in found.items()} | {"mode": mode}
+
+    def passages(self, *_: Any) -> Any:
+        raise ValueError("trajectory must be computed to know passages, got one from arrays")
+
+    zeros = passages
