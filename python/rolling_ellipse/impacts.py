@@ -11,7 +11,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from ._ask.check import (
     uniform_disc,
 )
 from ._ask.printing import Listed, brief
+
+if TYPE_CHECKING:
+    from ._pictures.fit import FitChart
 
 __all__ = ["LAWS", "FittedImpacts", "collide", "fit", "kinetic_speed"]
 
@@ -47,6 +50,7 @@ _INTERVALS = 40  # intervals of the first grid along restitution and along frict
 # Each of 4 finer grids reaches 2 old steps to either side of the best point, in steps 1/4 as long.
 _FINER, _REFINEMENTS = 4, 4
 _OFFSETS = np.arange(-2 * _FINER, 2 * _FINER + 1)
+_PARTS = 10  # parts of a series whose own fits scatter
 
 
 def collide(
@@ -151,6 +155,12 @@ class FittedImpacts(Listed):
         The coefficients that fit best; friction may be infinite.
     errors : ndarray, shape (n,)
         Kinetic speed of predicted minus measured velocities after each impact [m/s].
+    restitution_error, friction_error : float
+        Standard errors: the scatter of the fits to ten parts of the series over sqrt(10), or the
+        range of coefficients that fit equally well over sqrt(12) if that is more; infinite for
+        fewer than 20 impacts, and where infinite friction fits as well.
+    measured, predicted : ndarray, shape (3, n)
+        Velocities after each impact [m/s, m/s, rad/s].
     median_error, rms_error : float
         Median and root mean square of `errors` [m/s].
     """
@@ -161,6 +171,10 @@ class FittedImpacts(Listed):
     restitution: float
     friction: float
     errors: FloatArray = field(compare=False)  # its measures are compared
+    restitution_error: float
+    friction_error: float
+    measured: FloatArray = field(compare=False)
+    predicted: FloatArray = field(compare=False)
     median_error: float = field(init=False)
     rms_error: float = field(init=False)
 
@@ -170,10 +184,23 @@ class FittedImpacts(Listed):
 
     def __repr__(self) -> str:
         return (
-            f"<FittedImpacts {self.law}: restitution = {brief(self.restitution)}, "
-            f"friction = {brief(self.friction)}, {self.errors.size} impacts, "
+            f"<FittedImpacts {self.law}: restitution = {brief(self.restitution)} "
+            f"± {self.restitution_error:.1g}, friction = {brief(self.friction)} "
+            f"± {self.friction_error:.1g}, {self.errors.size} impacts, "
             f"median error {brief(self.median_error)} m/s>"
         )
+
+    def plot(self, path: Any = None, *, figure: Any = None, figsize: Any = None) -> FitChart:
+        """Draw predicted over measured velocities and, below, what is left over.
+
+        Parameters
+        ----------
+        path, figure, figsize
+            As in `rolling_ellipse.plot`, with its errors.
+        """
+        from ._pictures.fit import draw_impacts
+
+        return draw_impacts(self, path, figure, figsize)
 
 
 def fit(
@@ -231,14 +258,37 @@ def fit(
     gap_rate = start[2] - geometry.support_slope(start[0], a=a, b=b) * start[3]  # physics (12)
     require("before", "moving into the ground (a negative gap rate [m/s])", gap_rate, gap_rate < 0)
 
-    def errors(restitution: float, angle: float) -> FloatArray:
+    def predicted(restitution: float, angle: float) -> FloatArray:
         coefficients = {"restitution": restitution, "friction": _friction(angle)}
-        found = collide(*start, a=a, b=b, gyration2=k2, law=law, **coefficients)
-        difference = np.stack(found) - end
-        return np.asarray(kinetic_speed(*difference, gyration2=k2))
+        return np.stack(collide(*start, a=a, b=b, gyration2=k2, law=law, **coefficients))
 
-    restitution, angle = _least(lambda e, angle: measure(errors(e, angle)))
-    return FittedImpacts(law, restitution, _friction(angle), errors(restitution, angle))
+    def errors(found: FloatArray) -> FloatArray:
+        return np.asarray(kinetic_speed(*(found - end), gyration2=k2))
+
+    def measures(restitution: float, angle: float) -> list[float]:
+        """Return the measure of all impacts, then of each part if there are parts."""
+        off = errors(predicted(restitution, angle))
+        parts = range(_PARTS if off.size >= 2 * _PARTS else 0)
+        return [measure(off), *(measure(off[k::_PARTS]) for k in parts)]
+
+    tried: dict[tuple[float, float], list[float]] = {}
+    restitution, angle = _least(lambda *point: tried.setdefault(point, measures(*point))[0])
+    found = predicted(restitution, angle)
+    return FittedImpacts(
+        law, restitution, _friction(angle), errors(found), *_standard_errors(tried), end, found
+    )
+
+
+def _standard_errors(tried: dict[tuple[float, float], list[float]]) -> list[float]:
+    """Return those of restitution and friction, by the measures of the points that were tried."""
+    points = np.array([(restitution, _friction(angle)) for restitution, angle in tried])
+    whole, *parts = np.array(list(tried.values())).T
+    if not parts:
+        return [math.inf, math.inf]
+    own, alike = points[np.argmin(parts, axis=1)], points[whole <= min(whole) * (1 + 1e-9)]
+    with np.errstate(invalid="ignore"):  # infinite friction
+        found = np.maximum(own.std(axis=0, ddof=1) / _PARTS**0.5, np.ptp(alike, axis=0) / 12**0.5)
+    return np.where(np.isnan(found), np.inf, found).tolist()
 
 
 def _friction(angle: float) -> float:

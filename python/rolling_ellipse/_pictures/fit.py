@@ -1,4 +1,4 @@
-"""A fit to a film: each track over the fitted motion, and residuals in units of sigma."""
+"""Fits: tracks over the fitted motion, predicted over measured impacts, and what is left over."""
 
 from __future__ import annotations
 
@@ -8,65 +8,89 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .._ask.check import FloatArray, file_name
+from .._ask.check import file_name
 from .axes import Artists, close, figure_of, picture
-from .legends import name_curves, title_beside_legend
+from .legends import name_curves
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import over_time
 
 if TYPE_CHECKING:
     from .._verbs.fit_motion import Fit
+    from ..impacts import FittedImpacts
 
 _LABELS = {"x": "x [m]", "z": "z [m]", "theta": "θ [rad]"}
+_RATES = {"x_dot": "x_dot [m/s]", "z_dot": "z_dot [m/s]", "omega": "ω [rad/s]"}
 
 
 @dataclass(frozen=True, repr=False)
 class FitChart(Artists):
-    """Artists of `Fit.plot`; keys are the names of the tracks that were measured."""
+    """Artists of `Fit.plot` and `FittedImpacts.plot`; keys are the names of what was measured."""
 
     axes: tuple[Axes, ...]
-    tracks: dict[str, Line2D]
-    curves: dict[str, Line2D]
+    measured: dict[str, Line2D]
+    fitted: dict[str, Line2D]
     residuals: dict[str, Line2D]
 
 
 @picture
-def draw(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
-    """Draw a fit; see `Fit.plot`."""
-    name = None if path is None else file_name("path", path)
-    off: dict[str, FloatArray] = dict(zip(_LABELS, fit.residuals.T, strict=True))
+def draw_fit(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
+    """Draw a fit to a film; see `Fit.plot`."""
+    motion, off = fit.trajectory, dict(zip(_LABELS, fit.residuals.T, strict=True))
     seen = [track for track, values in off.items() if np.isfinite(values).any()]
     whole = figure_of(figure, (7, 2.2 + 1.2 * len(seen)), figsize)
     heights = [1.0] * len(seen) + [1.3]
     axes = whole.subplots(len(heights), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-    chart, motion, shades = FitChart(tuple(axes), {}, {}, {}), fit.trajectory, palette_of(axes[0])
-    curve, bottom = over_time(motion), axes[-1]
-    how: dict[str, Any] = {"ls": "", "ms": 3, "mew": 0}
-    looks = zip("osD", (shades.blue, shades.orange, shades.ink), strict=True)
-    for ax, track, (marker, color), sigma in zip(axes, seen, looks, fit.sigma, strict=False):
-        (chart.curves[track],) = ax.plot(
-            curve.t, getattr(curve, track), color=shades.text, lw=0.8, zorder=3
-        )
-        measured = getattr(motion, track) + off[track]
-        how |= {"marker": marker, "color": color}
-        (chart.tracks[track],) = ax.plot(motion.t, measured, **how)
-        (chart.residuals[track],) = bottom.plot(
-            motion.t, off[track] / sigma, label=_LABELS[track][0], **how
-        )
+    chart, shades = FitChart(tuple(axes), {}, {}, {}), palette_of(axes[0])
+    curve, bottom, sigma = over_time(motion), axes[-1], dict(zip(_LABELS, fit.sigma, strict=True))
+    line: dict[str, Any] = {"color": shades.text, "lw": 0.8, "zorder": 3}
+    looks = dict(zip(_LABELS, zip("osD", shades.curves[2::-1], strict=True), strict=True))
+    for ax, track in zip(axes, seen, strict=False):
+        dots: dict[str, Any] = {"marker": looks[track][0], "color": looks[track][1], "ms": 3}
+        dots |= {"ls": "", "mew": 0, "label": _LABELS[track][0]}
+        (chart.fitted[track],) = ax.plot(curve.t, getattr(curve, track), **line)
+        (chart.measured[track],) = ax.plot(motion.t, getattr(motion, track) + off[track], **dots)
+        (chart.residuals[track],) = bottom.plot(motion.t, off[track] / sigma[track], **dots)
         ax.set_ylabel(_LABELS[track])
     bottom.axhspan(-2, 2, color=shades.shade(0.07), lw=0, zorder=0)  # 95 % of normal residuals
     bottom.set(xlabel="t [s]", ylabel="residual / σ")
-    for ax in axes:
-        dress_grid(ax)
-    whole.align_ylabels(axes)
     name_curves(bottom)
-    letters = int(12 * axes[0].get_window_extent().width / whole.get_figure(root=True).dpi)
-    title_beside_legend(axes[0], fill(fit.message, max(20, letters)))
-    if name is not None:
-        chart.savefig(name)
-        if figure is None:
+    return _finished(chart, whole, fit.message, path, figure is None)
+
+
+@picture
+def draw_impacts(fit: FittedImpacts, path: Any, figure: Any, figsize: Any) -> FitChart:
+    """Draw a fit to impacts; see `FittedImpacts.plot`."""
+    whole = figure_of(figure, (8.4, 4.6), figsize)
+    axes = whole.subplots(2, 3, sharex="col", height_ratios=(2, 1))
+    chart, shades = FitChart(tuple(axes.ravel()), {}, {}, {}), palette_of(axes[0, 0])
+    dots: dict[str, Any] = {"marker": "o", "ls": "", "ms": 2.5, "mew": 0, "alpha": 0.5}
+    line: dict[str, Any] = {"color": shades.text, "lw": 0.8, "zorder": 3}
+    for k, (rate, label) in enumerate(_RATES.items()):
+        (top, bottom), seen, told = axes[:, k], fit.measured[k], fit.predicted[k]
+        ends = [told.min(), told.max()]
+        (chart.fitted[rate],) = top.plot(ends, ends, **line)
+        (chart.measured[rate],) = top.plot(seen, told, color=shades.blue, **dots)
+        (chart.residuals[rate],) = bottom.plot(seen, seen - told, color=shades.blue, **dots)
+        bottom.axhline(0, **line)
+        bottom.set_xlabel(f"measured {label}")
+    axes[0, 0].set_ylabel("predicted")
+    axes[1, 0].set_ylabel("residual")
+    return _finished(chart, whole, repr(fit)[1:-1], path, figure is None)
+
+
+def _finished(chart: FitChart, whole: Figure, said: str, path: Any, own: bool) -> FitChart:
+    """Dress the axes, set the title, and write the picture to a file if there is a path."""
+    for ax in chart.axes:
+        dress_grid(ax)
+    whole.align_ylabels(chart.axes)
+    width = whole.bbox.width / whole.get_figure(root=True).dpi  # type: ignore[union-attr]
+    whole.suptitle(fill(said, max(20, int(13 * width))), fontsize="medium")
+    if path is not None:
+        chart.savefig(file_name("path", path))
+        if own:
             close(chart.figure)
     return chart

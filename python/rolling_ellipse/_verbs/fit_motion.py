@@ -100,9 +100,9 @@ class Fit:
         path, figure, figsize
             As in `rolling_ellipse.plot`, with its errors.
         """
-        from .._pictures.fit import draw
+        from .._pictures.fit import draw_fit
 
-        return draw(self, path, figure, figsize=figsize)
+        return draw_fit(self, path, figure, figsize)
 
 
 def fit_motion(
