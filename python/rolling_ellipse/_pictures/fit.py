@@ -76,9 +76,10 @@ def draw_impacts(fit: FittedImpacts, path: Any, figure: Any, figsize: Any) -> Fi
         (chart.measured[rate],) = top.plot(seen, told, color=shades.blue, **dots)
         (chart.residuals[rate],) = bottom.plot(seen, seen - told, color=shades.blue, **dots)
         bottom.axhline(0, **line)
-        bottom.set_xlabel(f"measured {label}")
+        bottom.set_xlabel(label)
     axes[0, 0].set_ylabel("predicted")
     axes[1, 0].set_ylabel("residual")
+    whole.supxlabel("measured", fontsize="medium")
     return _finished(chart, whole, repr(fit)[1:-1], path, figure is None)
 
 

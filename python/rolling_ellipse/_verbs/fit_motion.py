@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -29,7 +29,7 @@ _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # at most a hundred times off
 _GUESSES = {
-    "friction": (0.1, 0.3, 1.0),
+    "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0),
     "restitution": (0.2, 0.5, 0.8),
     "inertia": (0.5, 2.0),  # over the first guess
     "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
@@ -159,7 +159,10 @@ def fit_motion(
     best = search.best(search.starts())
     if sigma is None:
         search.estimate(best)
-    rivals = [search.solve(u) for u in (best.x, *search.others(best.x))]
+    rivals = [search.solve(best.x)]
+    for k, u in search.others(best.x):
+        rivals.append(search.solve(u, held=k))
+        rivals.append(search.solve(rivals[-1].x))
     best = min(rivals, key=lambda one: one.cost)
     errors, covariance = search.errors(best, rivals)
     motion = simulate(search.made(best.x), search.t, raise_on_failure=False)
@@ -236,17 +239,17 @@ class _Search:
                     first[names == name] = value
         turned = math.pi * np.round((first - self.own) / math.pi)
         u = np.where(names == "theta", first - turned, first) / self.sizes
-        return [self.own / self.sizes, u, *self.others(u)]
+        return [self.own / self.sizes, u, *(other for _, other in self.others(u))]
 
-    def others(self, u: FloatArray) -> list[FloatArray]:
-        """Return values of the unknowns, each with another guess of one of them."""
-        found = []
+    def others(self, u: FloatArray) -> Iterator[tuple[int, FloatArray]]:
+        """Yield places of unknowns, and all values with another guess of that one."""
         for k, name in enumerate(self.names):
-            if name in _GUESSES and not (name == "theta" and self.known[:, 2].any()):
-                values = np.tile(u, (len(_GUESSES[name]), 1))
-                values[:, k] = np.array(_GUESSES[name]) * (u[k] if name == "inertia" else 1.0)
-                found += list(values)
-        return found
+            if name == "theta" and self.known[:, 2].any():
+                continue
+            for guess in _GUESSES.get(name, ()):
+                other = u.copy()
+                other[k] = guess * (u[k] if name == "inertia" else 1 / self.sizes[k])
+                yield k, other
 
     def solve(self, u: FloatArray, share: float = 1.0, held: int | None = None) -> Any:
         """Return SciPy's solution for a share of the film, with one unknown held or none."""
@@ -300,12 +303,13 @@ class _Search:
                 rivals.append(other)
                 outside = not self.low[k] < there[k] < self.high[k]
                 rise, reach = math.inf if outside else 2 * (other.cost - best.cost), 2 * reach
-            if rise < 4.5:
-                wide[k] = math.inf
+        period = np.where(np.array(self.names) == "theta", math.pi, math.inf) / self.sizes
         for other in rivals:
-            rise = 2 * (other.cost - best.cost)
+            rise, apart = 2 * (other.cost - best.cost), np.abs(other.x - best.x) % period
             if rise < 9:
-                wide = np.maximum(wide, np.abs(other.x - best.x) / math.sqrt(max(rise, 1.0)))
+                apart = np.minimum(apart, period - apart) / math.sqrt(max(rise, 1.0))
+                wide = np.maximum(wide, apart)
+        wide[wide >= _FAR] = math.inf
         covariance[np.diag_indices(len(wide))] = np.where(np.isinf(wide), wide, np.diag(covariance))
         return wide * self.sizes, covariance * np.outer(self.sizes, self.sizes)
 
