@@ -29,7 +29,7 @@ _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # at most a hundred times off
 _GUESSES = {
-    "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0),
+    "friction": (0.05, 0.1, 0.2, 0.4, 1.0),
     "restitution": (0.2, 0.5, 0.8),
     "inertia": (0.5, 2.0),  # over the first guess
     "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
@@ -39,9 +39,16 @@ _IMPOSSIBLE = 1e9  # residual of a scene that cannot be
 _LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
 _FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
 _FIRST = 8  # frames from which the start is guessed
+_RIVALS = 3  # solutions with a coefficient held that are let go
 _NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
-_EXACT = {"xtol": 1e-10, "ftol": 1e-10, "gtol": 1e-10, "max_nfev": 100}
-_ROUGH = {"ftol": 1e-4, "max_nfev": 20}
+_EXACT: dict[str, Any] = {
+    "xtol": 1e-10,
+    "ftol": 1e-10,
+    "gtol": 1e-10,
+    "max_nfev": 100,
+    "jac": "3-point",
+}
+_ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,20 +164,21 @@ def fit_motion(
     tracks = {"x": x, "z": z, "theta": theta}
     search = _Search(sample_times(array("t", t)), tracks, scene, free, sigma, loss)
     best = search.best(search.starts())
-    if sigma is None:
+    for _ in range(0 if sigma is not None else 1 if loss == "linear" else 3):
         search.estimate(best)
-    rivals = [search.solve(best.x)]
-    for k, u in search.others(best.x):
-        rivals.append(search.solve(u, held=k))
-        rivals.append(search.solve(rivals[-1].x))
-    best = min(rivals, key=lambda one: one.cost)
+        best = search.solve(best.x)
+    rivals = sorted((search.solve(u, held=k) for k, u in search.others(best.x)), key=_cost)
+    rivals += [best, *(search.solve(one.x) for one in rivals[:_RIVALS])]
+    best = min(rivals, key=_cost)
+    best.x = search.own + search.turned(best.x - search.own)
     errors, covariance = search.errors(best, rivals)
     motion = simulate(search.made(best.x), search.t, raise_on_failure=False)
     off = search.off(motion)
+    chi2 = float(np.nansum((off / search.sigma) ** 2))
     by_name = dict(zip(search.names, errors.tolist(), strict=True))
     return Fit(
-        motion.scene, by_name, covariance, float(np.nansum((off / search.sigma) ** 2)), off,
-        search.sigma, motion, search.message(best, by_name),
+        motion.scene, by_name, covariance, chi2, off, search.sigma, motion,
+        search.message(best, chi2, by_name),
     )  # fmt: skip
 
 
@@ -193,13 +201,13 @@ class _Search:
         if self.dof < 1:
             raise ValueError(f"free must be fewer names than data, got {len(self.names)}, {count}")
         try:
-            self.own = np.array([value_of(scene, name) for name in self.names])
+            own = np.array([value_of(scene, name) for name in self.names])
         except ValueError as error:  # the scene has no such number
             raise ValueError(f"free{str(error).removeprefix('wrt')}") from None
         self.sizes = np.array([size_of(scene, name) for name in self.names])
         self.sizes[np.array(self.names) == "friction"] = 1.0
-        bounds = [_bounds(*pair) for pair in zip(self.names, self.own, strict=True)]
-        self.low, self.high = np.array(bounds).T / self.sizes
+        bounds = [_bounds(*pair) for pair in zip(self.names, own, strict=True)]
+        self.own, (self.low, self.high) = own / self.sizes, np.array(bounds).T / self.sizes
         length = max(scene.a, scene.b)
         found = dict(zip(TRACKS, (length, length, 1.0), strict=True))
         if isinstance(sigma, Mapping):
@@ -228,7 +236,7 @@ class _Search:
 
     def starts(self) -> list[FloatArray]:
         """Return the scene's own values, those of the first frames, and other coefficients."""
-        tracks, first, names = self.data.copy(), self.own.copy(), np.array(self.names)
+        tracks, first = self.data.copy(), self.own * self.sizes
         seen = self.known[:, 2]
         tracks[seen, 2] = np.unwrap(tracks[seen, 2], period=math.pi)
         for track, pair in zip(tracks.T, zip(TRACKS, _RATES, strict=True), strict=True):
@@ -236,10 +244,14 @@ class _Search:
             if rows.size > 3:
                 powers = np.polynomial.polynomial.polyfit(self.t[rows], track[rows], 2)
                 for name, value in zip(pair, powers.tolist(), strict=False):
-                    first[names == name] = value
-        turned = math.pi * np.round((first - self.own) / math.pi)
-        u = np.where(names == "theta", first - turned, first) / self.sizes
-        return [self.own / self.sizes, u, *(other for _, other in self.others(u))]
+                    first[np.array(self.names) == name] = value
+        u = self.own + self.turned(first / self.sizes - self.own)
+        return [self.own, u, *(other for _, other in self.others(u))]
+
+    def turned(self, u: FloatArray) -> FloatArray:
+        """Return changes of the unknowns, that of theta without half turns."""
+        half = math.pi / self.sizes
+        return np.where(np.array(self.names) == "theta", u - half * np.round(u / half), u)
 
     def others(self, u: FloatArray) -> Iterator[tuple[int, FloatArray]]:
         """Yield places of unknowns, and all values with another guess of that one."""
@@ -258,10 +270,12 @@ class _Search:
         if held is not None:
             low[held], high[held] = u[held] - _LEAST, u[held] + _LEAST
         used = np.nonzero(self.known)[0] < share * self.t.size
-        return self.least_squares(
-            lambda u: np.where(used, self.residuals(u), 0.0), u, "3-point", (low, high),
-            loss=self.loss, **(_EXACT if held is None else _ROUGH),
-        )  # fmt: skip
+
+        def residuals(u: FloatArray) -> FloatArray:
+            return np.where(used, self.residuals(u), 0.0)
+
+        how = _EXACT if held is None else _ROUGH
+        return self.least_squares(residuals, u, bounds=(low, high), loss=self.loss, **how)
 
     def best(self, starts: list[FloatArray]) -> Any:
         best: Any = None
@@ -280,11 +294,14 @@ class _Search:
             raise ValueError("scene must move until the last time t, got one that does not")
         return best
 
+    def spread(self, best: Any) -> float:
+        """Return chi2 over the degrees of freedom; by the median residual if there are outliers."""
+        if self.loss == "linear":
+            return 2 * float(best.cost) / self.dof
+        return float(_NORMAL * np.median(np.abs(self.residuals(best.x)))) ** 2
+
     def estimate(self, best: Any) -> None:
-        """Scale sigma by the residuals, whose outliers do not count for other losses."""
-        sizes = np.abs(self.residuals(best.x))
-        scale = math.sqrt(2 * best.cost / self.dof)
-        self.sigma *= max(scale if self.loss == "linear" else _NORMAL * np.median(sizes), _LEAST)
+        self.sigma *= max(math.sqrt(self.spread(best)), _LEAST)
 
     def errors(self, best: Any, rivals: list[Any]) -> tuple[FloatArray, FloatArray]:
         """Return standard errors and covariance; rivals are other solutions."""
@@ -303,24 +320,21 @@ class _Search:
                 rivals.append(other)
                 outside = not self.low[k] < there[k] < self.high[k]
                 rise, reach = math.inf if outside else 2 * (other.cost - best.cost), 2 * reach
-        period = np.where(np.array(self.names) == "theta", math.pi, math.inf) / self.sizes
         for other in rivals:
-            rise, apart = 2 * (other.cost - best.cost), np.abs(other.x - best.x) % period
+            rise = 2 * (other.cost - best.cost)
             if rise < 9:
-                apart = np.minimum(apart, period - apart) / math.sqrt(max(rise, 1.0))
+                apart = np.abs(self.turned(other.x - best.x)) / math.sqrt(max(rise, 1.0))
                 wide = np.maximum(wide, apart)
         wide[wide >= _FAR] = math.inf
         covariance[np.diag_indices(len(wide))] = np.where(np.isinf(wide), wide, np.diag(covariance))
         return wide * self.sizes, covariance * np.outer(self.sizes, self.sizes)
 
-    def message(self, best: Any, errors: dict[str, float]) -> str:
+    def message(self, best: Any, chi2: float, errors: dict[str, float]) -> str:
         lost = ", ".join(name for name, error in errors.items() if math.isinf(error))
-        chi2 = 2 * best.cost / self.dof
-        said = [f"{self.known.sum()} data, chi2 / {self.dof} = {chi2:.3g}"]
+        said = [f"{self.known.sum()} data, chi2 / {self.dof} = {chi2 / self.dof:.3g}"]
         said += [f"the film cannot tell {lost}"] if lost else []
-        said += (
-            ["the scene does not fit the film"] if chi2 > 1 + 5 * math.sqrt(2 / self.dof) else []
-        )
+        misfit = self.spread(best) > 1 + 5 * math.sqrt(2 / self.dof)
+        said += ["the scene does not fit the film"] if misfit else []
         return f"{'; '.join(said)}."
 
 
@@ -328,3 +342,7 @@ def _bounds(name: str, value: float) -> tuple[float, float]:
     if name in _POSITIVE:
         return 0.01 * value, 100 * value
     return _BOUNDS.get(name, (-math.inf, math.inf))
+
+
+def _cost(one: Any) -> float:
+    return float(one.cost)
