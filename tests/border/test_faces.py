@@ -116,6 +116,8 @@ def test_a_changed_value_is_another() -> None:
     ]
     for made in things:
         for field in filter(lambda each: each.init, dataclasses.fields(made)):
+            if field.name in ("measured", "predicted"):
+                continue  # their difference, `errors`, is compared
             value = np.zeros(2) if field.name == "errors" else -7.0
             assert dataclasses.replace(made, **{field.name: value}) != made, field.name
     assert sliding() == sliding() and sliding()[:3] != sliding()[:4]

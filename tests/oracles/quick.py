@@ -27,6 +27,7 @@ QUICK = (
     "border/test_faces.py",
     "refusals/test_numbers.py",
     "export/test_atomic.py",
+    "fit/test_fit_motion.py::test_samples_from_arrays",
     "benchmark/test_scores.py",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
     "report/test_errata.py",

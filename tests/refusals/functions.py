@@ -37,6 +37,15 @@ MASKED: list[Any] = [
     [0.0, 0.0],
 ]
 TWO_IMPACTS: Any = np.zeros((3, 2))
+FILM: dict[str, Any] = {
+    "t": [0.1, 0.2, 0.3], "x": [0.0, 0.1, 0.2], "scene": Scene(2.0, 1.0, omega=1.0),
+    "free": "omega", "sigma": 0.1,
+}  # fmt: skip
+ENDLESS = Scene(2.0, 1.0, omega=1.0, friction=INF)
+SAMPLES: dict[str, Any] = {
+    "t": np.arange(6.0), "x": np.zeros(6), "z": np.ones(6), "theta": np.zeros(6),
+    "scene": Scene(2.0, 1.0),
+}  # fmt: skip
 DEEP: list[Any] = []
 DEEP.append(DEEP)
 
@@ -126,4 +135,16 @@ REFUSALS: list[Row] = [
            before=[[1.0], UPWARDS, MASKED, BEFORE[:3], BEFORE[:, :0], BEFORE + NAN],
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
            gyration2=[0.0]),
+    # films
+    *wrong(rl.fit_motion, FILM,
+           t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN], x=[[0.0, 1.0], [[0.0] * 3]],
+           scene=[None, 1], sigma=[0.0, -1.0, NAN, {"x": 0.0}, {"y": 1.0}], loss=["median", None],
+           free=["t", "mu", "z", "jx", ("omega", "omega"), (), ("omega", "x", "theta", "mass")]),
+    ("free", lambda _: rl.fit_motion(**FILM | {"scene": ENDLESS, "free": "friction"})),
+    ("free", lambda _: rl.fit_motion(**FILM | {"x": [0.0, NAN, NAN]})),
+    ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),
+    *wrong(rl.Trajectory.from_arrays, SAMPLES,
+           t=[np.zeros(6), -np.arange(6.0), [0.0, 1.0], np.arange(6.0) - 1, "x"],
+           x=[np.zeros(5), np.full(6, NAN), "x"], z=[[0.0]], theta=[[INF] * 6], scene=[None]),
+    ("trajectory", lambda _: rl.Trajectory.from_arrays(**SAMPLES).when(theta=1.0)),
 ]  # fmt: skip

@@ -1,0 +1,157 @@
+"""Films made with known parameters and noise give these parameters back, with honest errors."""
+
+import math
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from rolling_ellipse import Fit, Impulse, Scene, Trajectory, fit_motion, simulate
+from rolling_ellipse._motion.sensitivity import value_of
+
+SIGMA = {"x": 5e-4, "z": 5e-4, "theta": 0.01}
+DISC = (0.035**2 + 0.025**2) / 4
+BODY: dict[str, Any] = {"a": 0.035, "b": 0.025, "inertia": DISC}
+DROP = Scene(z=0.1, theta=0.5, omega=12.0, x_dot=0.2, friction=0.18, restitution=0.52, **BODY)
+SLIDE = Scene(x_dot=1.2, theta=0.3, friction=0.25, **BODY)
+ROLL = Scene(theta=0.3, omega=8.0, friction=2.0, **BODY)
+FREE = ("omega", "friction", "restitution")
+
+
+def filmed(scene: Scene, t: Any, seed: int = 1) -> dict[str, Any]:
+    """Tracks of a scene with normal noise of SIGMA."""
+    rng, motion = np.random.default_rng(seed), simulate(scene, t)
+    return {name: getattr(motion, name) + rng.normal(0, s, len(t)) for name, s in SIGMA.items()}
+
+
+def off(fit: Fit, scene: Scene, names: Any) -> np.ndarray:
+    """Fitted minus true parameters over their errors; no error is NaN or 0."""
+    errors = np.array([fit.errors[name] for name in names])
+    assert list(fit.errors) == list(names) and np.all(errors > 0)
+    return np.array([value_of(fit.scene, n) - value_of(scene, n) for n in names]) / errors
+
+
+TIMES = np.arange(1, 110) / 240
+FILM = filmed(DROP, TIMES)
+GUESS = DROP.replace(omega=10.0, friction=0.4, restitution=0.3)
+HOLES = {name: track.copy() for name, track in FILM.items()}
+HOLES["x"][20:60] = HOLES["theta"][50:] = np.nan
+OUTLIERS = {name: track.copy() for name, track in FILM.items()}
+OUTLIERS["x"][::20] += 0.05
+OUTLIERS["z"][5::20] -= 0.05
+UNEVEN = np.sort(np.random.default_rng(2).uniform(0, 0.45, 90))
+
+
+def test_twelve_films() -> None:
+    """chi2 has the mean of its degrees of freedom n and the variance 2n, bounded at 5 deviations.
+    Of m normal numbers 0.68 m are within 1, bounded at 4 deviations sqrt(0.22 m); errors that
+    were widened bring more of them. More than one of m = 48 beyond 3 has the probability 0.8 %."""
+    chi2, count, found = 0.0, 0, []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        scene, free = (
+            (DROP, ("x", "z_dot", *FREE)), (SLIDE, ("x_dot", "theta", "friction", "inertia")),
+            (ROLL, ("theta", "omega", "inertia")),
+        )[seed % 3]  # fmt: skip
+        scene = scene.replace(theta=rng.uniform(-1, 1), inertia=DISC * rng.uniform(0.7, 1.2))
+        t = np.arange(1, 27 if seed % 2 else 105) / (60 if seed % 2 else 240)
+        guess = {n: value_of(scene, n) * 1.2 + (0.01 if n in ("x", "z_dot") else 0) for n in free}
+        film = filmed(scene, t, seed)
+        fit = fit_motion(t, **film, scene=scene.replace(**guess), free=free, sigma=SIGMA)
+        chi2, count = chi2 + fit.chi2, count + 3 * t.size - len(free)
+        found += off(fit, scene, free).tolist()
+    assert abs(chi2 - count) < 5 * math.sqrt(2 * count)
+    size, within = len(found), np.abs(found) < 1
+    assert size == 48 and abs(within.sum() - 0.683 * size) < 4 * math.sqrt(0.2165 * size)
+    assert np.sum(np.abs(found) > 3) <= 1
+
+
+@pytest.mark.parametrize(
+    ("t", "film", "how"),
+    [
+        (TIMES, HOLES, {}),
+        (TIMES, FILM | {"theta": FILM["theta"] % math.pi}, {}),
+        (TIMES, {"x": FILM["x"], "z": FILM["z"]}, {}),
+        (TIMES, {"theta": FILM["theta"]}, {"sigma": 0.01}),
+        (UNEVEN, filmed(DROP, UNEVEN), {}),
+        (TIMES, FILM, {"sigma": None}),
+        (TIMES, OUTLIERS, {"loss": "soft_l1"}),
+        (TIMES, OUTLIERS, {"loss": "soft_l1", "sigma": None}),
+    ],
+    ids=["holes", "half turns", "no angle", "angle", "uneven", "no sigma", "outliers", "both"],
+)
+def test_films_as_they_are(t: Any, film: dict[str, Any], how: dict[str, Any]) -> None:
+    """A normal number is beyond 4 once in 16 000; an error of restitution stays below 0.02."""
+    fit = fit_motion(t, **film, scene=GUESS, free=FREE, **({"sigma": SIGMA} | how))
+    assert np.all(np.abs(off(fit, DROP, FREE)) < 4) and fit.errors["restitution"] < 0.02
+    assert "not fit" not in fit.message
+
+
+def test_outliers_and_a_wrong_scene_are_told() -> None:
+    fit = fit_motion(TIMES, **OUTLIERS, scene=GUESS, free=FREE, sigma=SIGMA)
+    wrong = fit_motion(TIMES, **FILM, scene=GUESS.replace(z=0.12), free=FREE, sigma=SIGMA)
+    assert all("the scene does not fit the film" in each.message for each in (fit, wrong))
+
+
+@pytest.mark.parametrize("changes", [{"restitution": 0.0}, {"restitution": 1.0}, {"friction": 0.0}])
+def test_at_the_bounds(changes: dict[str, float]) -> None:
+    scene = DROP.replace(**changes)
+    fit = fit_motion(TIMES, **filmed(scene, TIMES), scene=GUESS, free=FREE, sigma=SIGMA)
+    assert np.all(np.abs(off(fit, scene, FREE)) < 4)
+
+
+def test_what_a_film_cannot_tell() -> None:
+    """Without an impact no film tells restitution, at rest none tells friction, and points on
+    the line of a blow are one; half turns of theta are not told and stay those of the scene."""
+    blow = Scene(friction=0.5, impulse=Impulse(0.3, -0.1, dx=-0.01, dz=0.02), **BODY)
+    for scene, free, lost in (
+        (ROLL, ("theta", "restitution"), ["restitution"]),
+        (Scene(friction=0.3, **BODY), ("x", "friction"), ["friction"]),
+        (blow, ("dx", "dz"), ["dx", "dz"]),
+    ):
+        fit = fit_motion(TIMES, **filmed(scene, TIMES), scene=scene, free=free, sigma=SIGMA)
+        assert [name for name, error in fit.errors.items() if math.isinf(error)] == lost
+        assert (
+            f"cannot tell {', '.join(lost)}" in fit.message and not np.isnan(fit.covariance).any()
+        )
+    turned = DROP.replace(theta=0.5 + 3 * math.pi)
+    fit = fit_motion(TIMES, **FILM, scene=turned, free=("theta",), sigma=SIGMA)
+    assert abs(fit.scene.theta - turned.theta) < 0.05
+
+
+def test_the_picture_is_the_film() -> None:
+    fit = fit_motion(TIMES, HOLES["x"], theta=HOLES["theta"], scene=GUESS, free=FREE, sigma=SIGMA)
+    chart = fit.plot()
+    assert list(chart.residuals) == ["x", "theta"] and len(chart.axes) == 3
+    for name, line in chart.measured.items():
+        assert np.allclose(np.asarray(line.get_ydata()), HOLES[name], equal_nan=True, atol=1e-12)
+    seen = np.asarray(chart.residuals["x"].get_ydata()) * SIGMA["x"]
+    assert np.allclose(seen, HOLES["x"] - fit.trajectory.x, equal_nan=True, atol=1e-12)
+    assert "±" in repr(fit) and "±" in fit._repr_html_()
+
+
+def test_without_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(ImportError, match=r"pip install 'rolling_ellipse\[fit\]'"):
+        fit_motion(TIMES, **FILM, scene=DROP, free=FREE)
+
+
+def test_samples_from_arrays(tmp_path: Any) -> None:
+    """Rates of fourth order: halved steps leave 1/16 of their error, within a quarter."""
+    errors = []
+    for count in (101, 201):
+        motion = simulate(ROLL, np.linspace(0, 0.5, count))
+        mine = Trajectory.from_arrays(motion.t, motion.x, motion.z, motion.theta, scene=ROLL)
+        errors.append(np.max(np.abs(mine.omega - motion.omega)))
+    assert 12 < errors[0] / errors[1] < 20
+    assert np.array_equal(mine.mode, motion.mode) and np.allclose(mine.sol(motion.t).x, motion.x)
+    assert np.allclose(mine.normal_force, motion.normal_force, rtol=1e-3)
+    mine.save(tmp_path / "mine.npz")
+    again = Trajectory.load(tmp_path / "mine.npz")
+    assert again == mine and again.sol(0.123) == mine.sol(0.123)
+    assert np.max(np.asarray(mine.plot_error().errors[0].get_ydata())) < 1e-6
+    for show in (mine.plot_forces, mine.plot_phase, mine.plot, mine.animate):
+        show()
+    flying = simulate(DROP, TIMES)
+    seen = Trajectory.from_arrays(TIMES, flying.x, flying.z, flying.theta, scene=DROP)
+    assert np.mean(seen.mode == flying.mode) > 0.95
