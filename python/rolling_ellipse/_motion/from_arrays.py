@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
 from .._ask.check import FloatArray, finite
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS
-from .._core import Mode
+from .._core import Mode, Solution
 from ..geometry import support
 from .samples import of_contact, vector
 from .status import COMPLETED
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _Made = TypeVar("_Made", bound="Trajectory")
-GIVEN = "arrays"  # the method of such a trajectory
+GIVEN: Any = "arrays"  # the method of such a trajectory
 _NEAR = 5  # samples of a local polynomial
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
 _SAID = "Samples from arrays: nothing is proved of them."
@@ -61,17 +62,19 @@ def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene:
     )  # fmt: skip
 
 
-def between_samples(of: Trajectory) -> Any:
+def between_samples(of: Trajectory) -> Solution:
     """Return what samples a trajectory from arrays between its samples, as the core's Solution."""
     times, first = np.unique(of.t, return_index=True)
-    return _Samples(of.scene, times, np.stack([of.x, of.z, of.theta], axis=1)[first])
+    tracks = np.stack([of.x, of.z, of.theta], axis=1)[first]
+    return _Samples(of.scene, times, tracks)  # type: ignore[return-value]
 
 
-class _Samples(NamedTuple):
+@dataclass(frozen=True)
+class _Samples:
+    model: ClassVar[str] = "contact"
     scene: Scene
     t: FloatArray
     tracks: FloatArray
-    model: str = "contact"
 
     def sample_contact(self, times: FloatArray) -> dict[str, Any]:
         scene, times, near = self.scene, np.maximum(times, self.t[0]), min(_NEAR, self.t.size)

@@ -88,7 +88,7 @@ def _finished(chart: FitChart, whole: Figure, said: str, path: Any, own: bool) -
     for ax in chart.axes:
         dress_grid(ax)
     whole.align_ylabels(chart.axes)
-    width = whole.bbox.width / whole.get_figure(root=True).dpi  # type: ignore[union-attr]
+    width = whole.bbox.width / whole.get_figure(root=True).dpi
     whole.suptitle(fill(said, max(20, int(13 * width))), fontsize="medium")
     if path is not None:
         chart.savefig(file_name("path", path))

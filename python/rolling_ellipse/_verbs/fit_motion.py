@@ -86,7 +86,7 @@ class Fit:
     message: str
 
     def _rows(self) -> list[Row]:
-        rows = []
+        rows: list[Row] = []
         for name, error in self.errors.items():
             places = 6 if not 0 < error < math.inf else max(0, 1 - math.floor(math.log10(error)))
             value = value_of(self.scene, name)
@@ -223,16 +223,17 @@ class _Search:
 
     def off(self, motion: Trajectory) -> FloatArray:
         """Return measured minus computed tracks; angles modulo pi."""
-        off = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
+        off: FloatArray = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         return off
 
     def residuals(self, u: FloatArray) -> FloatArray:
+        found = np.full(self.known.sum(), _IMPOSSIBLE)
         with suppress(ValueError):  # no such scene
             motion = simulate(self.made(u), self.t, raise_on_failure=False)
             if motion.t.size == self.t.size:
-                return (self.off(motion) / self.sigma)[self.known]
-        return np.full(self.known.sum(), _IMPOSSIBLE)
+                found = (self.off(motion) / self.sigma)[self.known]
+        return found
 
     def starts(self) -> list[FloatArray]:
         """Return the scene's own values, those of the first frames, and other coefficients."""
