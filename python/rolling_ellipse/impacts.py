@@ -274,21 +274,21 @@ def fit(
     tried: dict[tuple[float, float], list[float]] = {}
     restitution, angle = _least(lambda *point: tried.setdefault(point, measures(*point))[0])
     found = predicted(restitution, angle)
-    return FittedImpacts(
-        law, restitution, _friction(angle), errors(found), *_standard_errors(tried), end, found
-    )
+    known = law, restitution, _friction(angle), errors(found)
+    return FittedImpacts(*known, *_standard_errors(tried), measured=end, predicted=found)
 
 
-def _standard_errors(tried: dict[tuple[float, float], list[float]]) -> list[float]:
+def _standard_errors(tried: dict[tuple[float, float], list[float]]) -> tuple[float, float]:
     """Return those of restitution and friction, by the measures of the points that were tried."""
     points = np.array([(restitution, _friction(angle)) for restitution, angle in tried])
     whole, *parts = np.array(list(tried.values())).T
     if not parts:
-        return [math.inf, math.inf]
+        return math.inf, math.inf
     own, alike = points[np.argmin(parts, axis=1)], points[whole <= min(whole) * (1 + 1e-9)]
     with np.errstate(invalid="ignore"):  # infinite friction
         found = np.maximum(own.std(axis=0, ddof=1) / _PARTS**0.5, np.ptp(alike, axis=0) / 12**0.5)
-    return np.where(np.isnan(found), np.inf, found).tolist()
+    restitution, friction = np.where(np.isnan(found), np.inf, found).tolist()
+    return restitution, friction
 
 
 def _friction(angle: float) -> float:

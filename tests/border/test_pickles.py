@@ -70,6 +70,9 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "errata": rl.report.errata,
     "comparison": lambda: rl.report.errata()[0].evaluate(),
     "fitted impacts": fitted,
+    "fit": lambda: rl.fit_motion(
+        TIMES, rl.simulate(rl.scenes.rolling, TIMES).x, scene=rl.scenes.rolling, free="omega"
+    ),
     "explorer": lambda: rl.explore(rl.scenes.report),
     "mode": lambda: rl.Mode.SLIDING,
     "kind": lambda: rl.EventKind.JAM,
