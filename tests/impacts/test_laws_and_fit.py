@@ -368,9 +368,8 @@ def test_no_impacts_come_to_nothing(law: Any) -> None:
 
 def test_errors_of_the_coefficients() -> None:
     """Of 10 fits to made series with noise, fewer than 4 are beyond twice the error, which ten
-    parts tell to a quarter: 4 of 10 of Student's numbers with 9 degrees
-    are so with 0.5 %. Where all
-    impacts stick, infinite friction fits as well, and its error is infinite."""
+    parts tell to a quarter: 4 of 10 of Student's numbers with 9 degrees are so with 0.5 %. Where
+    all impacts stick, infinite friction fits as well, and its error is infinite."""
     far = 0
     for seed in range(10):
         state = approaching(200, seed)

@@ -32,7 +32,8 @@ PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in na
 OWN = ("rl.simulate", "rl.simulate_many", "rl.load", "rl.load_many", *PICTURES)
 #: Functions that take seconds a call; tests/refusals has their arguments.
 SLOW = (
-    "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata", "rl.report.errata_table",
+    "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
+    "rl.report.errata_table",
 )  # fmt: skip
 PLAIN = tuple(name for name in FUNCTIONS if name not in (*OWN, *SLOW))
 
