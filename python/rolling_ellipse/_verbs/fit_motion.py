@@ -27,16 +27,17 @@ TRACKS = ("x", "z", "theta")
 _RATES = ("x_dot", "z_dot", "omega")
 _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
-_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # at most a hundred times off
+_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
 _GUESSES = {
     "friction": (0.05, 0.1, 0.2, 0.4, 1.0),
     "restitution": (0.2, 0.5, 0.8),
-    "inertia": (0.5, 2.0),  # over the first guess
+    "inertia": (0.5, 1.0, 2.0),  # over the first guess
     "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
 }
 _STAGES = (1.0,), (0.15, 0.3, 0.5, 0.7, 1.0)  # shares of the film that are fitted in turn
 _IMPOSSIBLE = 1e9  # residual of a scene that cannot be
 _LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
+_FAINT = 25.0  # rise of chi2 from which on a rival does not count
 _FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
 _FIRST = 8  # frames from which the start is guessed
 _RIVALS = 3  # solutions with a coefficient held that are let go
@@ -261,7 +262,7 @@ class _Search:
                 continue
             for guess in _GUESSES.get(name, ()):
                 other = u.copy()
-                other[k] = guess * (u[k] if name == "inertia" else 1 / self.sizes[k])
+                other[k] = guess * (self.own[k] if name == "inertia" else 1 / self.sizes[k])
                 yield k, other
 
     def solve(self, u: FloatArray, share: float = 1.0, held: int | None = None) -> Any:
@@ -323,7 +324,7 @@ class _Search:
                 rise, reach = math.inf if outside else 2 * (other.cost - best.cost), 2 * reach
         for other in rivals:
             rise = 2 * (other.cost - best.cost)
-            if rise < 9:
+            if rise < _FAINT:
                 apart = np.abs(self.turned(other.x - best.x)) / math.sqrt(max(rise, 1.0))
                 wide = np.maximum(wide, apart)
         wide[wide >= _FAR] = math.inf
@@ -341,7 +342,7 @@ class _Search:
 
 def _bounds(name: str, value: float) -> tuple[float, float]:
     if name in _POSITIVE:
-        return 0.01 * value, 100 * value
+        return 0.1 * value, 100 * value
     return _BOUNDS.get(name, (-math.inf, math.inf))
 
 
