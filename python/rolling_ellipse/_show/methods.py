@@ -11,6 +11,7 @@ _PACKAGE = __name__.partition(".")[0]
 
 #: Names of methods by module; the functions have the same names.
 METHODS = {
+    "_motion.from_arrays": ("from_arrays",),
     "_motion.passages": ("when",),
     "_motion.sensitivity": ("sensitivity",),
     "_motion.strobe_svg": ("_repr_html_",),
