@@ -70,6 +70,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "errata": rl.report.errata,
     "comparison": lambda: rl.report.errata()[0].evaluate(),
     "fitted impacts": fitted,
+    "sensitivity": lambda: MOTIONS["rolling"]().sensitivity("omega"),
     "fit": lambda: rl.fit_motion(
         TIMES, rl.simulate(rl.scenes.rolling, TIMES).x, scene=rl.scenes.rolling, free="omega"
     ),

@@ -28,6 +28,7 @@ QUICK = (
     "refusals/test_numbers.py",
     "export/test_atomic.py",
     "fit/test_fit_motion.py::test_samples_from_arrays",
+    "sensitivity/test_sensitivity.py::test_one_side_other_times_and_methods_with_steps",
     "benchmark/test_scores.py",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
     "report/test_errata.py",

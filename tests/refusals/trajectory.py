@@ -39,6 +39,8 @@ def without(package: str, call: Callable[[], Any]) -> Any:
 NO_ARRAYS = [1j * np.zeros(N), ["a"] * N, [[0.0], [1.0, 2.0]], None]
 TABLE = np.zeros((N, 5))
 
+GIVEN = rl.Trajectory.from_arrays(MOTION.t, MOTION.x, MOTION.z, MOTION.theta, scene=MOTION.scene)
+
 REFUSALS: list[Row] = [
     *wrong(
         partial(replace, CONTACT), {},
@@ -73,7 +75,7 @@ REFUSALS: list[Row] = [
         (rl.simulate(FLAT, 2.0), "slope"),
         (NOISY, "theta"))),
     *(("motion", lambda _, motion=motion: motion.sensitivity("theta"))
-      for motion in (STARTED, AT_REST, JAMMED)),
+      for motion in (STARTED, AT_REST, JAMMED, GIVEN)),
     ("changes", lambda _: DROPPED.sensitivity("theta").forecast(omega=1.0)),
     *wrong(DROPPED.sensitivity("theta").forecast, {}, theta=["x"]),
     *wrong(DROPPED.sensitivity("theta").at, {}, t=[-1.0, 9.0, "now"]),

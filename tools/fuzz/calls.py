@@ -111,7 +111,7 @@ OTHERS: dict[str, Ask] = {
     "before": _rows(4), "after": _rows(3),
     "printed": _one("()", "rl.report.CODE", "rl.report.MATRIX", "rl.report.EQ_32", "('tan', 'f1')"),
     "complete": _one("True", "False"), "case": _one("'1'", "'2'", "'as_it_is'"),
-    "to": _one("'roll'", "'rest'"),
+    "to": _one("'roll'", "'rest'"), "wrt": _one("'t'", "'theta'", "('a', 'omega')", "('gravity',)"),
     "impulse": lambda d, of: d.pick("None", scenes.impulse(d, of)),
     # options of the report's motion
     "equations": _one("'corrected'", "'printed'"), "method": _one("'dopri5'", "'rk4'", "'dop853'"),

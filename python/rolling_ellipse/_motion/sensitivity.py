@@ -16,6 +16,7 @@ from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._core import Mode
+from .from_arrays import GIVEN
 from .status import Status
 from .trajectory import Trajectory
 
@@ -156,8 +157,9 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     names = distinct("wrt", wrt, INPUTS)
     if whole("side", side) not in RULES:
         raise ValueError(f"side must be 0, 1 or -1, got {side!r}")
-    if motion.start is not None:
-        raise ValueError("motion must be that of its scene, got one from coordinates")
+    if motion.start is not None or motion.method == GIVEN:
+        source = "arrays" if motion.start is None else "coordinates"
+        raise ValueError(f"motion must be that of its scene, got one from {source}")
     if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
         ended = f"{motion.status.name} at t = {motion.t_end:.6g} s"
         raise ValueError(f"motion must go on to its end, got {ended}")

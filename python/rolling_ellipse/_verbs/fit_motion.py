@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, choice, positive
-from .._ask.printing import Row, html_table, text_table
+from .._ask.check import FloatArray, array, choice, positive, require
+from .._ask.printing import Row, html_table, required, text_table
 from .._ask.scene import Scene, require_scene
-from .._ask.printing import required
 from .._motion.samples import vector
 from .._motion.sensitivity import INPUTS, changed, distinct, size_of, value_of
 from .._motion.trajectory import Trajectory
@@ -196,6 +195,12 @@ class _Search:
         for k, (name, track) in enumerate(tracks.items()):
             if track is not None:
                 self.data[:, k] = vector(name, track, t.size)
+                require(
+                    name,
+                    "NaN or numbers below 1e100",
+                    self.data[:, k],
+                    ~(abs(self.data[:, k]) >= 1e100),
+                )
         self.known = np.isfinite(self.data)
         count = int(self.known.sum())
         self.dof = count - len(self.names)
@@ -305,6 +310,18 @@ class _Search:
     def estimate(self, best: Any) -> None:
         self.sigma *= max(math.sqrt(self.spread(best)), _LEAST)
 
+    def steps_down(self, best: Any, k: int) -> float:
+        """Return twice the largest half, quarter, ... of the range that chi2 does not tell.
+
+        Linearised residuals do not tell restitution near 0, as a hop's height grows by its square.
+        """
+        reach, rise = self.high[k] - self.low[k], math.inf
+        while rise > 1 and reach > _LEAST:
+            reach, there = reach / 2, best.x.copy()
+            there[k] += reach if there[k] + reach < self.high[k] else -reach
+            rise = 2 * (self.solve(there, held=k).cost - best.cost)
+        return float(2 * reach)
+
     def errors(self, best: Any, rivals: list[Any]) -> tuple[FloatArray, FloatArray]:
         """Return standard errors and covariance; rivals are other solutions."""
         _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
@@ -313,6 +330,8 @@ class _Search:
         covariance = (axes.T * inverse) @ axes
         errors = np.sqrt(np.diag(covariance))
         errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
+        for k in np.flatnonzero((errors > self.high - self.low) & np.isfinite(errors)):
+            errors[k] = self.steps_down(best, k)
         wide = errors.copy()
         for k, sign in itertools.product(range(len(errors)), (-1, 1)):
             reach, rise = 3 * errors[k], 0.0
