@@ -137,8 +137,9 @@ REFUSALS: list[Row] = [
            gyration2=[0.0]),
     # films
     *wrong(rl.fit_motion, FILM,
-           t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN], x=[[0.0, 1.0], [[0.0] * 3], [0.0, INF, 0.0]],
-           scene=[None, 1], sigma=[0.0, -1.0, NAN, {"x": 0.0}, {"y": 1.0}], loss=["median", None],
+           t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN],
+           x=[[0.0, 1.0], [[0.0] * 3], [0.0, INF, 0.0]], scene=[None, 1],
+           sigma=[0.0, -1.0, NAN, {"x": 0.0}, {"y": 1.0}], loss=["median", None],
            free=["t", "mu", "z", "jx", ("omega", "omega"), (), ("omega", "x", "theta", "mass")]),
     ("free", lambda _: rl.fit_motion(**FILM | {"scene": ENDLESS, "free": "friction"})),
     ("free", lambda _: rl.fit_motion(**FILM | {"x": [0.0, NAN, NAN]})),
