@@ -330,8 +330,9 @@ class _Search:
         covariance = (axes.T * inverse) @ axes
         errors = np.sqrt(np.diag(covariance))
         errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
-        for k in np.flatnonzero((errors > self.high - self.low) & np.isfinite(errors)):
-            errors[k] = self.steps_down(best, k)
+        for k, error in enumerate(errors.tolist()):
+            if self.high[k] - self.low[k] < error < math.inf:
+                errors[k] = self.steps_down(best, k)
         wide = errors.copy()
         for k, sign in itertools.product(range(len(errors)), (-1, 1)):
             reach, rise = 3 * errors[k], 0.0
