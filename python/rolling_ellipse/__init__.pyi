@@ -1,6 +1,7 @@
 # The public names, each with its module; `__init__.py` reads them from here.
 
 from . import benchmark as benchmark
+from . import course as course
 from . import geometry as geometry
 from . import impacts as impacts
 from . import report as report

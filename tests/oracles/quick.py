@@ -30,6 +30,7 @@ QUICK = (
     "fit/test_fit_motion.py::test_samples_from_arrays",
     "sensitivity/test_sensitivity.py::test_one_side_other_times_and_methods_with_steps",
     "benchmark/test_scores.py",
+    "course/test_course.py::test_measured_impacts",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
     "report/test_errata.py",
     "pictures/test_curves.py::test_scenes_are_named_by_the_fields_that_differ",

@@ -3,11 +3,13 @@
 from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import rolling_ellipse as rl
+from oracles.paths import ROOT
 from oracles.quantities import Pint
-from rolling_ellipse import Impulse, Scene, geometry, impacts, scenes
+from rolling_ellipse import Impulse, Scene, course, geometry, impacts, scenes
 
 from refusals import INF, NAN, NOT_FINITE, NOT_POSITIVE, Row, wrong
 
@@ -30,12 +32,8 @@ HIT: dict[str, Any] = {
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
-MASKED: list[Any] = [
-    [0.0, 0.0],
-    np.ma.array([-1.0, -1.0], mask=[False, True]),
-    [-1.0, -1.0],
-    [0.0, 0.0],
-]
+MASKED: Any = [[0.0, 0.0], np.ma.array([-1.0, -1.0], mask=[False, True]), [-1.0, -1.0], [0.0, 0.0]]
+TABLE = "ROLLING_ELLIPSE_IMPACTS"
 TWO_IMPACTS: Any = np.zeros((3, 2))
 FILM: dict[str, Any] = {
     "t": [0.1, 0.2, 0.3], "x": [0.0, 0.1, 0.2], "scene": Scene(2.0, 1.0, omega=1.0),
@@ -135,6 +133,11 @@ REFUSALS: list[Row] = [
            before=[[1.0], UPWARDS, MASKED, BEFORE[:3], BEFORE[:, :0], BEFORE + NAN],
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
            gyration2=[0.0]),
+    # the course
+    *wrong(course.mark, {"answer": 1.0}, task=["0.1", "1.5", 1.1, None, [1.1], ""]),
+    *wrong(course.mark, {"task": "1.1"}, answer=[*NOT_FINITE, "0.2", [0.2], None, 2j, (), {}]),
+    (TABLE, patch.dict("os.environ", {TABLE: str(ROOT / "reference/slope_reference.csv")})(
+        lambda _: course.measured_impacts())),
     # films
     *wrong(rl.fit_motion, FILM,
            t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN],

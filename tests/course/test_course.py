@@ -1,0 +1,166 @@
+"""Marks of the course for right and wrong answers.
+
+Answers are computed here by closed forms, Newton's law, quadratures and roots of SciPy; wrong ones
+by the same formulas with the mistake made. The film of sheet 10 was made of known numbers.
+"""
+
+import math
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.contact import reaction_by_pieces, response
+from oracles.paths import ROOT
+from rolling_ellipse import course
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from sensitivity.chain import rates, support
+
+TASKS = {task.number: task for task in course.tasks()}
+TIP = math.pi / 2
+STATE = ("theta", "x_dot", "z_dot", "omega")
+PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
+PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # which lets nothing slip
+
+
+class Given(SimpleNamespace):
+    """The data of a task, and what a scene has where it gives none."""
+
+    def __init__(self, number: str, **changes: Any) -> None:
+        known: dict[str, Any] = PLAIN | TASKS[number].data | changes
+        k2 = known.setdefault("gyration2", (known["a"] ** 2 + known["b"] ** 2) / 4)
+        super().__init__(**known | {"number": number, "inertia": known["mass"] * k2})
+
+    def but(self, **changes: Any) -> Any:
+        return Given(**vars(self) | changes)
+
+    def at(self, angle: Any) -> tuple[Any, Any, Any]:
+        return support(angle, vars(self))
+
+    def rolling(self, angle: float, omega: float) -> tuple[float, ...]:
+        _, _, _, along, up, turn = rates("ROLLING", 0, [0, 0, angle, 0, 0, omega], vars(self))
+        weight = self.gravity * math.cos(self.slope), self.gravity * math.sin(self.slope)
+        return turn, self.mass * (up + weight[0]), self.mass * (along - weight[1])
+
+    def about_contact(self, angle: float) -> float:
+        return float(self.gyration2 + self.at(angle)[0] ** 2 + self.at(angle)[1] ** 2)
+
+    def speed(self, angle: float, lift: float) -> float:
+        return math.sqrt(2 * self.gravity * (lift - self.at(angle)[0]) / self.about_contact(angle))
+
+    def needed(self, flat: float) -> float:
+        lift = self.b + self.about_contact(0) * flat**2 / 2 / self.gravity
+        forces = [self.rolling(q, self.speed(q, lift)) for q in np.linspace(0, 0.999 * TIP, 250)]
+        return max(abs(F / N) for _, N, F in forces)
+
+    def turn(self, lift: float, end: float) -> float:
+        return float(4 * quad(lambda q: 1 / self.speed(q, lift), 0, end)[0])
+
+    def hit(self) -> tuple[Any, ...]:
+        """Reaction along and up, and velocities, after a blow and an impact by Stronge's law."""
+        spin = (self.jx * self.dz - self.jz * self.dx) / self.inertia
+        v = self.x_dot + self.jx / self.mass, self.z_dot + self.jz / self.mass, self.omega + spin
+        free: Any = self.but(x_dot=v[0], z_dot=v[1], omega=v[2])
+        x, z = reaction_by_pieces(response(free, free), self.friction, self.restitution)
+        arm = self.at(self.theta)[0] * x + self.at(self.theta)[1] * z
+        return x, z, v[0] + x / self.mass, v[1] + z / self.mass, v[2] - arm / self.inertia
+
+    def landed(self) -> Any:
+        t = brentq(lambda t: self.z - self.gravity * t**2 / 2
+                   - self.at(self.theta + self.omega * t)[0], 0, 1)  # fmt: skip
+        return self.but(theta=self.theta + self.omega * t, z_dot=-self.gravity * t)
+
+    def impacts(self) -> float:
+        before, after = course.measured_impacts()
+        found = [self.but(**dict(zip(STATE, row, strict=True))).hit()[2:] for row in before.T]
+        speeds = before[1:], after, np.transpose(found) - after
+        (h, slope, _), (x, z, turn) = self.at(before[0]), after - before[1:]
+        gap = [v[1] - slope * v[2] for v in speeds]
+        heat = [v[0] ** 2 + v[1] ** 2 + self.gyration2 * v[2] ** 2 for v in speeds]
+        share = -((h * x + slope * z) @ turn) / (turn @ turn) / self.gyration2
+        parts = share, -gap[1] / gap[0], 1 - heat[1] / heat[0], np.sqrt(heat[2])
+        return float(np.median(parts[int(self.number[2]) - 1]))
+
+    def runs(self, parts: int) -> float:
+        y, step = np.array([0, 0, self.theta, 0, 0, self.omega]), self.step / parts
+        for _ in range(round(self.T / step)):
+            k = [0 * y]
+            for share in (0, 0.5, 0.5, 1):
+                k.append(rates("ROLLING", 0, y + share * step * k[-1], vars(self)))
+            y = y + step / 6 * np.array([1, 2, 2, 1]) @ k[1:]
+        return float(y[2])
+
+
+TRUE: dict[str, Any] = {
+    "1.1": lambda d: d.at(d.theta)[0], "1.2": lambda d: d.at(d.theta)[1],
+    "1.3": lambda d: quad(lambda q: d.at(q)[0], 0, d.theta)[0],
+    "1.4": lambda d: quad(lambda q: d.at(q)[0] + d.at(q)[2], 0, d.theta)[0],
+    "2.1": lambda d: d.mass * d.about_contact(d.theta) * d.omega**2 / 2,
+    "2.2": lambda d: -math.copysign(d.speed(0, d.at(d.theta)[0]), math.tan(d.theta)),
+    "2.3": lambda d: math.sqrt(d.gravity * d.at(0)[2] / d.about_contact(0)),
+    "2.4": lambda d: d.turn(d.at(d.theta)[0], math.asin(abs(math.sin(d.theta)))),
+    "3.1": lambda d: d.rolling(0, d.omega)[1], "3.2": lambda d: d.rolling(d.theta, d.omega)[2],
+    "3.3": lambda d: d.rolling(d.theta, d.omega)[0],
+    "3.4": lambda d: abs(d.rolling(d.theta, 0)[2] / d.rolling(d.theta, 0)[1]),
+    "4.1": lambda d: d.speed(0, d.a), "4.2": lambda d: d.speed(d.theta, d.a),
+    "4.3": lambda d: d.needed(d.speed(0, d.a)),
+    "4.4": lambda d: d.turn(d.b + d.about_contact(0) * d.omega**2 / 2 / d.gravity, TIP),
+    "5.1": lambda d: d.hit()[4], "5.2": lambda d: d.hit()[0], "5.3": lambda d: d.hit()[4],
+    "5.4": lambda d: d.speed(0, d.a) / d.but(jz=-1.0).hit()[4],
+    "6.1": lambda d: abs(d.hit()[0] / d.hit()[1]), "9.1": lambda d: d.runs(1),
+    "6.2": lambda d: d.x_dot / d.friction / d.gravity / (1 + d.a**2 / d.gyration2),
+    "6.3": lambda d: rates("SLIDING", 1, [0, 0, d.theta, d.x_dot, 0, d.omega], vars(d))[5],
+    "6.4": lambda d: brentq(lambda flat: d.needed(flat) - d.friction, d.speed(0, d.a), 12),
+    "7.1": lambda d: math.sqrt(max(0, -d.gravity / d.at(d.theta)[2])),
+    "7.2": lambda d: -d.landed().z_dot / d.gravity, "7.4": lambda d: d.landed().hit()[4],
+    "7.3": lambda d: d.mass * d.gravity * d.at(d.landed().theta)[0]
+    + np.dot([d.mass, d.mass, d.inertia], np.square(d.landed().hit()[2:])) / 2,
+    **dict.fromkeys(("8.1", "8.2", "8.3", "8.4"), Given.impacts),
+    "9.2": lambda d: math.log2((d.runs(1) - d.runs(2)) / (d.runs(2) - d.runs(4))),
+    "9.3": lambda d: np.polyval([1 / 24, 1 / 6, 1 / 2, 1, 1], -2 * d.alpha * d.step),
+    "9.4": lambda d: math.sqrt(-d.gravity * d.at(TIP)[2] / d.about_contact(TIP)),
+    "10.1": lambda d: 0.3, "10.2": lambda d: 12.0, "10.3": lambda d: 0.55, "10.4": lambda d: 0.18,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("number", TASKS)
+def test_marks(number: str) -> None:
+    """1.37 times the right answer stands for mistakes that change nothing. Tolerances, half a digit
+    and 1e-4 of the condition, are met to 30 %: rolling discs become ellipses there."""
+    task, right = TASKS[number], TRUE[number](Given(number))
+    angles = {k: v * math.pi / 180 for k, v in task.data.items() if k in ("theta", "slope")}
+    forgotten = {"friction": 0.0} if number[0] == "5" or number in ("7.4", "8.4") else {}
+    ring = {"gyration2": 2 * Given(number).gyration2}
+    changes = {"degrees": angles, "ring": ring, "friction": forgotten}
+    found = {kind: TRUE[number](Given(number, **change)) for kind, change in changes.items()}
+    found |= {"degrees": right * 180 / math.pi} if "rad" in task.unit and not angles else {}
+    wrong = {kind: value for kind, value in found.items() if abs(value / right - 1) > 1e-9}
+    moved = ([TRUE[number](Given(number, **{k: v * (1 + s)})) for s in (-1e-4, 1e-4)]
+             for k, v in task.data.items())  # fmt: skip
+    digit = 10.0 ** (math.floor(math.log10(abs(right))) - 3)
+    allowed = digit / 2 + math.hypot(*(high - low for low, high in moved)) / 2
+    off = 4e-3 * right if number[:2] == "10" else 1.3 * allowed  # the film has its own error
+    wrong |= {"none": right + 0.7 * allowed, "sign": -right, "per mille": right + off}
+    for kind in ("none", "sign", "degrees", "ring", "friction", "per mille"):
+        mark = course.mark(number, wrong.get(kind, 1.37 * right))
+        assert mark.mistake == (kind if kind in wrong else "other"), kind
+        assert bool(mark) == mark.right == (kind == "none")
+
+
+def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows, names = np.vstack(course.measured_impacts()).T, ",".join(course._DATA["impacts"])
+    np.savetxt(tmp_path / "seen.csv", rows[::-2], delimiter=",", header=names, comments="")
+    for said in ("(Made impacts.)", "(Measured impacts.)"):
+        mark = course.mark("8.2", TRUE["8.2"](Given("8.2")))
+        assert mark and mark.sentence.endswith(said)
+        monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))
+
+
+def test_the_sheets_have_the_tasks() -> None:
+    make = runpy.run_path(str(ROOT / "docs/course/make.py"))
+    assert len(make["SHEETS"]) == 10
+    for path in make["SHEETS"]:
+        assert path.read_text(encoding="utf-8") == make["with_tasks"](path), path.name
