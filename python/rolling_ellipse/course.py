@@ -13,7 +13,7 @@ import json
 import math
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -65,7 +65,7 @@ class Mark:
 
 _DATA = json.loads(resources.files(__package__).joinpath("course.json").read_text("utf-8"))
 _TASKS = {known["number"]: Task(**known) for known in _DATA["tasks"]}
-FILM: dict[str, Any] = {name: np.array(track) for name, track in _DATA["film"].items()}
+FILM: dict[str, FloatArray] = {name: np.array(track) for name, track in _DATA["film"].items()}
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.4")  # blows and impacts with friction
 _FILE = "ROLLING_ELLIPSE_IMPACTS"
 _ROUNDING = 1e-4  # relative; the fourth digit rounds by 5e-4 at most
@@ -75,7 +75,7 @@ _STEP = 1e-6  # relative step of the differences for the condition
 
 def tasks() -> tuple[Task, ...]:
     """Return all tasks, 1.1 to 10.4."""
-    return tuple(_TASKS.values())
+    return tuple(replace(task, data=dict(task.data)) for task in _TASKS.values())
 
 
 def mark(task: str, answer: float) -> Mark:
@@ -151,7 +151,7 @@ def _known(task: str, path: str | None) -> tuple[float, list[tuple[str, float]]]
 
 @cache
 def _fit(s: Scene) -> Fit:
-    return fit_motion(**FILM, scene=s, **_DATA["fit"])
+    return fit_motion(**_DATA["film"], scene=s, **_DATA["fit"])
 
 
 def _runs(s: Scene, d: dict[str, float], name: str) -> float:

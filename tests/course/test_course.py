@@ -161,6 +161,5 @@ def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_the_sheets_have_the_tasks() -> None:
     make = runpy.run_path(str(ROOT / "docs/course/make.py"))
-    assert len(make["SHEETS"]) == 10
-    for path in make["SHEETS"]:
+    for path, _ in zip(make["SHEETS"], make["POINTS"], strict=True):
         assert path.read_text(encoding="utf-8") == make["with_tasks"](path), path.name
