@@ -1,0 +1,416 @@
+"""Make the pictures and the tasks of the sheets beside this file: python docs/course/make.py
+
+    pictures   01.png to 10.png
+    tasks      the marked parts of the sheets, from the questions and data that `course` marks by
+    table      print the mark of every task for the right answer and for those by usual mistakes
+
+Named steps are made alone; `table` only if it is named.
+"""
+
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rolling_ellipse as rl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse
+from rolling_ellipse import course
+from rolling_ellipse._ask.printing import text_table
+from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
+
+HERE = Path(__file__).resolve().parent
+SHEETS = sorted(HERE.glob("[01][0-9]_*.md"))
+BEGIN, END = "<!-- tasks: made by docs/course/make.py -->\n", "<!-- end of tasks -->\n"
+POINTS = {  # of the four tasks of each sheet; ten in all
+    1: (2, 2, 3, 3), 2: (2, 3, 2, 3), 3: (2, 3, 3, 2), 4: (2, 2, 4, 2), 5: (3, 2, 3, 2),
+    6: (2, 2, 3, 3), 7: (2, 3, 3, 2), 8: (3, 2, 2, 3), 9: (3, 3, 2, 2), 10: (2, 2, 3, 3),
+}  # fmt: skip
+SYMBOLS = {  # of the data, with their units
+    "a": ("a", "m"), "b": ("b", "m"), "mass": ("m", "kg"), "gravity": ("g", "m/s²"),
+    "slope": (r"\alpha", "rad"), "friction": (r"\mu", ""), "restitution": ("e", ""),
+    "z": ("z", "m"), "theta": (r"\theta", "rad"), "x_dot": (r"\dot x", "m/s"),
+    "z_dot": (r"\dot z", "m/s"), "omega": (r"\omega", "rad/s"), "jx": ("J_x", "N s"),
+    "jz": ("J_z", "N s"), "dx": ("d_x", "m"), "dz": ("d_z", "m"), "T": ("T", "s"),
+    "step": (r"\Delta t", "s"), "alpha": (r"\alpha", "1/s"),
+}  # fmt: skip
+A, B, G = 0.3, 0.2, 9.81
+BODY: dict[str, float] = {"a": A, "b": B}
+K2 = (A * A + B * B) / 4
+
+# ------------------------------------------------------------------------------ tasks
+
+
+def with_tasks(path: Path) -> str:
+    """The text of a sheet with its tasks made anew."""
+    text = path.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, closed, after = rest.partition(END)
+    if not closed:
+        raise ValueError(f"{path.name} must have {BEGIN!r} and {END!r}")
+    sheet = int(path.name[:2])
+    asked = [task for task in course.tasks() if task.number.startswith(f"{sheet}.")]
+    parts = [written(t, n) for t, n in zip(asked, POINTS[sheet], strict=True)]
+    return before + BEGIN + "\n".join(tables(sheet) + parts) + END + after
+
+
+def written(task: course.Task, points: int) -> str:
+    unit = task.unit.replace("^2", "²") or "a number without unit"
+    data = ", ".join(datum(*SYMBOLS[name], value) for name, value in task.data.items())
+    return (
+        f"**{task.number}** ({points} points) {task.question}\n*Data:* {data}. *Answer:* {unit}.\n"
+    )
+
+
+def datum(symbol: str, unit: str, value: float) -> str:
+    return f"${symbol} = {value:g}$ {unit}".rstrip()
+
+
+def tables(sheet: int) -> list[str]:
+    """The numbers that all tasks of a sheet share."""
+    if sheet == 8:
+        head = ["θ", "ẋ", "ż", "ω", "ẋ⁺", "ż⁺", "ω⁺"]
+        shown = [[f"{v:g}" for v in row] for row in np.vstack(course.measured_impacts()).T]
+    elif sheet == 10:
+        head, shown = ["t [s]", "x [m]", "z [m]", "θ [rad]"], []
+        for t, x, z, theta in zip(*course.FILM.values(), strict=True):
+            shown.append([f"{t:.5f}", f"{x:.4f}", f"{z:.4f}", f"{theta:.3f}"])
+    else:
+        return []
+    rows = [head, ["---"] * len(head), *shown]
+    return ["".join(f"| {' | '.join(row)} |\n" for row in rows)]
+
+
+def table() -> None:
+    """Print what `course.mark` says to the right answer and to each mistake."""
+    kinds = ("none", "sign", "degrees", "ring", "friction", "per mille")
+    rows = [("task", "right", *kinds)]
+    for task in course.tasks():
+        tolerance, known = course._known(task.number, None)
+        right = known[0][1]
+        given = {name: v for name, v in reversed(known) if abs(v / right - 1) > 1e-9}
+        given |= {"none": right, "per mille": right + tolerance + 1e-3 * abs(right)}
+        answers = [given.get(kind, 1.37 * right) for kind in kinds]
+        marks = [course.mark(task.number, answer).mistake for answer in answers]
+        cells = [f"{x:.4g} {mark}" for x, mark in zip(answers, marks, strict=True)]
+        rows.append((task.number, f"{right:.5g} {task.unit}", *cells))
+    print(text_table(rows))
+
+
+# ------------------------------------------------------------------------------ pictures
+
+
+def two(height: float = 3.0, ratios: tuple[float, float] = (1, 1)) -> tuple[Figure, Axes, Axes]:
+    figure = Figure(figsize=(7.4, height), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=ratios)
+    for ax in (left, right):
+        ax.spines[["top", "right"]].set_visible(False)
+    return figure, left, right
+
+
+def ground(ax: Axes, low: float, high: float, top: float, depth: float = 0.05) -> None:
+    ax.axhspan(-depth, 0, color=EARTH, zorder=0)
+    ax.axhline(0, color=GREY, lw=1)
+    ax.set(xlim=(low, high), ylim=(-depth, top), aspect="equal")
+    ax.axis("off")
+
+
+def body(
+    ax: Axes, x: float, z: float, theta: float, a: float = A, b: float = B, **how: Any
+) -> None:
+    look = {"fc": "#2a6f9722", "ec": INK, "lw": 1.4} | how
+    ax.add_patch(Ellipse((x, z), 2 * a, 2 * b, angle=-math.degrees(theta), **look))
+
+
+def arrow(ax: Axes, tip: tuple[float, float], tail: tuple[float, float], colour: str) -> None:
+    how = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", tip, tail, arrowprops=how)
+
+
+def curve() -> Figure:
+    figure = Figure(figsize=(7.4, 2.6), layout="constrained")
+    ax = figure.add_subplot()
+    theta = np.linspace(0, 2 * math.pi, 400)
+    x, h = rl.geometry.centre_path(theta, **BODY), rl.geometry.support(theta, **BODY)
+    rim = x + A * np.cos(theta), h - A * np.sin(theta)
+    ground(ax, -0.4, 2.0, 0.62, 0.07)
+    for angle in (0.0, 0.6, 2.2, 3.8, 5.2):
+        at, up = rl.geometry.centre_path(angle, **BODY), rl.geometry.support(angle, **BODY)
+        body(ax, at, up, angle, lw=1.1)
+        touch = at + rl.geometry.support_slope(angle, **BODY)
+        ax.plot([at, touch], [up, 0], color=GREY, lw=1, ls=":")
+        ax.plot(touch, 0, "o", ms=5, color=PLUM, clip_on=False, zorder=4)
+        ax.plot(at, up, "o", ms=3, color=INK)
+        end = at + A * math.cos(angle), up - A * math.sin(angle)
+        ax.plot(*end, "o", ms=5, color=ORANGE, zorder=4)
+    ax.plot(x, h, color=BLUE, lw=1.8)
+    ax.plot(*rim, color=ORANGE, lw=1.8)
+    ax.text(1.6, 0.14, "centre", color=BLUE)
+    ax.text(1.62, 0.51, "point P of the rim", color=ORANGE)
+    ax.text(0.47, -0.06, "contacts", color=PLUM, va="center")
+    return figure
+
+
+def energy() -> Figure:
+    figure, left, right = two()
+    theta = np.linspace(-0.6 * math.pi, 1.1 * math.pi, 400)
+    left.plot(theta, rl.geometry.support(theta, **BODY), color=INK)
+    for level, name, colour in ((0.26, "rocks", BLUE), (0.34, "rolls over", ORANGE)):
+        inside = theta[rl.geometry.support(theta, **BODY) <= level]
+        inside = inside[np.abs(inside) < 1.4] if level < A else inside
+        left.plot([inside[0], inside[-1]], [level, level], color=colour)
+        left.text(inside[-1] if level < A else 1.9, level + 0.003, f" {name}", color=colour)
+    left.axhline(A, color=GREY, lw=1, ls="--")
+    left.text(-1.85, A + 0.003, "a", color=GREY)
+    left.set(xlabel="θ [rad]", ylim=(0.19, 0.36), xticks=[-math.pi / 2, 0, math.pi / 2, math.pi],
+             xticklabels=["−π/2", "0", "π/2", "π"])  # fmt: skip
+    left.set_title("E/(m g) and h [m]", loc="left", fontsize="medium")
+    limit = rl.thresholds(A, B).roll_over_speed
+    for low, high, name in ((0.05, 0.99999, "a swing"), (1.00001, 1.8, "a full turn")):
+        share = 1 + (np.array([-1, 1])[int(low > 1)]) * np.geomspace(
+            1e-5, abs(1 - (low, high)[low > 1]), 150
+        )
+        times = [rl.period(rl.Scene(A, B, omega=limit * s)) for s in share]
+        colour = BLUE if low < 1 else ORANGE
+        right.plot(share, times, color=colour)
+        right.text(*((0.35, 1.6) if low < 1 else (1.25, 1.85)), name, color=colour)
+    right.axvline(1, color=GREY, lw=1, ls="--")
+    right.set(xlabel="speed at the flat position / least to roll over", ylim=(0, 5), xlim=(0, 1.8))
+    right.set_title("time [s]", loc="left", fontsize="medium")
+    return figure
+
+
+def forces() -> Figure:
+    figure, left, right = two(ratios=(1, 1.1))
+    scene = rl.Scene(A, B, mass=1.5, omega=3.0, theta=0.7)
+    at = rl.simulate(scene, 0.0)
+    x, touch, up = float(at.x[0]), float(at.contact_x[0]), float(at.z[0])
+    ground(left, -0.36, 0.55, 0.62, 0.07)
+    body(left, x, up, 0.7)
+    N, F = float(at.normal_force[0]) / 80, float(at.friction_force[0]) / 80 * 3
+    arrow(left, (touch, N), (touch, 0), ORANGE)
+    arrow(left, (touch + F, 0), (touch, 0), PLUM)
+    arrow(left, (x, up - 1.5 * G / 80), (x, up), GREY)
+    left.plot(x, up, "o", ms=4, color=INK)
+    left.text(touch + 0.02, N - 0.03, "N", color=ORANGE)
+    left.text(touch + F, -0.045, "F (three times as long)", color=PLUM, ha="center", va="center")
+    left.text(x - 0.015, up - 0.12, "m g", color=GREY, ha="right")
+    turn = rl.simulate(rl.Scene(A, B, omega=7.0), np.linspace(0, 1.35, 600))
+    weight = G * turn.scene.mass
+    right.plot(turn.theta, turn.normal_force / weight, color=ORANGE)
+    right.plot(turn.theta, turn.friction_force / weight, color=PLUM)
+    right.axhline(0, color=GREY, lw=1)
+    right.text(2.7, 1.75, "N/(m g)", color=ORANGE, ha="right")
+    right.text(0.9, -0.4, "F/(m g)", color=PLUM)
+    right.set(xlabel="θ [rad]", xlim=(0, 2 * math.pi), ylim=(-0.5, 2.4),
+              xticks=[0, math.pi / 2, math.pi, 1.5 * math.pi, 2 * math.pi],
+              xticklabels=["0", "π/2", "π", "3π/2", "2π"])  # fmt: skip
+    right.set_title("a turn, 7 rad/s when flat", loc="left", fontsize="medium")
+    return figure
+
+
+def over() -> Figure:
+    figure, left, right = two()
+    theta, omega = np.meshgrid(
+        np.linspace(-math.pi / 2, 1.5 * math.pi, 400), np.linspace(-7, 7, 300)
+    )
+    h, lead = rl.geometry.support(theta, **BODY), rl.geometry.support_slope(theta, **BODY)
+    lift = (K2 + h**2 + lead**2) * omega**2 / (2 * G) + h
+    for levels, colour, width in (((0.215, 0.24, 0.27), BLUE, 1.0), ((A,), INK, 2.0),
+                                  ((0.33, 0.37), ORANGE, 1.0)):  # fmt: skip
+        left.contour(theta, omega, lift, levels, colors=[colour], linewidths=width)
+    left.text(0, 0, "rocks", color=BLUE, ha="center", va="center")
+    left.text(math.pi / 2, 4.3, "rolls over", color=ORANGE, ha="center")
+    left.set(xlabel="θ [rad]", xticks=[0, math.pi / 2, math.pi], xticklabels=["0", "π/2", "π"])
+    left.set_title("ω [rad/s]", loc="left", fontsize="medium")
+    ratio = np.linspace(1.02, 6, 120)
+    for name, k2, colour in (("solid", 0.25, INK), ("ring", 0.5, GREY)):
+        needs = [
+            rl.thresholds(r, 1.0, gyration2=k2 * (r * r + 1)).friction_to_roll_over for r in ratio
+        ]
+        right.plot(ratio, needs, color=colour)
+        right.text(6.05, needs[-1], name, color=colour, va="center")
+    right.plot(1.5, rl.thresholds(A, B).friction_to_roll_over, "o", color=ORANGE)
+    right.set(xlabel="a/b", xlim=(1, 6.8), ylim=(0, None))
+    right.set_title("friction coefficient needed to roll over", loc="left", fontsize="medium")
+    return figure
+
+
+def blow() -> Figure:
+    figure, left, right = two(ratios=(1.15, 1))
+    ground(left, -0.42, 0.52, 0.46, 0.09)
+    body(left, 0, B, 0)
+    left.plot(0, B, "o", ms=4, color=INK)
+    edge = B + B * math.sqrt(1 - (0.25 / A) ** 2)
+    arrow(left, (0.25, edge), (0.25, edge + 0.13), ORANGE)
+    arrow(left, (0, 0.13), (0, 0), PLUM)
+    arrow(left, (0.16, 0), (0, 0), PLUM)
+    left.annotate("", (0.25, B), (0, B), arrowprops={"arrowstyle": "<->", "color": GREY})
+    left.text(0.125, B + 0.012, "$d_x$", color=GREY, ha="center")
+    left.text(0.265, edge + 0.07, "$J_z$", color=ORANGE)
+    left.text(-0.015, 0.1, r"$\Lambda_z$", color=PLUM, ha="right")
+    left.text(0.16, -0.045, r"$\Lambda_x$", color=PLUM, va="center")
+    d = np.linspace(0, A, 50)
+    solid, ring = d / (K2 + B * B), d / (2 * K2 + B * B)
+    for values, name, colour, dash in ((d / K2, "without friction", PLUM, "--"),
+                                       (solid, "solid, the ground holds", INK, "-"),
+                                       (ring, "ring, the ground holds", GREY, "-")):  # fmt: skip
+        right.plot(d, 0.6 * values, color=colour, ls=dash, label=name)
+    right.legend(frameon=False, loc="upper left")
+    right.set(xlabel="distance $d_x$ [m]", xlim=(0, A), ylim=(0, 6.4))
+    right.set_title("ω after 0.9 N s on 1.5 kg [rad/s]", loc="left", fontsize="medium")
+    return figure
+
+
+def slip() -> Figure:
+    figure, left, right = two()
+    motion = rl.simulate(
+        rl.Scene(0.2, 0.2, friction=0.15, x_dot=3.0, omega=0.0), np.linspace(0, 1.2, 300)
+    )
+    left.plot(motion.t, motion.x_dot, color=INK)
+    left.plot(motion.t, 0.2 * motion.omega, color=BLUE)
+    end = motion.events[0].t
+    left.axvline(end, color=GREY, lw=1, ls="--")
+    left.text(0.05, 2.5, "centre", color=INK)
+    left.text(0.1, 0.9, "a ω", color=BLUE)
+    left.text(end + 0.02, 0.2, "rolls", color=GREY)
+    left.set(xlabel="t [s]", xlim=(0, 1.2), ylim=(0, 3.1))
+    left.set_title("speeds of a disc [m/s]", loc="left", fontsize="medium")
+    mu = np.linspace(0.23, 1.2, 80)
+    speeds = [rl.thresholds(A, B, friction=m).slip_speed for m in mu]
+    lift = rl.thresholds(A, B).contact_loss_speed
+    right.plot(mu, speeds, color=INK)
+    right.axhline(lift, color=PLUM, lw=1, ls="--")
+    right.text(1.2, lift + 0.03, "rolling needs N < 0", color=PLUM, ha="right", va="bottom")
+    right.text(0.75, 10.2, "rolls for ever", color=BLUE)
+    right.text(0.3, 10.9, "slips", color=ORANGE)
+    right.set(xlabel="μ", xlim=(0.2, 1.2), ylim=(9.6, 11.6))
+    right.set_title("speed when flat [rad/s]", loc="left", fontsize="medium")
+    return figure
+
+
+def flight() -> Figure:
+    figure = Figure(figsize=(7.4, 3.2), layout="constrained")
+    ax = figure.add_subplot()
+    scene = rl.Scene(A, B, z=0.8, theta=0.5, omega=-2.0, x_dot=1.2, friction=0.15, restitution=0.8)
+    end = 1.25
+    motion = rl.simulate(scene, np.linspace(0, end, 400))
+    ground(ax, -0.45, 2.1, 1.05, 0.08)
+    for t in np.linspace(0, end, 8):
+        at = motion.at(t)
+        body(ax, at.x, at.z, at.theta, lw=1)
+    ax.plot(motion.x, motion.z, color=BLUE, lw=1.6)
+    for event in motion.events:
+        hit = event.state_before
+        body(ax, hit.x, hit.z, hit.theta, fc="none", ec=ORANGE, lw=1.8)
+        touch = hit.x + rl.geometry.support_slope(hit.theta, **BODY)
+        ax.plot(touch, 0, "o", ms=6, color=ORANGE, clip_on=False, zorder=4)
+        ax.text(touch, -0.045, f"{event.t:.2f} s", color=ORANGE, ha="center", va="center")
+    return figure
+
+
+def laws() -> Figure:
+    figure, left, right = two(3.2)
+    before, after = course.measured_impacts()
+    axes = {"a": 0.035, "b": 0.025}
+    lead = rl.geometry.support_slope(before[0], **axes)
+    u = before[2] - lead * before[3]
+    left.plot(-u, after[1] - lead * after[2], "o", ms=4.5, color=INK, mfc="none")
+    reach = np.array([0, -u.min() * 1.05])
+    left.plot(reach, 0.507 * reach, color=ORANGE)
+    left.text(reach[1], 0.507 * reach[1], "median ", color=ORANGE, ha="right", va="bottom")
+    left.set(xlabel="speed of approach [m/s]", xlim=(2, reach[1]), ylim=(0.8, 1.9))
+    left.set_title("speed of separation [m/s]", loc="left", fontsize="medium")
+    mu = np.linspace(0, 0.5, 60)
+    for law, colour, dash in zip(
+        rl.impacts.LAWS, (INK, BLUE, ORANGE), ("-", "--", "-."), strict=True
+    ):
+        misses = []
+        for m in mu:
+            found = rl.impacts.collide(*before, **axes, friction=m, restitution=0.55, law=law)
+            off = np.stack(found) - after
+            misses.append(np.median(rl.impacts.kinetic_speed(*off, gyration2=4.625e-4)))
+        right.plot(mu, misses, color=colour, ls=dash, label=law.capitalize())
+    right.legend(frameon=False)
+    right.set(xlabel="μ", xlim=(0, 0.5), ylim=(0, None))
+    right.set_title("median error [m/s], e = 0.55", loc="left", fontsize="medium")
+    return figure
+
+
+def integrators() -> Figure:
+    figure, left, right = two()
+    scene = rl.Scene(A, B, theta=0.5, omega=2.0)
+    rhs, step = rl.rolling_equation(scene), 0.01
+    y = [np.array([0.5, 2.0])]
+    for _ in range(300):
+        y.append(y[-1] + step * rhs(0.0, y[-1]))
+    theta, omega = np.array(y).T
+    h, lead = rl.geometry.support(theta, **BODY), rl.geometry.support_slope(theta, **BODY)
+    total = (K2 + h**2 + lead**2) * omega**2 / 2 + G * h
+    left.plot(step * np.arange(301), total / total[0] - 1, color=PLUM)
+    left.text(0.1, 0.072, "explicit Euler, 0.01 s", color=PLUM)
+    t = step * np.arange(0, 301, 12)
+    rough = rl.simulate(scene, t, model="rolling", method="rk4", step=0.12, raise_on_failure=False)
+    left.plot(t, rough.energy / rough.energy[0] - 1, color=ORANGE)
+    left.text(1.9, -0.012, "Runge–Kutta, 0.12 s", color=ORANGE, ha="right")
+    left.axhline(0, color=INK, lw=1)
+    left.set(xlabel="t [s]", xlim=(0, 3), ylim=(-0.02, 0.1))
+    left.set_title("relative change of energy", loc="left", fontsize="medium")
+    steps = 0.4 / 2.0 ** np.arange(2, 13)
+    exact = rl.simulate(scene, [0.4], model="rolling", method="exact").theta[0]
+    for method, colour in (("rk4", ORANGE), ("gauss", BLUE)):
+        found = [
+            rl.simulate(scene, [0.4], model="rolling", method=method, step=s).theta[0]
+            for s in steps
+        ]
+        off = np.maximum(np.abs(np.array(found) - exact), 1e-17)
+        right.loglog(steps, off, "o-", ms=4, color=colour)
+    right.text(0.006, 2e-7, "Runge–Kutta", color=ORANGE, ha="right")
+    right.text(0.05, 1e-14, "Gauss", color=BLUE)
+    right.set(xlabel="step [s]")
+    right.set_title("error of θ after 0.4 s [rad]", loc="left", fontsize="medium")
+    return figure
+
+
+def film() -> Figure:
+    figure, left, right = two(3.2, (1.25, 1))
+    t, x, z, theta = course.FILM.values()
+    ground(left, -0.045, 0.13, 0.145, 0.012)
+    for at, up, angle in zip(x, z, theta, strict=True):
+        body(left, at, up, angle, 0.035, 0.025, lw=0.8, fc="none", ec=SKY)
+        left.plot(at, up, "o", ms=3.5, color=INK)
+        mark = at + 0.035 * math.cos(angle), up - 0.035 * math.sin(angle)
+        left.plot(*mark, "o", ms=3, color=ORANGE)
+    right.plot(t, z, "o", ms=4.5, color=INK, mfc="none")
+    right.plot(t, x, "o", ms=4, color=BLUE)
+    right.text(0.2, 0.045, "z", color=INK, ha="right")
+    right.text(0.2, 0.083, "x", color=BLUE, ha="right")
+    right.set(xlabel="t [s]", ylim=(0, None), xlim=(0, None))
+    right.set_title("centre [m]", loc="left", fontsize="medium")
+    return figure
+
+
+PICTURES: dict[int, Callable[[], Figure]] = dict(
+    enumerate((curve, energy, forces, over, blow, slip, flight, laws, integrators, film), 1)
+)
+
+
+def pictures() -> None:
+    sys.path.insert(0, str(HERE.parent))
+    import make_pictures
+
+    for number, draw in PICTURES.items():
+        make_pictures.save(draw(), f"course/{number:02}.png")
+
+
+def tasks() -> None:
+    for path in SHEETS:
+        path.write_text(with_tasks(path), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    for step in sys.argv[1:] or ["pictures", "tasks"]:
+        {"pictures": pictures, "tasks": tasks, "table": table}[step]()
