@@ -60,9 +60,8 @@ def with_tasks(path: Path) -> str:
 def written(task: course.Task, points: int) -> str:
     unit = task.unit.replace("^2", "²") or "a number without unit"
     data = ", ".join(datum(*SYMBOLS[name], value) for name, value in task.data.items())
-    return (
-        f"**{task.number}** ({points} points) {task.question}\n*Data:* {data}. *Answer:* {unit}.\n"
-    )
+    given = f"*Data:* {data}. *Answer:* {unit}."
+    return f"**{task.number}** ({points} points) {task.question}\\\n{given}\n"
 
 
 def datum(symbol: str, unit: str, value: float) -> str:
