@@ -9,7 +9,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
     problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
-    text       the marked parts of README.md and docs/benchmark.md, from those files
+    text       the marked parts of docs/speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
@@ -36,7 +36,7 @@ from rolling_ellipse import WorkPrecision, benchmark
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-README = ROOT / "README.md"
+PAGES = ("speed", "many", "benchmark")  # pages that quote measurements
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
@@ -112,7 +112,7 @@ def notebooks(quick: bool) -> None:
 
 
 def text(quick: bool) -> None:
-    for path in (README, HERE / "benchmark.md"):
+    for path in (HERE / f"{name}.md" for name in PAGES):
         path.write_text(quoted(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 

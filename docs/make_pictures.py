@@ -1,4 +1,4 @@
-"""Make the pictures of the README beside this file; a step of `make.py`.
+"""Make the pictures of README and site beside this file; a step of `make.py`.
 
 The chart of speed against accuracy is drawn from `peers_R_10.37.json`, whose digest it carries.
 """
@@ -37,7 +37,7 @@ STEP = 2.0**-7
 
 
 def main() -> None:
-    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25)
+    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25, blow=True)
     friction()
     save(methods(), "methods.png")
     save(speed(), "speed.png", RACE)

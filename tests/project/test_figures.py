@@ -13,7 +13,13 @@ from PIL import Image
 from rolling_ellipse import WorkPrecision
 
 DOCS = ROOT / "docs"
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PROSE = {
+    name: (ROOT / name).read_text(encoding="utf-8")
+    for name in (
+        "README.md",
+        *(f"docs/{page}.md" for page in ("start", "speed", "many", "benchmark")),
+    )
+}
 RACE = DOCS / "peers_R_10.37.json"
 NOTEBOOK = ROOT / "notebooks" / "06_speed_and_accuracy.ipynb"
 # pattern of a time below a second, or a ratio ("25 × 16" is a size)
@@ -37,17 +43,19 @@ def printed(path: Path) -> str:
 
 
 def test_the_figures_of_the_pages_are_those_of_the_data(make: dict[str, Any]) -> None:
-    for page in (README, (DOCS / "benchmark.md").read_text(encoding="utf-8")):
+    for name in make["PAGES"]:
+        page = PROSE[f"docs/{name}.md"]
         assert make["quoted"](page) == page, "python docs/make.py text"
 
 
 def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:
-    part = next(found.group() for found in MARKED.finditer(README))
+    page = PROSE["docs/speed.md"]
+    part = next(found.group() for found in MARKED.finditer(page))
     digit = re.search(r"(\d)(?=\.\d)", part)
     assert digit is not None
     changed = part[: digit.start()] + str(9 - int(digit.group())) + part[digit.end() :]
-    page = README.replace(part, changed)
-    assert page != README and make["quoted"](page) == README
+    wrong = page.replace(part, changed)
+    assert wrong != page and make["quoted"](wrong) == page
 
 
 def test_every_race_of_the_data_is_quoted(make: dict[str, Any]) -> None:
@@ -85,9 +93,9 @@ def test_no_measured_figure_is_typed_into_a_notebook(path: Path) -> None:
     assert MEASURED.search(prose) is None
 
 
-def test_no_measured_figure_is_typed_into_the_readme() -> None:
-    unmarked = MARKED.sub("", README)
-    assert len(MARKED.findall(README)) == 2 and MEASURED.search(unmarked) is None
+@pytest.mark.parametrize("name", [name for name in PROSE if "benchmark" not in name])
+def test_no_measured_figure_is_typed_into_a_page(name: str) -> None:
+    assert MEASURED.search(MARKED.sub("", PROSE[name])) is None
 
 
 @pytest.mark.parametrize("text", ["takes 3.1 µs", "12.9 × at 1e-02", "14 ns a sample", "0.2 ms"])

@@ -89,7 +89,7 @@ class Scene(FieldsOnly, Listed):
         Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
         a uniform disc, m (a^2 + b^2)/4.
     slope : float
-        Angle of the ground [rad], downwards in x; |slope| <= 1.5.
+        Angle of the ground [rad], downwards in x; ``|slope| <= 1.5``.
     friction : float
         Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
         as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.

@@ -105,7 +105,7 @@ class Trajectory(FieldsOnly):
     normal_force, friction_force : ndarray, shape (n,)
         Contact force on the body away from and along the ground [N].
     friction_needed : ndarray, shape (n,)
-        |F|/N (infinite where N <= 0 without F = 0).
+        ``|F|/N`` (infinite where N <= 0 without F = 0).
     multipliers : ndarray, shape (n, 4)
         Lagrange multipliers of the four constraints; the first two are F and N.
     energy, kinetic_energy, translational_energy, rotational_energy, potential_energy : ndarray

@@ -106,8 +106,8 @@ def plot_energy(
 ) -> Energy:
     """Draw the energies of a motion [J], or by how much the energy of several motions is off.
 
-    The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
-    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
+    The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
+    a logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
     friction and impacts take is no error: with them it is called a change. Its dots are at the
     samples, or, of fewer than 100, as fine as curves. Modes, events, lost validity and long spans
     are drawn as in `plot_forces`.
@@ -157,9 +157,9 @@ def plot_constraints(
 ) -> Constraints:
     """Draw by how much motions miss their constraints, without units, on a logarithmic scale.
 
-    Lengths are divided by the longer semi-axis, and rates by the largest |omega| of the motion as
-    well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows f2,
-    f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
+    Lengths are divided by the longer semi-axis, and rates by the largest ``|omega|`` of the motion
+    as well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows
+    f2, f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
     `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
     place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
     flight. Dots are at the samples, or, of fewer than 100, as fine as curves. Modes, events, lost

@@ -66,11 +66,12 @@ def plot_forces(
 
     The upper panel shows N and F [N], F over the band +-friction N; where a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
-    impacts, as mean forces over the time that the legend tells. The lower panel shows |F|/N against
-    the coefficient of friction; it is infinite where N <= 0. The ground of the curves is hatched
-    while the body slides, grey in flight, where both forces are 0, and dotted at rest (of several
-    motions, each has a row at the top); dotted lines mark events, those of a single motion with
-    their names where there is room, or counted. Where the model is not valid, all ground is grey.
+    impacts, as mean forces over the time that the legend tells. The lower panel shows ``|F|/N``
+    against the coefficient of friction; it is infinite where N <= 0. The ground of the curves is
+    hatched while the body slides, grey in flight, where both forces are 0, and dotted at rest (of
+    several motions, each has a row at the top); dotted lines mark events, those of a single motion
+    with their names where there is room, or counted. Where the model is not valid, all ground is
+    grey.
 
     The curves are those of the motion itself, whatever samples the trajectory has. More half turns
     than can be told apart are drawn as ranges: from the least to the largest value in each of 800
@@ -80,7 +81,7 @@ def plot_forces(
     ----------
     trajectories : Trajectory or sequence of Trajectory
     ax : matplotlib Axes or two of them, optional
-        Where to draw the forces, and |F|/N if there is a second one; without it, both in a new
+        Where to draw the forces, and ``|F|/N`` if there is a second one; without it, both in a new
         pyplot figure.
     {figsize}
     {motions}

@@ -30,8 +30,8 @@ class Certificate(Listed):
         Its angle theta in [0, pi/2]; by symmetry it occurs at every +-theta + k pi that the motion
         reaches. On a slope the angle itself, unwrapped; None for an infinite force.
     largest_friction_needed : float or None
-        Largest |F/N| over the whole motion (infinite where N <= 0); on a slope infinite where the
-        least normal force is -inf.
+        Largest ``|F/N|`` over the whole motion (infinite where N <= 0); on a slope infinite where
+        the least normal force is -inf.
     largest_friction_needed_angle : float or None
         Its angle, as above.
     ends_at : float or None
@@ -62,8 +62,8 @@ def certify(scene: Scene) -> Certificate:
     """Prove, without integrating, whether rolling is valid for the motion that starts from a scene.
 
     On level ground N and F of rolling are rational functions of the height h of the centre. The
-    signs of a quintic (N > 0) and of a polynomial of degree 10 (|F| <= friction N) on the heights
-    that the motion reaches are decided by Bernstein coefficients with subdivision; every
+    signs of a quintic (N > 0) and of a polynomial of degree 10 (``|F| <= friction N``) on the
+    heights that the motion reaches are decided by Bernstein coefficients with subdivision; every
     coefficient carries the margin by which rounding may have moved it. The extremes are taken at
     critical points, not at samples.
 

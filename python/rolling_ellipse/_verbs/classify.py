@@ -22,9 +22,9 @@ from .workers import shared
 class Thresholds(FieldsOnly, Listed):
     """Speeds, angles and coefficients at which the motion on level ground changes its kind.
 
-    Speeds are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2] [rad],
-    None if the speed or coefficient before it is infinite (it never happens). `lift_off_speed` and
-    `jam_speeds` are computed when first asked for, in some milliseconds.
+    Speeds are ``|omega|`` when passing the flat position [rad/s]; angles are theta in [0, pi/2]
+    [rad], None if the speed or coefficient before it is infinite (it never happens).
+    `lift_off_speed` and `jam_speeds` are computed when first asked for, in some milliseconds.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Thresholds(FieldsOnly, Listed):
         (narrower ranges may be missed). Their ends are refined by bisection; they are known to
         some 1e-5 where slides run into the point at which pressure and response vanish together.
     friction_to_roll_over : float
-        Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
+        Largest ``|F/N|`` of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float
         Least friction coefficient for which sliding can jam, and where.
     rocking_rate : float
@@ -126,7 +126,7 @@ def classify(
 
     So a body that starts beyond the angles at which it would slip rolls over first and slips later;
     `certify` covers the whole motion. The answers are the proved signs of the polynomials of N and
-    of friction N - |F| on the heights that the motion meets (Bernstein coefficients with
+    of ``friction N - |F|`` on the heights that the motion meets (Bernstein coefficients with
     subdivision, every coefficient with its margin for rounding).
 
     Parameters

@@ -60,11 +60,11 @@ def flow(
     theta, omega, x : float or ndarray
         Angle [rad], angular velocity [rad/s], path of the centre since the start [m]; floats if all
         arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
-        |h'| within 8 ulp of h) stays. The last bits may depend on the number of times: many times
-        of one motion are evaluated by Taylor series about points of it. Their x then has a rounding
-        error of 2e-16 max(a, b), also where the body has returned to its start and x is small. Many
-        motions at one time each are computed side by side in the vectors of the processor (SSE2,
-        AVX2 or AVX-512), with the bits that each has alone.
+        ``|h'|`` within 8 ulp of h) stays. The last bits may depend on the number of times: many
+        times of one motion are evaluated by Taylor series about points of it. Their x then has a
+        rounding error of 2e-16 max(a, b), also where the body has returned to its start and x is
+        small. Many motions at one time each are computed side by side in the vectors of the
+        processor (SSE2, AVX2 or AVX-512), with the bits that each has alone.
 
     Raises
     ------

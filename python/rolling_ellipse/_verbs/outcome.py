@@ -77,11 +77,11 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
 def required_friction(scene: Scene, *, to: Literal["roll", "rest"] = "roll") -> float:
     """Return the least coefficient of friction with which the ground holds the rolling for ever.
 
-    It is the larger of two coefficients. The blow requires |Λx|/Λz of the sticking contact, or
-    |Gnt|/Gtt if that is more: then its slip stops before the compression ends, and does not begin
-    again (the collision law of `Scene.initial_state`). The rolling that follows requires the
-    largest |F|/N: on level ground that of `certify`, over the whole motion; on a slope that of a
-    circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
+    It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
+    ``|Gnt|/Gtt`` if that is more: then its slip stops before the compression ends, and does not
+    begin again (the collision law of `Scene.initial_state`). The rolling that follows requires the
+    largest ``|F|/N``: on level ground that of `certify`, over the whole motion; on a slope that of
+    a circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
     along the angle, by a scan and golden section). The scene's own friction has no effect.
 
     Parameters
@@ -89,8 +89,8 @@ def required_friction(scene: Scene, *, to: Literal["roll", "rest"] = "roll") -> 
     scene : Scene
     to : {"roll", "rest"}
         "rest": the friction with which the body, whatever its start, can lie still on its slope:
-        tan(slope), or infinite where it is steeper than |a^2 - b^2|/(2 a b), the largest lead of
-        the contact over the height of the centre.
+        tan(slope), or infinite where it is steeper than ``|a^2 - b^2|/(2 a b)``, the largest lead
+        of the contact over the height of the centre.
 
     Returns
     -------

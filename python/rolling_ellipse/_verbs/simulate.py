@@ -112,10 +112,10 @@ def simulate(
         says both. A sample at an event has the state after it. Samples between steps have the
         accuracy of the method. A StabilityWarning is issued for an integrated motion that has lost,
         at steps or between them: a hundredth of its energy (or ten times rtol, if that is more),
-        measured by the largest kinetic plus |potential| energy, with x from the start; a thousandth
-        of the long semi-axis in its constraints; or a tenth of it in the constraints of a single
-        step, whose projection then moves the body elsewhere. It is also issued for gains of
-        Baumgarte that are unstable at the given step.
+        measured by the largest kinetic plus ``|potential|`` energy, with x from the start; a
+        thousandth of the long semi-axis in its constraints; or a tenth of it in the constraints of
+        a single step, whose projection then moves the body elsewhere. It is also issued for gains
+        of Baumgarte that are unstable at the given step.
 
     Raises
     ------

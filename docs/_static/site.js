@@ -1,0 +1,8 @@
+// What scrolls can be scrolled by keys, and the two sidebars have names of their own.
+addEventListener("DOMContentLoaded", () => {
+  for (const box of document.querySelectorAll("pre, .table-wrapper, mjx-container[display=true]"))
+    if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+  const names = { "sidebar-drawer": "Site", "toc-drawer": "On this page" };
+  for (const side of document.querySelectorAll("aside"))
+    for (const name of side.classList) if (names[name]) side.setAttribute("aria-label", names[name]);
+});
