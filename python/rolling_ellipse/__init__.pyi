@@ -48,6 +48,7 @@ from ._verbs.certify import certify as certify
 from ._verbs.classify import Thresholds as Thresholds
 from ._verbs.classify import classify as classify
 from ._verbs.classify import thresholds as thresholds
+from ._verbs.examples import examples as examples
 from ._verbs.fit_motion import Fit as Fit
 from ._verbs.fit_motion import fit_motion as fit_motion
 from ._verbs.flow import flow as flow

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from matplotlib import rcParams
 
-from . import StabilityWarning, Status, Trajectory, simulate
+from . import StabilityWarning, Status, Trajectory, examples, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
@@ -23,6 +23,7 @@ from ._show.command.benchmark import act, benchmark_parser
 from ._show.command.options import (
     PROGRAM,
     chosen_scene,
+    examples_parser,
     explore_parser,
     motion_parser,
     require_file,
@@ -47,12 +48,13 @@ def main(arguments: list[str] | None = None) -> int:
         cannot be written. A StabilityWarning is a line, too.
     """
     typed = sys.argv[1:] if arguments is None else arguments
-    command = typed[0] if typed[:1] in (["explore"], ["benchmark"]) else ""
-    parser, action = {
-        "": (motion_parser, _motion),
+    commands = {
         "explore": (explore_parser, _page),
         "benchmark": (benchmark_parser, act),
-    }[command]
+        "examples": (examples_parser, _examples),
+    }
+    command = typed[0] if typed and typed[0] in commands else ""
+    parser, action = commands.get(command, (motion_parser, _motion))
     options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
@@ -116,6 +118,11 @@ def _page(options: argparse.Namespace) -> tuple[int, str]:
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
         message += "\nno browser was found: open the file in one"
     return 0, message
+
+
+def _examples(options: argparse.Namespace) -> tuple[int, str]:
+    """Write the notebooks and the tables, and return 0 and a text."""
+    return 0, f"written           {len(examples(options.folder))} files"
 
 
 def _complain(error: Exception | Warning | str) -> None:

@@ -75,7 +75,7 @@ def motion_parser() -> OneLineParser:
         PROGRAM,
         "Simulate an ellipse on the ground, and say what happens.",
         f"{PROGRAM} explore [options] writes a page to play with the scene in a browser; "
-        f"{PROGRAM} benchmark tests other simulators.",
+        f"{PROGRAM} benchmark tests other simulators; {PROGRAM} examples DIR writes notebooks.",
     )
     found.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
     found.add_argument("--model", choices=MODELS, default="auto", help="how it moves")
@@ -95,6 +95,14 @@ def explore_parser() -> OneLineParser:
     found.add_argument("--language", choices=LANGUAGES, default="en", help="of the page")
     found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
     found.add_argument("--no-open", action="store_true", help="write it and open no browser")
+    return found
+
+
+def examples_parser() -> OneLineParser:
+    """Return the parser of `examples`."""
+    about = "Write the notebooks, without outputs, and the tables of reference states."
+    found = OneLineParser(prog=f"{PROGRAM} examples", description=about)
+    found.add_argument("folder", metavar="DIR", help="made if it does not exist")
     return found
 
 

@@ -1,0 +1,53 @@
+"""The notebooks and the tables of reference states, which come with the package."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from zipfile import ZipFile
+
+from .. import _core
+from .._ask.check import file_name
+from .._motion.export.atomic import replacing
+
+_ARCHIVE = "examples.zip"  # beside the core, written by tools/pack_examples.py in every build
+
+
+def examples(folder: str | PathLike[str]) -> list[Path]:
+    """Write the notebooks, without outputs, and the tables of reference states into a folder.
+
+    The tables, in ``folder/reference``, hold states computed in 30 to 80 digits by programs that
+    share no code with the package.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist. Files that are there already and equal those to be written stay.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    ValueError
+        If the folder has another file of one of the names, such as a notebook that has been run;
+        nothing is written then.
+    TypeError
+        If `folder` is no path.
+    OSError
+        If a file cannot be written. Each file is there whole or not at all.
+    """
+    place = Path(file_name("folder", folder))
+    with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:
+        files = {place / name: archive.read(name) for name in archive.namelist()}
+    there = {path for path in files if path.exists()}
+    if changed := [path.name for path in sorted(there) if path.read_bytes() != files[path]]:
+        raise ValueError(f"folder must not have another {', '.join(changed)}, got {str(place)!r}")
+    missing = sorted(files.keys() - there)
+    for path in missing:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as new:
+            new.write_bytes(files[path])
+    return missing

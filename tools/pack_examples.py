@@ -1,0 +1,36 @@
+"""Pack the notebooks, without outputs, and the tables of reference states into one archive.
+
+CMake runs `pack_examples.py FILE.zip` with a plain Python; the same sources give the same bits.
+"""
+
+import json
+import sys
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def without_outputs(path: Path) -> str:
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            cell |= {"outputs": [], "execution_count": None}
+    return json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+
+
+def main() -> None:
+    notebooks = {path.name: without_outputs(path) for path in ROOT.glob("notebooks/*.ipynb")}
+    plain = [*ROOT.glob("notebooks/*.py"), *ROOT.glob("reference/*.csv")]
+    files = notebooks | {
+        path.relative_to(ROOT).as_posix().removeprefix("notebooks/"): path.read_text("utf-8")
+        for path in plain
+    }
+    with zipfile.ZipFile(sys.argv[1], "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(files):
+            # a ZipInfo has a fixed date
+            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED)
+
+
+if __name__ == "__main__":
+    main()
