@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-import nbformat
 import numpy as np
 import pytest
 import rolling_ellipse as rl
@@ -393,18 +392,3 @@ def test_a_swipe_scrolls_the_page_except_on_the_hand(opened: Opened) -> None:
             page.evaluate("new Promise(requestAnimationFrame)")
         assert (page.evaluate("scrollY") > 30, blow(page) == before) == (scrolls, scrolls)
         page.evaluate("scrollTo(0, 0)")
-
-
-def test_an_exported_notebook_without_a_kernel_still_drags(opened: Opened) -> None:
-    exporters = pytest.importorskip("nbconvert.exporters", reason="there is no nbconvert")
-    film = rl.animate(rl.simulate(rl.scenes.report, 3.0))
-    shown = [each._repr_html_() for each in (rl.explore(rl.scenes.report), film)]
-    outputs = [nbformat.v4.new_output("display_data", {"text/html": each}) for each in shown]
-    cell = nbformat.v4.new_code_cell("", outputs=outputs)
-    html, _ = exporters.HTMLExporter().from_notebook_node(nbformat.v4.new_notebook(cells=[cell]))
-    page = opened(html, strict=False, viewport={"width": 1000, "height": 1400})  # MathJax needed
-    before = blow(page)
-    drag(page, (-60, 20), steps=4)
-    page.mouse.up()
-    assert blow(page) != before
-    page.wait_for_function("document.querySelectorAll('.rolling-ellipse')[1].player.t > 0.2")

@@ -320,9 +320,3 @@ def test_every_source_is_built_and_included_once() -> None:
             assert len(re.findall(rf"\b{re.escape(name)}\b", build)) == 1, name
         else:
             assert "#pragma once" in path.read_text(encoding="utf-8"), path.name
-
-
-def test_it_carries_its_types() -> None:
-    installed = Path(rolling_ellipse.__file__).resolve().parent
-    for name in ("py.typed", "_core.pyi", "__init__.pyi"):
-        assert (installed / name).exists(), name

@@ -104,12 +104,6 @@ HEADERS = [
     pickle.dumps(Path("x")),
 ]  # fmt: skip
 
-
-def taken(folder: Path) -> Any:
-    (folder / "01_first_roll.ipynb").write_text("mine")
-    return rl.examples(folder)
-
-
 REFUSALS: list[Row] = [
     ("path", lambda folder: MOTION.save(folder / "a.csv")),
     # members
@@ -142,7 +136,7 @@ REFUSALS: list[Row] = [
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders
-    ("folder", taken),
+    ("folder", lambda folder: [(folder / "02_physics.ipynb").touch(), rl.examples(folder)]),
     ("path", lambda _: MOTION.save("")),
     (IsADirectoryError, lambda folder: MOTION.save(f"{folder}/")),
     (FileNotFoundError, lambda folder: MOTION.save(folder / "no/a.npz")),

@@ -10,7 +10,7 @@ from .. import _core
 from .._ask.check import file_name
 from .._motion.export.atomic import replacing
 
-_ARCHIVE = "examples.zip"  # beside the core, written by tools/pack_examples.py in every build
+_ARCHIVE = "examples.zip"  # beside the core, written by notebooks/pack.py in every build
 
 
 def examples(folder: str | PathLike[str]) -> list[Path]:

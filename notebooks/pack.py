@@ -1,6 +1,7 @@
 """Pack the notebooks, without outputs, and the tables of reference states into one archive.
 
-CMake runs `pack_examples.py FILE.zip` with a plain Python; the same sources give the same bits.
+CMake runs `pack.py FILE.zip` with a plain Python, for the package's `examples`; the same sources
+give the same bits.
 """
 
 import json
@@ -21,10 +22,10 @@ def without_outputs(path: Path) -> str:
 
 def main() -> None:
     notebooks = {path.name: without_outputs(path) for path in ROOT.glob("notebooks/*.ipynb")}
-    plain = [*ROOT.glob("notebooks/*.py"), *ROOT.glob("reference/*.csv")]
+    modules = [path for path in ROOT.glob("notebooks/*.py") if path.name != Path(__file__).name]
     files = notebooks | {
         path.relative_to(ROOT).as_posix().removeprefix("notebooks/"): path.read_text("utf-8")
-        for path in plain
+        for path in (*modules, *ROOT.glob("reference/*.csv"))
     }
     with zipfile.ZipFile(sys.argv[1], "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in sorted(files):
