@@ -121,14 +121,24 @@ def test_tables_are_what_their_scripts_print(table: Path, script: Path) -> None:
 def test_one_version() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     version = settings["project"]["version"]
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    found = re.search(r"^version:\s*\"?([^\"\s]+)", citation, re.MULTILINE)
-    assert found and found[1] == version
+    for name in ("CITATION.cff", "recipe/recipe.yaml"):
+        text = (ROOT / name).read_text(encoding="utf-8")
+        assert re.findall(r"^ *version: ([\w.]+)$", text, re.MULTILINE) == [version], name
+    assert f"\n## {version}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert rolling_ellipse.__version__ == version
     # the version is written in no other source
     literal = f'"{version}"'
     for path in (*SOURCES, *(ROOT / "python").rglob("*.py"), ROOT / "CMakeLists.txt"):
         assert literal not in path.read_text(encoding="utf-8"), path
+
+
+def test_the_recipe_for_conda_needs_what_the_package_needs() -> None:
+    rattler = pytest.importorskip("rattler_build", reason="there is no py-rattler-build")
+    variant = rattler.VariantConfig({"c_stdlib": ["sysroot"], "cxx_compiler": ["gxx"]})
+    (made,) = rattler.Stage0Recipe.from_file(ROOT / "recipe" / "recipe.yaml").render(variant)
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["dependencies"]
+    there = [each.replace(" ", "").replace("-base", "") for each in made.recipe.requirements.run]
+    assert there == ["python", *needed]
 
 
 def test_every_requirement_states_its_oldest_version() -> None:

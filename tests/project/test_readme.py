@@ -1,6 +1,8 @@
 """The Python code of the README and of the guides runs, one block of a page after another."""
 
 import re
+import runpy
+import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -49,6 +51,21 @@ def test_the_tables_of_reference_have_as_many_motions_as_it_says() -> None:
 
 
 def test_the_readme_is_short_and_its_links_lead_somewhere() -> None:
-    linked = re.findall(r"\]\((?!https?:)([^)#]+)", README)
+    linked = re.findall(r"\]\((?:https://.+?/(?:raw|blob)/main/)?([^)#]+)", README)
     assert len(linked) > 20 and all((ROOT / path).exists() for path in linked)
     assert len(README.splitlines()) <= 120
+
+
+def test_one_command_writes_the_address(tmp_path: Path) -> None:
+    """A second address takes the place of the first."""
+    names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml")
+    (tmp_path / "recipe").mkdir()
+    write = runpy.run_path(str(ROOT / "docs" / "address.py"))["write"]
+    for name in names:
+        (tmp_path / name).write_bytes((ROOT / name).read_bytes())
+    for address in ("https://one.example/who/re", "https://two.example/re"):
+        write(tmp_path, address, "https://site.example")
+        texts = [(tmp_path / name).read_text(encoding="utf-8") for name in names]
+        assert all(address in text and "https://site.example" in texts[1] for text in texts)
+        assert "](docs/" not in texts[0] and tomllib.loads(texts[1])["project"]["urls"]
+    assert not any("one.example" in text for text in texts)

@@ -1,0 +1,70 @@
+"""Write the project's public address into every place that needs one: python docs/address.py URL
+
+The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
+`main`. Until it is known, the README has relative links, which PyPI cannot follow. Run again with
+another address, it replaces the first one. --site URL is the address of the built site.
+"""
+
+import argparse
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+LINK = re.compile(
+    r"(!?)\[([^\]]*)\]\((?:https?://[^)\s]*?/(?:raw|blob)/main/)?(?!https?:|#)([^)\s]+)\)"
+)
+
+
+def readme(text: str, address: str) -> str:
+    """The text with absolute links; pictures are those of the raw files."""
+
+    def absolute(found: re.Match[str]) -> str:
+        kind = "raw" if found[1] else "blob"
+        return f"{found[1]}[{found[2]}]({address}/{kind}/main/{found[3]})"
+
+    return LINK.sub(absolute, text)
+
+
+def with_urls(text: str, address: str, site: str) -> str:
+    """pyproject.toml with its table of addresses."""
+    table = (
+        f'[project.urls]\nHomepage = "{site}"\nRepository = "{address}"\n'
+        f'Issues = "{address}/issues"\nChangelog = "{address}/blob/main/CHANGELOG.md"\n\n'
+    )
+    text = re.sub(r"\[project\.urls\]\n(?:\w+ = .*\n)+\n", "", text)
+    return text.replace("[project.scripts]\n", table + "[project.scripts]\n")
+
+
+def with_field(text: str, field: str, value: str, before: str) -> str:
+    """YAML with a field before a line, in the indent of that line."""
+    text = re.sub(rf"^ *{field}: .*\n", "", text, flags=re.MULTILINE)
+    return re.sub(rf"^( *){before}", rf"\g<1>{field}: {value}\n\g<0>", text, flags=re.MULTILINE)
+
+
+def write(root: Path, address: str, site: str) -> None:
+    changes = {
+        "README.md": lambda text: readme(text, address),
+        "pyproject.toml": lambda text: with_urls(text, address, site),
+        "CITATION.cff": lambda text: with_field(text, "repository-code", address, "license: "),
+        "recipe/recipe.yaml": lambda text: with_field(
+            with_field(text, "repository", address, "license: "), "homepage", site, "license: "
+        ),
+    }
+    for name, change in changes.items():
+        path = root / name
+        path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(usage="%(prog)s URL [--site URL]")
+    options.add_argument("url")
+    options.add_argument("--site", help="address of the built site; without it, the repository")
+    chosen = options.parse_args()
+    address = chosen.url.rstrip("/")
+    if not re.fullmatch(r"https://[\w.-]+(/[\w.-]+)+", address):
+        options.error(f"URL must be like https://host/owner/name, got {chosen.url!r}")
+    write(ROOT, address, (chosen.site or address).rstrip("/"))
+
+
+if __name__ == "__main__":
+    main()
