@@ -2,13 +2,14 @@
 
 from importlib.metadata import version as installed
 from pathlib import Path
-from shutil import copytree
+from shutil import copytree, rmtree
 
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
 LIVE = HERE / "live"  # a page of its own, copied as it is; the page `explore` shows it
-copytree(HERE.parent / "notebooks", HERE / "notebooks", dirs_exist_ok=True)  # git ignores it
+rmtree(HERE / "notebooks", ignore_errors=True)
+copytree(HERE.parent / "notebooks", HERE / "notebooks")  # git ignores it
 
 project, author, language = "rolling_ellipse", "The rolling_ellipse developers", "en"
 copyright = author

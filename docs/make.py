@@ -6,7 +6,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     races      docs/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/batches.json, by benchmarks/bench_batches.py
     engines    docs/engines.json, by the adapters of rolling_ellipse.benchmark
-    pictures   docs/*.png and *.gif, by docs/make_pictures.py
+    pictures   docs/*.png and *.gif, by docs/make_pictures.py; paper/*.png, by paper/figures.py
     problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of docs/speed.md, many.md and benchmark.md, from those files
@@ -79,6 +79,7 @@ def engines(quick: bool) -> None:
 
 def pictures(quick: bool) -> None:
     run(HERE / "make_pictures.py")
+    run(ROOT / "paper" / "figures.py")
 
 
 def problems(quick: bool) -> None:

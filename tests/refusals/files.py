@@ -136,7 +136,7 @@ REFUSALS: list[Row] = [
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders
-    ("folder", lambda folder: [(folder / "02_physics.ipynb").touch(), rl.examples(folder)]),
+    ("folder", lambda folder: [(folder / "02_physics.ipynb").write_text(""), rl.examples(folder)]),
     ("path", lambda _: MOTION.save("")),
     (IsADirectoryError, lambda folder: MOTION.save(f"{folder}/")),
     (FileNotFoundError, lambda folder: MOTION.save(folder / "no/a.npz")),
