@@ -1,5 +1,6 @@
 """Settings of the site: python -m sphinx docs OUT, after pip install '.[docs]'; no network."""
 
+import re
 from importlib.metadata import version as installed
 from pathlib import Path
 from shutil import copytree, rmtree
@@ -29,7 +30,7 @@ html_show_search_summary = False  # it reads pages, which a browser forbids from
 
 
 def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
-    text[0] = text[0].replace("](../notebooks/", "](notebooks/")
+    text[0] = re.sub(r"(\]\((?:\.\./)*)\.\./notebooks/", r"\1notebooks/", text[0])
 
 
 def setup(app: Sphinx) -> None:
