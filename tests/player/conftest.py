@@ -44,9 +44,8 @@ def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
                     if not request.url.startswith(("file:", "data:")) else None)  # fmt: skip
         page.goto(path.as_uri())
         if options.get("java_script_enabled", True):  # pages unzip their data before they start
-            page.wait_for_function(
-                "[...document.querySelectorAll('.rolling-ellipse')].every((host) => host.player)"
-            )
+            for host in page.locator(".rolling-ellipse").all():  # without eval, for strict policies
+                host.locator(".player").wait_for(state="attached")
         return page
 
     yield show

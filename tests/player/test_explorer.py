@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -56,19 +55,6 @@ def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
     assert found["outcomes"] == [Outcome.ROCKS] * 3 + [Outcome.ROLLS_OVER]
     assert found["headlines"][3] == [["lands"], ["ROLLS_OVER_now"]]
     assert blows.table(bounce, 5.4, two[:1], two[1:])["headlines"] == ([["bounces"]],)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_the_code_that_is_copied_makes_the_same_motion(name: str) -> None:
-    scene = SCENES[name]
-    explorer = rl.explore(scene)
-    F, d = float(explorer.strengths[4]), float(explorer.distances[20])
-    lines = blows.code(scene, explorer.t_end).replace("{F}", repr(F)).replace("{d}", repr(d))
-    made: dict[str, Any] = {}
-    exec(lines, made)
-    expected = replace(scene, impulse=rl.Impulse.press(F, d))
-    assert made["scene"] == expected
-    assert made["trajectory"].t[-1] == explorer.t_end
 
 
 def test_pages(tmp_path: Path) -> None:

@@ -85,8 +85,8 @@ CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
         [path for path in SOURCES if path not in GENERATED], "wide.cpp", "int   f( ){return 1;}\n",
     ),
     "oxlint": (
-        [SCRIPTS / "oxlint", "--deny-warnings"], ["python/rolling_ellipse/_player"], "unused.js",
-        "const x = 1;\n",
+        [SCRIPTS / "oxlint", "--deny-warnings"],
+        ["python/rolling_ellipse/_player", "docs/live"], "unused.js", "const x = 1;\n",
     ),
 }  # fmt: skip
 each_tool = pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import numpy as np
 from .. import _core
 from .._ask.check import FloatArray
 from .._ask.reason import AS_IT_MOVES, effect, motion_after
-from .._ask.scene import Impulse, Scene
+from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._ask.settings import DEFAULTS
 from .._core import Mode, Outcome, Validity
 from .._motion.samples import even_times
@@ -86,8 +86,6 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
         "names": NAMES,
         "colours": [*(COLOURS[outcome] for outcome in Outcome), COLOURS[Outcome.LOSES_CONTACT]],
         "code": code(scene, t_end),
-        "cut": CUT,
-        "least": LEAST,
     }
 
 
@@ -182,6 +180,13 @@ def code(scene: Scene, t_end: float) -> str:
         f"scene = rolling_ellipse.{scene.replace(impulse=None)!r}.replace(impulse=blow)\n"
         f"trajectory = rolling_ellipse.simulate(scene, {t_end!r})\n"
     )
+
+
+def numbers(scene: Scene) -> dict[str, float | None]:
+    """Return the numbers of a scene in types of JSON: infinite friction is None."""
+    found = {name: getattr(scene, name) for name in SCENE_UNITS}
+    found |= {name: getattr(scene.impulse, name, None) for name in ("jx", "jz", "dx", "dz")}
+    return found | {"friction": scene.friction if scene.friction < math.inf else None}
 
 
 def view(scene: Scene) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 // The player with a blow to move over the body: a table of motions, one for each place and
-// strength. It needs track.js, strip.js and player.js.
+// strength. It needs track.js, strip.js, player.js and charts.js.
 
 const STROBES = 8;
 const STEPS = { // of place and strength, by a key on the map
@@ -23,27 +23,35 @@ export class Explorer extends Player {
   build(shadow) {
     super.build(shadow);
     const find = (words) => this.box.querySelector(words);
-    [this.where, this.hard] = [find(".where"), find(".hard")];
     [this.map, this.plot] = [find(".map canvas"), find(".plot canvas")];
-    this.where.oninput = () => this.strike(Number(this.where.value), this.j);
-    this.hard.oninput = () => this.strike(this.i, Number(this.hard.value));
-    find(".said button").onclick = ({ currentTarget }) => this.copy(currentTarget);
+    find(".copy").onclick = ({ currentTarget }) => this.copy(currentTarget, this.code());
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
     const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
     this.grab(this.map, mouse, (event) => this.pointed(event));
+    this.hands(find);
     this.describe();
   }
 
-  /** Leave their own keys to the sliders, and move the blow on the map. */
+  /** Connect the sliders of the page. */
+  hands(find) {
+    [this.where, this.hard] = [find(".where"), find(".hard")];
+    this.where.oninput = () => this.strike(Number(this.where.value), this.j);
+    this.hard.oninput = () => this.strike(this.i, Number(this.hard.value));
+  }
+
+  /** Move on the map by keys. */
   key(event) {
     const { key, target } = event, step = STEPS[key];
-    if (!step || event.ctrlKey || event.altKey || event.metaKey) return super.key(event);
-    if (target === this.where || target === this.hard) return;
-    if (target !== this.map) return super.key(event);
+    if (!step || target !== this.map || event.ctrlKey || event.altKey || event.metaKey)
+      return super.key(event);
     event.preventDefault();
+    this.move(...step);
+  }
+
+  move(places, strengths) {
     const { d, F } = this.film.table, within = (i, { length }) =>
       Math.min(length - 1, Math.max(0, i));
-    this.strike(within(this.i + step[0], d), within(this.j + step[1], F));
+    this.strike(within(this.i + places, d), within(this.j + strengths, F));
   }
 
   /** Call `moved` for a pointer from a press that `holds` accepts to its release, and for a tap. */
@@ -88,15 +96,25 @@ export class Explorer extends Player {
   dragged({ offsetX, offsetY }) {
     const { x, z } = this.strip.motion.at(0), { clientWidth } = this.box;
     const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
-    this.strike(nearest(this.film.table.d, px - x),
-      nearest(this.film.table.F, this.strength(pz - z)));
+    const { d, F } = this.film.table;
+    this.strike(this.placeOf(px - x, d), this.placeOf(this.strength(pz - z), F));
   }
 
   pointed({ offsetX, offsetY }) {
-    const { d, F } = this.film.table, { left, top, across, up } = this.cells();
-    const place = (part, count) => Math.min(count - 1, Math.max(0, Math.floor(part * count)));
-    this.strike(place((offsetX - left) / across, d.length),
-      place(1 - (offsetY - top) / up, F.length));
+    const { d, F } = this.film.table, { left, top, across, up } = cellsOf(this.map);
+    this.strike(this.cellAt((offsetX - left) / across, d.length),
+      this.cellAt(1 - (offsetY - top) / up, F.length));
+  }
+
+  /** The place in a table of the value nearest to one. */
+  placeOf(value, values) {
+    return values.reduce((best, each, i) =>
+      (Math.abs(each - value) < Math.abs(values[best] - value) ? i : best), 0);
+  }
+
+  /** The cell at a part of the map's width or height. */
+  cellAt(part, count) {
+    return Math.min(count - 1, Math.max(0, Math.floor(part * count)));
   }
 
   blow() {
@@ -111,7 +129,10 @@ export class Explorer extends Player {
       [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
     this.take(this.strip, columns);
     this.strip.events = table.events[n];
-    this.curves = forces(this.strip.motion, this.strip.weight);
+    this.told = { headline: table.headlines[n], reasons: table.reasons[n],
+      name: table.names[table.outcomes[n]] };
+    const { weight } = this.strip, states = this.strip.motion.states(PARTS);
+    this.curves = ["N", "F"].map((name) => curveOf(states.map((at) => [at.t, at[name] / weight])));
   }
 
   /** Show the motion after a blow, from its beginning. */
@@ -126,42 +147,51 @@ export class Explorer extends Player {
     this.draw();
   }
 
-  /** Write what the blow does, and speak where it is; the reason only when another one holds. */
-  describe() {
-    const { table } = this.film, { n } = this, { d, F } = this.blow();
+  /** Write what happens, and speak it when another reason holds. */
+  tell() {
+    const { headline, reasons } = this.told;
     const told = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
-    const events = table.events[n].map(([t, kind]) =>
+    const events = this.strip.events.map(([t, kind]) =>
       this.say("event", { event: this.say(kind), t }));
     if (events.length > 8) events.splice(8, events.length, this.say("more", {
       count: events.length - 8 }));
-    const lines = [told(table.headlines[n]), told(table.reasons[n]), events.join(", ")];
-    const said = this.box.querySelector(".said").children;
+    const lines = [told(headline), told(reasons), events.join(", ")];
+    const said = this.box.querySelectorAll(".said p");
     lines.forEach((text, k) => { said[k].textContent = text; });
     const spoken = this.box.querySelector(".spoken");
-    const kind = [...table.headlines[n], ...table.reasons[n]].map(([key]) => key).join();
+    const kind = [...headline, ...reasons].map(([key]) => key).join();
     if (spoken.dataset.kind !== kind) spoken.textContent = `${lines[0]} ${lines[1]}`;
     spoken.dataset.kind = kind;
+    const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
+    this.plot.setAttribute("aria-label", this.say("forces_spoken", { t: this.strip.motion.end,
+      N_least: N.least, N_most: N.most, F_least: shear.least, F_most: shear.most }));
+    const { cut } = this.film;
+    const isCut = Math.max(N.most, shear.most) > cut[1] || shear.least < cut[0];
+    this.plot.nextElementSibling.textContent = this.say("forces")
+      + (isCut ? this.say("forces_cut", { peak }) : "");
+  }
+
+  /** Write what the blow does, and speak where it is. */
+  describe() {
+    const { d, F } = this.blow();
+    this.tell();
     [this.where.value, this.hard.value] = [this.i, this.j];
     this.where.nextElementSibling.value = this.say("place", { d });
     this.hard.nextElementSibling.value = this.say("strength", { F });
     const [place, strength] = [this.say("place_spoken", { d }), this.say("strength_spoken", { F })];
     this.where.setAttribute("aria-valuetext", place);
     this.hard.setAttribute("aria-valuetext", strength);
-    this.map.setAttribute("aria-valuenow", n + 1);
-    this.map.setAttribute("aria-valuetext",
-      `${place}, ${strength}: ${this.say(table.names[table.outcomes[n]])}`);
-    const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
-    this.plot.setAttribute("aria-label", this.say("forces_spoken", { t: this.strip.motion.end,
-      N_least: N.least, N_most: N.most, F_least: shear.least, F_most: shear.most }));
-    const cut = Math.max(N.most, shear.most) > table.cut[1] || shear.least < table.cut[0];
-    this.plot.nextElementSibling.textContent = this.say("forces")
-      + (cut ? this.say("forces_cut", { peak }) : "");
+    this.map.setAttribute("aria-valuenow", this.n + 1);
+    this.map.setAttribute("aria-valuetext", `${place}, ${strength}: ${this.say(this.told.name)}`);
     this.host.dataset.blow = `${d} ${F}`;
   }
 
-  async copy(button) {
+  code() {
     const { d, F } = this.blow();
-    const lines = this.film.table.code.replace("{F}", F).replace("{d}", d);
+    return this.film.table.code.replace("{F}", F).replace("{d}", d);
+  }
+
+  async copy(button, lines) {
     this.host.dataset.code = lines;
     try {
       await navigator.clipboard.writeText(lines);
@@ -203,78 +233,29 @@ export class Explorer extends Player {
     this.paintPlot(sized(this.plot, this.plot.clientHeight));
   }
 
-  cells() {
-    const [left, top] = [52, 10];
-    return { left, top, across: this.map.clientWidth - left - 12,
-      up: this.map.clientHeight - top - 36 };
-  }
-
   paintMap(ink) {
-    const { table } = this.film, { d, F } = table, { left, top, across, up } = this.cells();
-    const [wide, tall] = [across / d.length, up / F.length];
-    const corner = (i, j) => [left + i * wide, top + up - (j + 1) * tall];
+    const { table } = this.film, { d, F } = table, area = cellsOf(this.map);
+    const [wide, tall] = [area.across / d.length, area.up / F.length];
+    const corner = (i, j) => [area.left + i * wide, area.top + area.up - (j + 1) * tall];
     table.outcomes.forEach((code, n) => {
       ink.fillStyle = table.colours[code];
       ink.fillRect(...corner(Math.floor(n / F.length), n % F.length), wide + 0.7, tall + 0.7);
     });
-    for (const [style, width] of [[this.colours.paper, 5], [this.colours.ink, 2]]) {
-      Object.assign(ink, { strokeStyle: style, lineWidth: width });
-      ink.strokeRect(...corner(this.i, this.j), wide, tall);
-    }
-    const { grey } = this.colours;
-    [0, (d.length - 1) / 2, d.length - 1].forEach((i) =>
-      text(ink, grey, round(d[i]), left + (i + 0.5) * wide, top + up + 14, "center", 11));
-    [0, F.length - 1].forEach((j) =>
-      text(ink, grey, round(F[j]), left - 5, top + up - (j + 0.5) * tall + 4, "right", 11));
-    text(ink, grey, this.say("map_places"), left + across / 2, top + up + 30, "center", 11);
-    ink.save();
-    ink.translate(14, top + up / 2);
-    ink.rotate(-Math.PI / 2);
-    text(ink, grey, this.say("map_strengths"), 0, 0, "center", 11);
-    ink.restore();
+    paintCursor(ink, this.colours, ...corner(this.i, this.j), wide, tall);
+    const along = (values, places) => places.map((i) => [(i + 0.5) / values.length, values[i]]);
+    paintSides(ink, this.colours, area, along(d, [0, (d.length - 1) / 2, d.length - 1]),
+      along(F, [0, F.length - 1]), [this.say("map_places"), this.say("map_strengths")]);
   }
 
   paintPlot(ink) {
-    const { colours, curves } = this, { end, table: { cut, least: range } } = this.film;
-    const [left, top] = [34, 18], across = this.plot.clientWidth - left - 14;
-    const up = this.plot.clientHeight - top - 24;
-    const high = Math.min(cut[1], Math.max(range[1], ...curves.map(({ most }) => most)));
-    const low = Math.max(cut[0], Math.min(range[0], ...curves.map(({ least }) => least)));
-    const x = (time) => left + (time / end) * across;
-    const y = (part) => top + up * ((high - Math.min(high, Math.max(low, part))) / (high - low));
-    for (let part = Math.ceil(low); part <= high; part++) {
-      line(ink, colours.faint, 1, [[left, y(part)], [left + across, y(part)]]);
-      text(ink, colours.grey, round(part), left - 6, y(part) + 4, "right", 11);
-    }
-    text(ink, colours.grey, "0", left, top + up + 16, "center", 11);
-    text(ink, colours.grey, `${round(end)} s`, left + across, top + up + 16, "right", 11);
-    ink.lineJoin = "round";
-    [["N", colours.blue, []], ["F", colours.orange, [5, 3]]].forEach(([name, colour, dash], k) => {
-      ink.setLineDash(dash);
-      line(ink, colour, 1.8, curves[k].points.map(([time, force]) => [x(time), y(force)]));
-      const place = left + across - 86 + 46 * k;
-      line(ink, colour, 1.8, [[place, top - 9], [place + 22, top - 9]]);
-      ink.setLineDash([]);
-      text(ink, colours.ink, name, place + 31, top - 5);
+    const { curves, film: { cut, least }, strip: { events } } = this;
+    const [N, F] = curves;
+    paintCurves(ink, this.colours, this.plot, [{ ...N, name: "N", colour: "blue", dash: [] },
+      { ...F, name: "F", colour: "orange", dash: [5, 3] }], {
+      high: Math.min(cut[1], Math.max(least[1], N.most, F.most)),
+      low: Math.max(cut[0], Math.min(least[0], N.least, F.least)),
+      end: this.film.end, now: this.t,
+      impacts: events.filter(([, kind]) => kind === "impact").map(([time]) => time),
     });
-    const upright = (colour, time) => line(ink, colour, 1, [[x(time), top], [x(time), top + up]]);
-    for (const [time, kind] of this.strip.events)
-      if (kind === "impact") upright(colours.plum, time);
-    upright(colours.ink, this.t);
   }
-}
-
-/** Both forces over time [s, weights]. */
-function forces(motion, weight) {
-  const states = motion.states(PARTS);
-  return ["N", "F"].map((name) => {
-    const points = states.map((at) => [at.t, at[name] / weight]);
-    const values = points.map(([, force]) => Number(force.toFixed(3)));
-    return { points, least: Math.min(...values), most: Math.max(...values) };
-  });
-}
-
-function nearest(values, value) {
-  return values.reduce((best, each, i) =>
-    (Math.abs(each - value) < Math.abs(values[best] - value) ? i : best), 0);
 }

@@ -10,18 +10,22 @@ from typing import Any, overload
 
 import numpy as np
 
-from .._ask.check import FloatArray, file_name, positive, require_near
+from .._ask.check import FloatArray, file_name, flag, positive, require_near
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Impulse, Scene, require_scene
 from .._motion.export.atomic import replacing
 from . import blows
-from .page import document, escaped, filled, fragment, packaged, words
+from .page import core, document, escaped, filled, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 
 
 def explore(
-    scene: Scene, *, t_end: float | None = None, language: str | Mapping[str, str] = "en"
+    scene: Scene,
+    *,
+    t_end: float | None = None,
+    language: str | Mapping[str, str] = "en",
+    live: bool = False,
 ) -> Explorer:
     """Let the reader strike the body: where and how hard, by dragging a hand over it.
 
@@ -40,6 +44,11 @@ def explore(
         it 12 times that root.
     language : str or mapping of str to str, optional
         "en" or "de"; or all texts, as `explore(scene).words` has them, with numbers in braces.
+    live : bool, optional
+        Whether the page carries the core itself, compiled to WebAssembly (360 kB more), so that it
+        computes any blow between those of the table, too, with the numbers of `simulate`. Where a
+        browser or a policy forbids WebAssembly, or this installation came without the file, it
+        shows the nearest blow of its table, and says so.
 
     Returns
     -------
@@ -49,7 +58,8 @@ def explore(
     Raises
     ------
     TypeError
-        If `scene` is no Scene, `t_end` no number, or `language` no name and no mapping of strings.
+        If `scene` is no Scene, `t_end` no number, `live` no bool, or `language` no name and no
+        mapping of strings.
     ValueError
         If `t_end` is out of range, the body so far away that a double does not know a thousandth
         of it there, or `language` unknown, or without one of the keys.
@@ -77,7 +87,7 @@ def explore(
     chosen = float(f"{12 * unit:.2g}") if t_end is None else positive("t_end", t_end)
     if chosen > longest:
         raise ValueError(f"t_end must be at most {longest:.6g} s for this body, got {t_end!r}")
-    return Explorer(scene, chosen, words(language))
+    return Explorer(scene, chosen, words(language), flag("live", live))
 
 
 @dataclass(frozen=True)
@@ -92,11 +102,14 @@ class Explorer(FieldsOnly):
         How long each motion is followed [s].
     words : dict of str to str
         All texts of the page.
+    live : bool
+        Whether it carries the core itself.
     """
 
     scene: Scene
     t_end: float
     words: dict[str, str] = field(hash=False, repr=False, default_factory=lambda: words("en"))
+    live: bool = False
 
     @cached_property
     def distances(self) -> FloatArray:
@@ -143,6 +156,10 @@ class Explorer(FieldsOnly):
 
     @cached_property
     def _html(self) -> str:
+        return self._fragment("Live" if self.live else "Explorer")
+
+    def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
+        """Return the page's content; a class of a module may start it, with more data."""
         strip = blows.view(self.scene)
         left, right, bottom, top = strip["window"]
         shape = (top - bottom) / (right - left)
@@ -160,12 +177,17 @@ class Explorer(FieldsOnly):
             "first": at,
             "words": self.words,
             "table": table,
+            "cut": blows.CUT,
+            "least": blows.LEAST,
+            **more,
         }
+        if self.live:
+            data["live"] = {"wasm": core(), "scene": blows.numbers(self.scene)}
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
         motion = motion.sol(np.linspace(0.0, motion.t_end, 61))
         text = filled(self.words, "poster", F=-blow.jz, d=blow.dx)
-        return fragment(data, [motion], text, "Explorer", self._markup(table))
+        return fragment(data, [motion], text, starts, self._markup(table), module)
 
     def _markup(self, table: dict[str, Any]) -> str:
         """Return the parts around the player with their texts."""

@@ -23,6 +23,12 @@ from .._motion.trajectory import Trajectory
 from .._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 
 LANGUAGES = ("en", "de")
+_FILM = ("track", "strip", "player")
+SCRIPTS = {  # modules and style sheets by the class that starts the page
+    "Player": (_FILM, ("player",)),
+    "Explorer": ((*_FILM, "charts", "explorer"), ("player", "explorer")),
+    "Live": ((*_FILM, "charts", "explorer", "core", "live"), ("player", "explorer")),
+}
 _BRACES = re.compile(r"\{(\w+)\}")
 LIGHT = {
     "paper": "#ffffff", "ink": INK, "blue": BLUE, "orange": ORANGE, "grey": GREY, "earth": EARTH,
@@ -41,26 +47,27 @@ def fragment(
     text: str,
     starts: str = "Player",
     around: str = "{player}",
+    module: str = "",
 ) -> str:
     """Return a `div` with pictures of the motions, whose script replaces them by the player.
 
     If scripts are not run, pictures and text stay. A page may have the same fragment several
-    times. Data without words get the English ones. `around` is HTML around the player. No key
-    leaves the `div`, and JupyterLab finds its mark there: a notebook would take keys as its own.
+    times. Data without words get the English ones. `around` is HTML around the player. `module` is
+    JavaScript with the class that `starts` names, if the package has no such class. No key leaves
+    the `div`, and JupyterLab finds its mark there: a notebook would take keys as its own.
     """
-    scripts = ["track", "strip", "player", *["explorer"] * (starts == "Explorer")]
+    scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Live"])
     texts = data.get("words") or words("en")
-    player = packaged("player.html").format_map(escaped(texts))
     data = data | {
         "colours": {"light": LIGHT, "dark": DARK},
-        "style": "".join(packaged(f"{name}.css") for name in scripts[2:]),
-        "markup": around.replace("{player}", player),
+        "style": "".join(packaged(f"{name}.css") for name in sheets) + data.get("style", ""),
+        "markup": with_player(around, texts),
         "words": texts,
     }
     known = json.dumps(data, separators=(",", ":"))
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
     name = hashlib.sha256(known.encode()).hexdigest()[:12]
-    module = "\n".join(packaged(f"{each}.js") for each in scripts)
+    modules = "\n".join([*(packaged(f"{each}.js") for each in scripts), module])
     light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
     style = f"<style>{light}@media (prefers-color-scheme: dark) {{ {dark}}}</style>"
     images = [
@@ -69,8 +76,13 @@ def fragment(
         for motion in motions
         if (picture := strobe_svg(motion, style))
     ]
-    named = {"name": name, "images": "".join(images), "module": module, "packed": packed}
+    named = {"name": name, "images": "".join(images), "module": modules, "packed": packed}
     return Template(packaged("fragment.html").strip()).substitute(named, starts=starts)
+
+
+def with_player(around: str, texts: dict[str, str]) -> str:
+    """Return HTML around the player with the player in its place."""
+    return around.replace("{player}", packaged("player.html").format_map(escaped(texts)))
 
 
 def document(title: str, content: str, language: str = "en") -> str:
@@ -86,6 +98,13 @@ def document(title: str, content: str, language: str = "en") -> str:
 def packaged(name: str) -> str:
     """Return the text of a file beside this one."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+@cache
+def core() -> str:
+    """Return the core in WebAssembly, gzipped, in base64; empty where the file is missing."""
+    file = files(__package__).joinpath("live.wasm.gz")
+    return base64.b64encode(file.read_bytes()).decode() if file.is_file() else ""
 
 
 @cache

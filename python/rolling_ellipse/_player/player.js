@@ -28,10 +28,11 @@ export function sized(canvas, height) {
 export class Player {
   constructor(host, film) {
     const { parts = [[0, film.end]], forces = false } = film; // an explorer has no parts
-    Object.assign(this, { host, film, parts, forces, t: 0, rate: 1, playing: false });
+    Object.assign(this, { host, film, parts, forces, t: 0, rate: 1, playing: false, fine: 6 });
     this.long = parts.reduce((sum, [begin, end]) => sum + end - begin, 0);
     host.dataset.ready = "";
     host.player = this;
+    host.addEventListener("keydown", (event) => event.stopPropagation());
     for (const strip of film.strips)
       if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.starts);
     point.sign = film.words.decimal;
@@ -53,7 +54,7 @@ export class Player {
   /** Let a strip show another motion. */
   take(strip, columns, starts = [0]) {
     strip.motion = new Track(columns, strip.a);
-    strip.traces = starts.map((start, k) => strip.motion.states(6, start, starts[k + 1]));
+    strip.traces = starts.map((start, k) => strip.motion.states(this.fine, start, starts[k + 1]));
     [strip.trace] = strip.traces;
   }
 

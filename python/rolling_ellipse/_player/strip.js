@@ -68,6 +68,7 @@ export const point = { sign: "." }; // between the digits of a number
 
 /** The text of a number with a few digits; a text of digits keeps all of them. */
 export function round(value, digits = 3) {
+  if (value === Infinity) return "∞";
   const written = typeof value === "number" ? `${+value.toPrecision(digits)}` : `${value}`;
   return /^[-+\d.e]+$/.test(written) ? written.replace("-", "−").replace(".", point.sign) : written;
 }

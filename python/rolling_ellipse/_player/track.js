@@ -5,10 +5,10 @@ const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** The data of a page from gzipped JSON in base64. */
-export async function unzipped(text) {
+/** The content of gzipped base64, such as the data of a page in JSON. */
+export function unzipped(text) {
   const unzip = new DecompressionStream("gzip");
-  return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip)).json();
+  return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip));
 }
 
 /** The numbers of packed columns. */

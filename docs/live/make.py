@@ -1,0 +1,104 @@
+"""Write the page with the core itself: python docs/live/make.py [page.html]
+
+It is the page of `explore(scenes.report, live=True)` with sliders for the whole scene, a map of
+half turns and the energies, by the files beside this one; where WebAssembly is forbidden, it is
+that of `explore`. It needs no other file and no network.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+from rolling_ellipse import Explorer, Scene, explore, geometry, scenes
+from rolling_ellipse._player.page import LANGUAGES, document, escaped, with_player, words
+
+HERE = Path(__file__).resolve().parent
+
+
+def main() -> None:
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "index.html"
+    target.write_text(page(explore(scenes.report, live=True)), encoding="utf-8")
+
+
+def page(explorer: Explorer) -> str:
+    """The page of an explorer's scene, blow included."""
+    given = numbers(explorer)
+    languages = {name: language(name) for name in LANGUAGES}
+    usual = Scene(given["a"], given["b"])
+    data = {
+        "given": given,
+        "inputs": inputs(explorer, given),
+        "size": max(given["a"], given["b"]),
+        "strongest": float(explorer.strengths[-1]),
+        "languages": languages,
+        "usual": {name: getattr(usual, name) for name in ("mass", "gravity", "slope",
+                  "restitution", "theta", "omega", "x")},
+    }  # fmt: skip
+    style = (HERE / "page.css").read_text(encoding="utf-8")
+    module = (HERE / "page.js").read_text(encoding="utf-8")
+    content = explorer._fragment("Workbench", module, page=data, style=style)
+    return document(languages["en"]["words"]["live_title"], content)
+
+
+def numbers(explorer: Explorer) -> dict[str, Any]:
+    """The numbers that a reader moves, or a link holds; infinite friction is None."""
+    scene, start = explorer.scene, explorer.scene.replace(impulse=None).initial_state
+    height = geometry.support(scene.theta, a=scene.a, b=scene.b)
+    flies = start.z > height
+    rolling = 0.0 if flies else height * start.omega
+    blow = scene.impulse
+    given = {name: getattr(blow, name) if blow else 0.0 for name in ("jx", "jz", "dx", "dz")}
+    given |= {name: getattr(scene, name) for name in (
+        "a", "b", "mass", "gravity", "slope", "restitution", "theta", "omega", "x")}  # fmt: skip
+    return given | {
+        "friction": scene.friction if scene.friction < math.inf else None,
+        "k": 4 * scene.gyration2 / (scene.a**2 + scene.b**2) if scene.inertia else 1.0,
+        "height": start.z - height if flies else 0.0,
+        "slip": 0.0 if scene.x_dot is None else start.x_dot - rolling,
+        "z_dot": scene.z_dot if flies else None,
+        "t": explorer.t_end,
+    }
+
+
+def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
+    """Group, name, unit, range and step of each slider, in sizes of the body."""
+    size = max(given["a"], given["b"])
+    rate = math.sqrt(given["gravity"] / size)
+    blow = float(explorer.strengths[-1])
+    rows = [
+        ("body", "a", "m", 0.1 * size, 1.5 * size), ("body", "b", "m", 0.1 * size, 1.5 * size),
+        ("body", "k", "", 0.1, 2.0), ("ground", "slope", "rad", -0.6, 0.6),
+        ("ground", "friction", "", 0.0, 2.0), ("ground", "restitution", "", 0.0, 1.0),
+        ("start", "theta", "rad", -3.2, 3.2), ("start", "omega", "rad/s", -4 * rate, 4 * rate),
+        ("start", "height", "m", 0.0, 2 * size),
+        ("start", "slip", "m/s", -2 * rate * size, 2 * rate * size),
+        ("blow", "jx", "N s", -blow, blow), ("blow", "jz", "N s", -blow, blow),
+        ("blow", "dx", "m", -size, size), ("blow", "dz", "m", -size, size),
+        ("film", "t", "s", 1 / rate, 40 / rate),
+    ]  # fmt: skip
+    return [row(*each) for each in rows]
+
+
+def row(group: str, name: str, unit: str, least: float, most: float) -> dict[str, Any]:
+    """A slider of some 100 steps of 1, 2 or 5 times a power of ten."""
+    rough = (most - least) / 100
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = power * min((1, 2, 5), key=lambda n: abs(n * power - rough))
+    ends = [float(f"{step * round(end / step):.6g}") for end in (least, most)]
+    return {"group": group, "name": name, "unit": unit, "least": max(ends[0], -abs(ends[0])),
+            "most": ends[1], "step": float(f"{step:.6g}")}  # fmt: skip
+
+
+def language(name: str) -> dict[str, Any]:
+    """Words and markup of the page in a language."""
+    own = json.loads((HERE / f"words_{name}.json").read_text(encoding="utf-8"))
+    known = words(name) | own
+    html = (HERE / "page.html").read_text(encoding="utf-8")
+    kept = escaped(known) | {"player": "{player}"}
+    return {"words": known, "markup": with_player(html.format_map(kept), known)}
+
+
+if __name__ == "__main__":
+    main()

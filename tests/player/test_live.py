@@ -1,0 +1,143 @@
+"""The core as WebAssembly beside the extension, in node and in a browser, and the pages with it."""
+
+import gzip
+import json
+import os
+import runpy
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.blows import random_scene
+from oracles.contact import random_scenes
+from oracles.paths import ROOT
+from rolling_ellipse._ask.settings import DEFAULTS
+from rolling_ellipse._player import blows, explorer
+from rolling_ellipse._player.page import numbers_in, packaged
+
+Opened = Callable[..., Any]
+WASM = Path(blows.__file__).with_name("live.wasm.gz")
+NODE, EMCC = shutil.which("node"), shutil.which("em++")
+PLAYER = "document.querySelector('.rolling-ellipse').player"
+ENERGIES = {"kinetic": "kinetic_energy", "potential": "potential_energy"}
+DRIVER = """
+import { readFileSync } from "node:fs";
+import { gunzipSync } from "node:zlib";
+const core = await Core.of(gunzipSync(readFileSync(process.argv[2])));
+console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, times }) => {
+  scene.friction ??= Infinity;
+  const found = core.motion(scene, times.at(-1), times, true);
+  return { ...found, told: told(found, scene) };
+})));
+"""
+
+
+def test_300_scenes_have_the_numbers_and_the_words_of_python(tmp_path: Path) -> None:
+    """Roundings of another C library, magnified by the bounces of a short motion, stay below."""
+    if NODE is None:
+        pytest.skip("there is no node (apt-get install nodejs)")
+    rng, how = np.random.default_rng(35), replace(DEFAULTS, max_steps=20_000, max_events=200)
+    struck = [random_scene(rng, slope=k % 2 == 0) for k in range(60)]
+    struck = [scene.replace(inertia=0.6 * scene.mass * scene.gyration2) for scene in struck]
+    times, scenes = np.linspace(0.0, 1.5, 31), [*random_scenes(240, 35), *struck]
+    motions = [rl.Trajectory.computed(scene, how, times) for scene in scenes]
+    modules = "".join(packaged(f"{name}.js") for name in ("track", "strip", "core"))
+    (tmp_path / "core.mjs").write_text(modules + DRIVER, encoding="utf-8")
+    asked = [
+        {"scene": blows.numbers(motion.scene), "times": motion.t.tolist()} for motion in motions
+    ]
+    command = [NODE, str(tmp_path / "core.mjs"), str(WASM)]
+    printed = subprocess.check_output(command, input=json.dumps(asked), text=True)
+    kinds = set()
+    for motion, found in zip(motions, json.loads(printed), strict=True):
+        assert found["reason"] == motion.reason
+        for name, values in found["columns"].items():
+            true = getattr(motion, ENERGIES.get(name, name))
+            size = max(float(np.abs(true).max()), 1e-3)
+            assert np.abs(np.array([*values.values()]) - true).max() <= 1e-10 * size, (
+                motion.scene,
+                name,
+            )
+        events = [(event.kind.name.lower().replace("_", " "), event.t) for event in motion.events]
+        assert [kind for _, kind, _ in found["events"]] == [kind for kind, _ in events]
+        assert [t for t, *_ in found["events"]] == pytest.approx([t for _, t in events], rel=1e-10)
+        kinds |= {kind for kind, _ in events}
+        code, headline, reasons = blows.told(motion, int(rl.outcome(motion.scene)))
+        told = found["told"]
+        assert (told["name"], told["headline"]) == (blows.NAMES[code], headline)
+        for (key, *true_numbers), (said, numbers) in zip(reasons, told["reasons"], strict=True):
+            assert key == said
+            for name in numbers_in(key):  # JSON has no infinity; Python keeps four digits
+                true = true_numbers[0][name]
+                assert numbers[name] == (None if true == "∞" else pytest.approx(true, rel=6e-4))
+    assert kinds >= {"slip", "stick", "reverse", "lift off", "impact"}
+
+
+def test_the_file_is_small_and_what_its_script_builds(tmp_path: Path) -> None:
+    known = gzip.decompress(WASM.read_bytes())
+    assert len(known) <= 0.8e6 and WASM.stat().st_size <= 0.3e6
+    if EMCC is None or b" 3.1.6 " not in subprocess.check_output([EMCC, "--version"]):
+        pytest.skip(
+            "there is no emscripten 3.1.6, which made the file (apt-get install emscripten)"
+        )
+    script, made = ROOT / "tools" / "live" / "build.sh", tmp_path / "live.wasm.gz"
+    subprocess.run([script, made], check=True, env=os.environ | {"PYTHON": sys.executable})
+    assert gzip.decompress(made.read_bytes()) == known, "run tools/live/build.sh"
+
+
+def repeated(page: Any) -> float:
+    """Worst error of the page's motion at its end beside that of its code, over its sizes."""
+    ends = f"Object.entries({PLAYER}.columns).map(([name, values]) => [name, values.at(-1)])"
+    made: dict[str, Any] = {}
+    exec(page.evaluate(f"{PLAYER}.code()"), made)
+    motion, errors = made.get("motion", made.get("trajectory")), []
+    for name, value in page.evaluate(ends):
+        true = getattr(motion, ENERGIES.get(name, name))
+        errors.append(abs(value - true[-1]) / (np.abs(true).max() or 1))
+    return max(errors)
+
+
+def test_any_blow_is_computed_where_it_is_given(opened: Opened) -> None:
+    page = opened(rl.explore(rl.scenes.slope, live=True).to_html(), reduced_motion="reduce")
+    page.locator(".where").fill("20.3")
+    assert "just this blow" in page.locator(".said").inner_text() and repeated(page) < 1e-10
+
+
+def test_sliders_move_the_motion_and_code_and_link_repeat_it(opened: Opened) -> None:
+    write = runpy.run_path(str(ROOT / "docs" / "live" / "make.py"))["page"]
+    page = opened(write(rl.explore(rl.scenes.jump, live=True)), reduced_motion="reduce")
+    for name in page.evaluate(f"{PLAYER}.rows.map(({{ name }}) => name)"):
+        before = page.evaluate(f"{PLAYER}.found")
+        page.locator(f"#in-{name}").press("ArrowLeft" if name == "friction" else "ArrowRight")
+        page.wait_for_function(f"!{PLAYER}.stale")
+        assert page.evaluate(f"{PLAYER}.found") != before and repeated(page) < 1e-10, name
+    page.wait_for_function("location.hash.includes('slip=')")
+    page.get_by_role("button", name="Deutsch").click()
+    given = page.evaluate(f"{PLAYER}.given")
+    page.reload()
+    page.wait_for_function(f"{PLAYER} && document.title.includes('Bewegung')")
+    assert page.evaluate(f"{PLAYER}.given") == given and repeated(page) < 1e-10
+    page.evaluate(f"{PLAYER}.change({{ b: -1 }})")
+    page.wait_for_function(f"{PLAYER}.refusal")
+    assert "b must be a positive" in page.locator(".refused").inner_text()
+
+
+@pytest.mark.parametrize(("policy", "why"), [
+    ("<meta http-equiv=Content-Security-Policy content=\"script-src 'unsafe-inline'\">", "may not"),
+    ("", "without the core"),
+])  # fmt: skip
+def test_without_webassembly_the_table_is_shown(
+    opened: Opened, monkeypatch: pytest.MonkeyPatch, policy: str, why: str
+) -> None:
+    if not policy:
+        monkeypatch.setattr(explorer, "core", lambda: "")
+    html = rl.explore(rl.scenes.report, t_end=1.0, live=True).to_html()
+    page = opened(html.replace("<head>", f"<head>{policy}"), strict=not policy)
+    assert why in page.locator(".card").inner_text()
