@@ -42,7 +42,9 @@ from ._player import explore as explore
 from ._verbs.batches import MotionArrays as MotionArrays
 from ._verbs.batches import load_many as load_many
 from ._verbs.batches import simulate_many as simulate_many
-from ._verbs.blow_to import blow_to as blow_to
+from ._verbs.blows import blow_to as blow_to
+from ._verbs.blows import outcome as outcome
+from ._verbs.blows import required_friction as required_friction
 from ._verbs.certify import Certificate as Certificate
 from ._verbs.certify import certify as certify
 from ._verbs.classify import Thresholds as Thresholds
@@ -55,8 +57,6 @@ from ._verbs.flow import flow as flow
 from ._verbs.flow import period as period
 from ._verbs.flow import rolling_equation as rolling_equation
 from ._verbs.flow_jacobian import flow_jacobian as flow_jacobian
-from ._verbs.outcome import outcome as outcome
-from ._verbs.outcome import required_friction as required_friction
 from ._verbs.simulate import simulate as simulate
 from ._verbs.work_precision import WorkPrecision as WorkPrecision
 from ._verbs.work_precision import work_precision as work_precision

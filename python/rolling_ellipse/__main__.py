@@ -19,9 +19,10 @@ from . import StabilityWarning, Status, Trajectory, examples, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
-from ._show.command.benchmark import act, benchmark_parser
 from ._show.command.options import (
     PROGRAM,
+    act,
+    benchmark_parser,
     chosen_scene,
     examples_parser,
     explore_parser,

@@ -16,38 +16,28 @@ _Columns = list[FloatArray]  # of arguments, as `broadcast` returns them
 _Found = tuple[list[FloatArray], list[str]]  # times of each value, and why some are missing
 
 class Mode(enum.IntEnum):
-    """Mode of motion; one code per sample."""
-
     ROLLING = 0
     SLIDING = 1
     FLIGHT = 2
     REST = 3
 
 class Restitution(enum.Enum):
-    """Law of restitution."""
-
     STRONGE = 0
     POISSON = 1
     NEWTON = 2
 
 class Painleve(enum.Enum):
-    """Is there exactly one possible motion?"""
-
     DETERMINED = 0
     NO_MOTION = 1
     TWO_MOTIONS = 2
 
 class Validity(enum.Enum):
-    """Is rolling valid for the whole motion?"""
-
     VALID = 0
     INVALID = 1
     EDGE = 2
     NO_PROOF = 3
 
 class Outcome(enum.IntEnum):
-    """The first thing that happens to a rolling body."""
-
     RESTS = 0
     ROCKS = 1
     ROLLS_OVER = 2
@@ -57,8 +47,6 @@ class Outcome(enum.IntEnum):
     EDGE = 6
 
 class EventKind(enum.Enum):
-    """Kind of an event."""
-
     SLIP = 0
     STICK = 1
     REVERSE = 2
@@ -78,8 +66,6 @@ class Ending(enum.Enum):
     VALIDITY_LOST = 7
 
 class Quantity(enum.Enum):
-    """A quantity of a motion."""
-
     theta = 0
     x = 1
     z = 2

@@ -12,8 +12,8 @@ import pytest
 import rolling_ellipse as rl
 from oracles.pages import carried
 from oracles.pictures import ORDINARY_SCENES
+from rolling_ellipse._player.film import packed, sample_times, track
 from rolling_ellipse._player.page import fragment
-from rolling_ellipse._player.tracks import packed, sample_times, track
 
 SCENES = {
     **ORDINARY_SCENES,

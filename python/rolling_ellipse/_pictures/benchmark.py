@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from .._ask.check import file_name
-from .axes import Artists, axes_of, picture, write
-from .legends import name_curves, title_beside_legend
+from .axes import Artists, axes_of, name_curves, picture, title_beside_legend, write
 from .palette import palette_of
 
 if TYPE_CHECKING:  # _scores.py imports this file

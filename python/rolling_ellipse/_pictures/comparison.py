@@ -19,8 +19,7 @@ from matplotlib.lines import Line2D
 from .._ask.check import shown
 from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._motion.trajectory import Trajectory
-from .axes import listed
-from .legends import quantity_handles, some_of
+from .axes import listed, quantity_handles, some_of
 from .palette import Palette, palette_of
 
 MOST_FACTS = 3  # in one label: more would be wider than a small picture

@@ -17,9 +17,8 @@ from .._core import Mode
 from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
-from .axes import Artists, axes_of, panels_of, picture
+from .axes import Artists, axes_of, name_curves, panels_of, picture, some_of
 from .comparison import Comparison, Style
-from .legends import name_curves, some_of
 from .palette import palette_of
 from .panels import DASHES, dot, draw_curves, finish
 from .sampling import are_ranges, for_dots, over_time, ranges

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .._ask.check import file_name
-from .axes import Artists, close, figure_of, picture
-from .legends import name_curves
+from .axes import Artists, figure_of, name_curves, picture, write
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import over_time
@@ -90,8 +89,5 @@ def _finished(chart: FitChart, whole: Figure, said: str, path: Any, own: bool) -
     whole.align_ylabels(chart.axes)
     width = whole.bbox.width / whole.get_figure(root=True).dpi
     whole.suptitle(fill(said, max(20, int(13 * width))), fontsize="medium")
-    if path is not None:
-        chart.savefig(file_name("path", path))
-        if own:
-            close(chart.figure)
+    write(chart, None if path is None else file_name("path", path), new=own)
     return chart

@@ -16,9 +16,8 @@ from matplotlib.ticker import SymmetricalLogLocator
 
 from .._core import EventKind
 from .._motion.trajectory import Trajectory
-from .axes import Artists, panels_of, picture
+from .axes import Artists, name_curves, panels_of, picture, quantity_handles
 from .comparison import Comparison, Style
-from .legends import name_curves, quantity_handles
 from .palette import palette_of
 from .panels import DASHES, RANGE, dot, draw_curves, entries_of, events_shown, finish
 from .sampling import are_ranges, curve, over_time, ranges

@@ -15,11 +15,10 @@ from matplotlib.lines import Line2D
 from .._ask.check import file_name
 from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
-from .axes import Artists, figure_of, picture, write
+from .axes import Artists, figure_of, name_curves, picture, write
 from .comparison import Comparison
 from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
-from .legends import name_curves
 from .panels import draw_curves, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time

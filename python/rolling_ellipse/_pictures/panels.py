@@ -20,9 +20,9 @@ from .._core import EventKind, Mode
 from .._motion.events import Event
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
+from .axes import name_curves, title_beside_legend
 from .comparison import Comparison, Style
 from .labels import label_times
-from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns
 

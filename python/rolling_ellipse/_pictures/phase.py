@@ -20,10 +20,9 @@ from .. import _core
 from .._ask.check import FloatArray, flag
 from .._ask.scene import Scene
 from .._motion.trajectory import Trajectory
-from .axes import Artists, axes_of, picture
+from .axes import Artists, axes_of, name_curves, picture, title_beside_legend
 from .comparison import Comparison
 from .ground import QUARTER, flat_angle
-from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 from .panels import draw_invalid_ground, dress_grid, ending_of
 from .sampling import FEW, between, half_turns, is_at_hand, span_of

@@ -27,9 +27,8 @@ from .._ask.check import FloatArray, choice, number, positive, shown, whole_with
 from .._ask.scene import Scene
 from .._core import Outcome
 from .._verbs.classify import Thresholds, classify, thresholds
-from .axes import Artists, axes_of, picture, require_axes
+from .axes import Artists, axes_of, name_curves, picture, require_axes
 from .labels import ABOVE_FIRST, BELOW_FIRST, Label, label_lines, visible_part
-from .legends import name_curves
 from .palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 
 AXIS_NAMES = {

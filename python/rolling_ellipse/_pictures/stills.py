@@ -20,10 +20,9 @@ from .._core import EventKind
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from . import ground as drawing
-from .axes import Artists, axes_of, picture
+from .axes import Artists, axes_of, name_curves, picture, title_beside_legend
 from .comparison import Comparison, Style, require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
-from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 from .panels import EVENT_NAMES, draw_invalid_ground, ending_of, events_shown, sparse_markers
 from .sampling import at_times, between, span_of, turned_until

@@ -18,9 +18,8 @@ from matplotlib.ticker import EngFormatter, FixedLocator, LogFormatterMathtext, 
 
 from .._ask.check import choice, shown
 from .._verbs.work_precision.run import EQUAL, ERRORS, OF_STATES, QUANTITIES, Run
-from .axes import Artists, axes_of, picture, pyplot_figure
+from .axes import Artists, axes_of, name_curves, picture, pyplot_figure
 from .labels import BELOW_FIRST, BESIDE, Label, label_lines, size_in_points, visible_part
-from .legends import name_curves
 from .palette import palette_of
 
 if TYPE_CHECKING:  # results.py imports this file

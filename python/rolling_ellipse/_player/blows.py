@@ -22,12 +22,11 @@ from .._motion.samples import even_times
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .._pictures.phase_map import COLOURS
+from .._verbs.blows import outcome
 from .._verbs.classify import thresholds
-from .._verbs.outcome import outcome
 from ..geometry import support
-from .film import body, events
+from .film import body, columns, events, sample_times
 from .page import filled, numbers_in, written
-from .tracks import columns, sample_times
 
 Sentence = list[Any]  # a key, and the numbers for the braces of its text
 IN_THE_AIR = len(Outcome)  # the code of a body that does not come to the ground

@@ -1,22 +1,162 @@
-"""The player of an animation: its data and its page."""
+"""The player of an animation: its page, and its motions as packed samples.
+
+Samples are so dense that cubics, and parabolas of forces, will do.
+"""
 
 from __future__ import annotations
 
+import base64
 from typing import Any
 
 import numpy as np
 
+from .._ask.check import FloatArray
 from .._ask.scene import Scene
+from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.camera import cameras
 from .._pictures.ground import touching_x
+from .._pictures.sampling import halve
 from .page import document, fragment
-from .tracks import track
 
 _PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of a film 2000 pixels wide
 _HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and for the ruler, over the width
 _TALLEST = 0.42  # largest height of a film over its width; half of it for each of several motions
+MOST_SAMPLES = 20_000  # most samples of one motion, 1 MB
+_RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
+FORCES = ("normal_force", "friction_force")
+_MIDDLES = {name: f"{name}_middle" for name in FORCES}
+# Places in an interval at which a curve is compared with the motion. They are irregular, so that a
+# motion whose period divides the intervals does not look like a straight line.
+_WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])
+_FORCE = 0.005  # error over force + weight: at most a pixel in a plot of 84 pixels a weight
+_FIRST = 17  # intervals to begin with
+
+
+def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float) -> dict[str, Any]:
+    """Return the parts (begin and end [s]) of a motion in types of JSON: columns, and their starts.
+
+    Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
+    motion that needs more than `MOST_SAMPLES` is refused. Parts after its end have one sample.
+    """
+    last, found, starts = float(motion.t[-1]), np.empty(0), []
+    for begin, end in parts:
+        times = sample_times(motion, min(end, last), tolerance, begin=min(begin, last))
+        if times is None or found.size + times.size > MOST_SAMPLES:
+            raise ValueError(
+                f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got {last:g} s"
+                " of a motion that needs more: show less by t_end, or parts of it without speed"
+            )
+        starts.append(found.size)
+        found = np.append(found, times)
+    return {"columns": columns([motion.sol(found)], tolerance), "starts": starts}
+
+
+def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
+    """Return the samples of motions of one body in packed columns, one motion after the other."""
+    scene = motions[0].scene
+    size = max(scene.a, scene.b)
+    names = ("t", *_RATES, *_RATES.values(), *FORCES, "mode")
+    parts = [{name: getattr(each, name) for name in names} | _middles(each) for each in motions]
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    speeds = np.hypot(joined["x_dot"], joined["z_dot"]) + size * np.abs(joined["omega"])
+    near = tolerance / max(float(np.max(speeds)), 1e-300)  # [s]
+    longest = max(float(np.max(np.diff(motion.t), initial=0.0)) for motion in motions)
+    allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size, "mode": 0.0}
+    for name, rate in _RATES.items():
+        allowed[rate] = 4 * allowed[name] / max(longest, near)
+    allowed |= dict.fromkeys((*FORCES, *_MIDDLES.values()), 1e-3 * scene.mass * scene.gravity)
+    return {name: packed(values.astype(float), allowed[name]) for name, values in joined.items()}
+
+
+def _middles(motion: Trajectory) -> dict[str, FloatArray]:
+    """Return forces at the middles of intervals, and the last ones; a jump has their mean."""
+    t = motion.t
+    between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
+    found = {}
+    for name, middle in _MIDDLES.items():
+        forces = getattr(motion, name)
+        means = (forces + np.append(forces[1:], forces[-1])) / 2
+        found[middle] = np.where(jumps > 1e-9 * t[-1], getattr(between, name), means)
+    return found
+
+
+def sample_times(
+    motion: Trajectory,
+    end: float,
+    tolerance: float,
+    *,
+    begin: float = 0.0,
+    most: int = MOST_SAMPLES,
+) -> FloatArray | None:
+    """Return times, from `begin` on, between which cubics miss by at most `tolerance` [m].
+
+    If there are more than `most`, it is None. Parabolas through the forces at the times and midway
+    are near them, too, as long as there are at most half of `most`. Events are among the times, and
+    the doubles just before them.
+    """
+    jumps = [event.t for event in motion.events if begin < event.t <= end]
+    just_before = np.nextafter(jumps, 0.0)
+    times = np.unique(np.concatenate([even_times(begin, end, _FIRST + 1), jumps, just_before]))
+    # Intervals in which the cubic may miss the motion
+    places = np.flatnonzero(np.diff(times) > 1e-12 * (end - begin))
+    while places.size and times.size <= most:
+        left, right = times[places], times[places + 1]
+        force = _FORCE if times.size <= most / 2 else np.inf
+        bad = _misses(motion, left, right, tolerance, force) > 1
+        bad &= right - left > 1e-9 * (end - begin)
+        times, places = halve(times, places[bad])
+    return times if times.size <= most else None
+
+
+def _misses(
+    motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
+) -> FloatArray:
+    """Return the errors of cubics, and of parabolas of forces, over those that are allowed."""
+    size = max(motion.scene.a, motion.scene.b)
+    first, last = motion.sol(left), motion.sol(right)
+    span = (right - left)[:, None]
+    exact = motion.sol((left[:, None] + span * _WITHIN).ravel())
+    u, v = _WITHIN, 1 - _WITHIN
+    missed = np.zeros(left.size)
+    for name, rate in _RATES.items():
+        p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
+        m, n = getattr(first, rate)[:, None] * span, getattr(last, rate)[:, None] * span
+        cubic = v * v * (1 + 2 * u) * p + u * u * (1 + 2 * v) * q + u * v * (v * m - u * n)
+        error = np.abs(cubic - getattr(exact, name).reshape(cubic.shape)).max(axis=1)
+        error -= np.minimum(error, 4 * np.spacing(np.abs(p) + np.abs(q)).max(axis=1))  # rounding
+        missed += error * (size if name == "theta" else 1.0) / tolerance
+    weight = motion.scene.mass * motion.scene.gravity
+    for name in FORCES:
+        p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
+        true = getattr(exact, name).reshape(left.size, u.size)
+        middle = true[:, u.size // 2, None]
+        parabola = v * (v - u) * p + 4 * u * v * middle + u * (u - v) * q
+        error = np.abs(parabola - true) / (force * (weight + np.abs(true)))
+        missed = np.maximum(missed, error.max(axis=1))
+    return missed
+
+
+def packed(values: FloatArray, error: float) -> dict[str, Any]:
+    """Return a column to within an error, in few bytes: low + step · n, with n in base64.
+
+    n are unsigned integers of two bytes if these are fine enough, else floats of four or eight.
+    """
+    low, high = float(np.min(values)), float(np.max(values))
+    step = (high - low) / 65535
+    if not np.isfinite(step):
+        raise ValueError(f"trajectory must have finite samples, got {low:g} to {high:g}")
+    if step <= 2 * error or step == 0:
+        numbers: Any = np.round((values - low) / step) if step > 0 else np.zeros(values.size)
+        kind = "<u2"
+    elif np.all(values == np.round(values)) and low >= 0 and high <= 65535:
+        low, step, numbers, kind = 0.0, 1.0, values, "<u2"
+    else:
+        exact = max(abs(low), abs(high)) * 2.0**-24 > error
+        low, step, numbers, kind = 0.0, 1.0, values, "<f8" if exact else "<f4"
+    data = base64.b64encode(numbers.astype(kind).tobytes()).decode()
+    return {"kind": kind[1:], "low": low, "step": step, "data": data}
 
 
 def film_page(animation: RollingAnimation) -> str:

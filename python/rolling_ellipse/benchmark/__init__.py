@@ -10,11 +10,9 @@ z, theta, x_dot, z_dot, omega.
 >>> benchmark.problem("slide.stick").question
 """
 
-from ._dae import Dae
-from ._export import export
-from ._ode import Ode
+from ._equations import Dae, Ode
+from ._files import Result, export
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
-from ._result import Result
 from ._score import Score
 from ._scores import Scores, run, score
 

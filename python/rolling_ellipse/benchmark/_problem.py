@@ -17,8 +17,7 @@ from .._ask.scene import Scene
 from .._core import EventKind, Mode
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import simulate
-from ._dae import FORMS, Dae
-from ._ode import Ode, first_arc
+from ._equations import FORMS, Dae, Ode, first_arc
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")

@@ -15,8 +15,8 @@ from .._core import Mode
 from .._motion.events import energies
 from .._motion.trajectory import Trajectory
 from ._events import gap_and_slip, read_off
+from ._files import Result
 from ._problem import STATE, Problem, states_of
-from ._result import Result
 
 TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
 RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"

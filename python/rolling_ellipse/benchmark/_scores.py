@@ -13,9 +13,9 @@ import numpy as np
 
 from .._ask.check import FloatArray, choice, file_name, positive
 from .._ask.printing import html_table, required, text_table
+from ._files import Result, checked, read
 from ._problem import STATE, Problem
 from ._problem import problems as all_problems
-from ._result import Result, checked, read
 from ._score import FAILED, RIGHT, TOLERANCE, UNSUPPORTED, WRONG, Score, scored
 
 if TYPE_CHECKING:

@@ -1,18 +1,22 @@
-"""Options of the command line, and the scene that they describe."""
+"""Options of the command line, the scene that they describe, and the command `benchmark`."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import sys
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ... import scenes
+from ... import benchmark, scenes
+from ..._ask.printing import text_table
 from ..._ask.scene import Impulse, Scene
 from ..._ask.settings import METHODS, MODELS
 from ..._player.page import LANGUAGES
+from ...benchmark.adapters import ENGINES
 
 SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",
@@ -38,6 +42,7 @@ _BASE = (
     "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
     "centre; options change it."
 )
+_ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
 # For argparse -1e-3, -inf and -nan would be unknown options
 _NEGATIVE = re.compile(r"-(\d[\d_]*\.?[\d_]*|\.[\d_]+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.I)
@@ -137,3 +142,64 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
         if str(error).startswith("impulse") and options.press is None:
             raise ValueError(f"{error}: give --press F D, or --omega for no blow") from None
         raise
+
+
+def benchmark_parser() -> OneLineParser:
+    """Return the parser of `benchmark`."""
+    found = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
+    actions = found.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
+    actions.add_parser("list", help="print the problems and what they need")
+    export = actions.add_parser("export", help="write problems and empty tables for results")
+    export.add_argument("folder", metavar="DIR")
+    score = actions.add_parser("score", help="score the tables of results in a folder")
+    score.add_argument("folder", metavar="DIR")
+    run = actions.add_parser("run", help="run an engine, or your mine(problem, times, setting)")
+    run.add_argument("mine", metavar="|".join((*ENGINES, "module:function")))
+    run.add_argument("--ladder", type=float, nargs="+", default=[None], metavar="SETTING")
+    for parser in (score, run):
+        parser.add_argument("--json", action="store_true", help="print the scores as JSON")
+        parser.add_argument("--tags", action="store_true", help="print the tags that are passed")
+    return found
+
+
+def act(options: argparse.Namespace) -> tuple[int, str]:
+    """Do what is asked for, and return the exit code and the text: 1 if an answer is wrong."""
+    if options.action == "list":
+        rows = [(one.id, one.question, ", ".join(one.tags)) for one in benchmark.problems()]
+        return 0, text_table([("problem", "question", "needs"), *rows])
+    if options.action == "export":
+        return 0, f"written           {len(benchmark.export(options.folder))} files"
+    if options.action == "score":
+        scores = benchmark.score(options.folder)
+    else:
+        scores = benchmark.run(_function(options.mine), ladder=options.ladder)
+    text = repr(scores)
+    if options.tags:
+        text = " ".join(_passed_tags(scores))
+    elif options.json:
+        plain = json.dumps(scores.records())  # has NaN, which JSON does not know
+        text = json.dumps(json.loads(plain, parse_constant=lambda name: None), indent=2)
+    return int(bool(scores.wrong)), text
+
+
+def _function(name: str) -> Any:
+    """Import an adapter, or a function named as module:function, also from the current folder."""
+    if name in ENGINES:
+        try:
+            return import_module(f"{benchmark.__name__}.adapters.{name}").simulate
+        except ImportError as error:
+            raise ImportError(f"{name} needs pip install {ENGINES[name]}: {error}") from error
+    module, _, function = name.partition(":")
+    if not (module and function):
+        raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")
+    sys.path.insert(0, "")
+    found = getattr(import_module(module), function, None)
+    if not callable(found):
+        raise ValueError(f"run must name a function of {module}, got {function!r}")
+    return found
+
+
+def _passed_tags(scores: benchmark.Scores) -> list[str]:
+    """Return the tags whose problems all pass."""
+    failed = {tag for s in scores if not s.passed for tag in benchmark.problem(s.problem).tags}
+    return sorted({tag for one in benchmark.problems() for tag in one.tags} - failed)

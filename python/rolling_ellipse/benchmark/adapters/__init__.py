@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._ask.check import FloatArray, positive
 from ..._ask.scene import Scene
-from .._result import Result
+from .._files import Result
 
 #: Names of the modules, with what pip installs for each.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")

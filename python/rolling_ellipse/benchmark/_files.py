@@ -1,18 +1,19 @@
-"""Results of a simulator: checked arrays, and files of numbers that any program can write."""
+"""Results of a simulator: checked arrays, and files that any program can read and write."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+import shutil
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, choice
+from .._ask.check import FloatArray, array, choice, file_name
 from .._core import EventKind
-from ._problem import COLUMNS, STATE, Problem
+from ._problem import COLUMNS, FOLDER, STATE, Problem, problems
 
 SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}
 _KINDS = tuple(kind.name for kind in EventKind)
@@ -107,15 +108,15 @@ def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
     Rows without a time are left out. Two rows at one time are the sides of a jump: the second is
-    kept. Columns beyond those known are left out, too. An empty file has no rows.
+    kept. Columns beyond those known are left out, too. An empty file has no rows. Events are in
+    `<id>.events.csv` with the columns kind, t, where there is such a file.
 
     Raises
     ------
     ValueError
         If a column is missing, or an entry is no number; the message names problem and column.
     """
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = [row for row in csv.reader(file) if any(entry.strip() for entry in row)]
+    rows, beside, events = _rows(path), path.with_name(f"{problem.id}.events.csv"), None
     if not rows:
         return Result(np.empty((0, len(STATE))))
     names = [SYNONYMS.get(name.strip(), name.strip()) for name in rows[0]]
@@ -131,7 +132,15 @@ def read(problem: Problem, path: Path) -> Result:
     kept = np.append(t[:-1] != t[1:], True) & np.isfinite(t) if t.size else np.zeros(0, bool)
     forces = {name: columns[name][kept] for name in COLUMNS[7:] if name in columns}
     states = np.stack([columns[name][kept] for name in STATE], axis=1)
-    return Result(states, t[kept], _read_events(problem, path), **forces)
+    if beside.exists():
+        known = _rows(beside)[1:]
+        events = [(row[0].strip().upper(), _entry(problem, "t", row, 1)) for row in known]
+    return Result(states, t[kept], events, **forces)
+
+
+def _rows(path: Path) -> list[list[str]]:
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        return [row for row in csv.reader(file) if any(entry.strip() for entry in row)]
 
 
 def _entry(problem: Problem, name: str, row: list[str], place: int) -> float:
@@ -142,11 +151,37 @@ def _entry(problem: Problem, name: str, row: list[str], place: int) -> float:
         raise ValueError(f"{name} of {problem.id} must be a number, got {text!r}") from None
 
 
-def _read_events(problem: Problem, path: Path) -> Iterable[tuple[str, float]] | None:
-    """Read the events in `<id>.events.csv` with the columns kind, t, where there is such a file."""
-    beside = path.with_name(f"{problem.id}.events.csv")
-    if not beside.exists():
-        return None
-    with beside.open(newline="", encoding="utf-8-sig") as file:
-        rows = [row for row in csv.reader(file) if row][1:]
-    return [(row[0].strip().upper(), _entry(problem, "t", row, 1)) for row in rows]
+def export(folder: Any) -> list[Path]:
+    """Write the scored problems, their scenes and empty tables of results into a folder.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist. A table of results that is there already stays as it is.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written.
+    """
+    place = Path(file_name("folder", folder))
+    place.mkdir(parents=True, exist_ok=True)
+    written = [Path(shutil.copy(FOLDER.with_name("export.txt"), place / "README.txt"))]
+    for one in problems():
+        written.append(Path(shutil.copy(FOLDER / f"{one.id}.json", place)))
+        for suffix, write in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
+            with suppress(ValueError):  # coefficients of restitution that MJCF has not
+                (place / (one.id + suffix)).write_text(write(), encoding="utf-8")
+                written.append(place / (one.id + suffix))
+        table = place / f"{one.id}.csv"
+        if not table.exists():
+            empty = "," * (len(COLUMNS) - 1)
+            rows = [",".join(COLUMNS), *(f"{t!r}{empty}" for t in one.output_times.tolist())]
+            table.write_text("\n".join(rows) + "\n", encoding="utf-8")
+            written.append(table)
+    return written
