@@ -166,37 +166,3 @@ def test_kinematics_against_differentiation(shape: Shape) -> None:
             assert abs(float(q[k]) - exact[k]) <= EPS * abs(allowed[k]), (NAMES[k], theta)
             off = abs(float(q_dot[k]) - rates[k] * omega)
             assert off <= EPS * abs(omega) * allowed_rates[k], (NAMES[k], theta)
-
-
-# ------------------------------------------------------------------------- shapes of arrays
-
-
-def test_broadcasting() -> None:
-    theta, omega = np.linspace(-2.0, 5.0, 4)[:, None], np.array([0.5, -1.0, 3.0])
-    q, q_dot = kinematics(theta, omega, a=2.0, b=1.0)
-    assert q.shape == q_dot.shape == (4, 3, 5)
-    found = constraints(q, q_dot, a=2.0, b=1.0)
-    assert found.position.shape == (4, 3, 3) and found.velocity.shape == (4, 3, 4)
-    assert found.gap.shape == found.slip.shape == (4, 3)
-    for i, j in np.ndindex(4, 3):
-        single_q, single_q_dot = kinematics(float(theta[i, 0]), float(omega[j]), a=2.0, b=1.0)
-        assert single_q.shape == single_q_dot.shape == (5,)
-        assert np.array_equal(single_q, q[i, j]) and np.array_equal(single_q_dot, q_dot[i, j])
-        single = constraints(single_q, single_q_dot, a=2.0, b=1.0)
-        assert single.position.shape == (3,) and single.velocity.shape == (4,)
-        assert np.ndim(single.gap) == np.ndim(single.slip) == 0
-        assert np.array_equal(single.position, found.position[i, j])
-        assert np.array_equal(single.velocity, found.velocity[i, j])
-    one_rate = constraints(q, q_dot[0, 0], a=2.0, b=1.0)
-    assert one_rate.velocity.shape == (4, 3, 4)
-    crossed = constraints(q[:, :1], q_dot[:1], a=2.0, b=1.0)
-    assert crossed.velocity.shape == (4, 3, 4) and crossed.gap.shape == (4, 3)
-    assert constraints(np.empty((0, 5)), np.empty((0, 5)), a=2.0, b=1.0).position.shape == (0, 3)
-
-
-def test_lists_are_welcome_and_left_alone() -> None:
-    q, q_dot = [0.0, 1.5, 0.2, 0.3, 1.1], [1.0, 0.0, 0.5, 0.5, 0.1]
-    arrays = np.array(q), np.array(q_dot)
-    found, again = constraints(q, q_dot, a=2.0, b=1.0), constraints(*arrays, a=2.0, b=1.0)
-    assert np.array_equal(found.velocity, again.velocity)
-    assert np.array_equal(arrays[0], q) and np.array_equal(arrays[1], q_dot)

@@ -1,7 +1,5 @@
 """Each function of the geometry equals its definition, computed by independent formulas."""
 
-from collections.abc import Callable
-
 import mpmath as mp
 import numpy as np
 import oracles.geometry
@@ -140,31 +138,3 @@ def test_centre_path(shape: Shape, angles: list[float]) -> None:
         exact = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
         actual = geometry.centre_path(theta, a=shape[0], b=shape[1])
         assert ulps(actual, exact, exact) <= 16
-
-
-# ------------------------------------------------------------------------- shapes of arrays
-
-
-@pytest.mark.parametrize("function", FUNCTIONS)
-def test_scalars_in_floats_out(function: Callable[..., object]) -> None:
-    for theta in (0.3, 1, np.float64(0.3)):
-        assert type(function(theta, a=2, b=1.0)) is float
-
-
-@pytest.mark.parametrize("function", FUNCTIONS)
-def test_broadcasting(function: Callable[..., np.ndarray]) -> None:
-    theta = np.linspace(-4.0, 9.0, 15).reshape(3, 1, 5)
-    a = np.array([[0.5], [1.0], [2.0], [7.0]])
-    values = function(theta, a=a, b=1.0)
-    assert values.shape == (3, 4, 5) and values.dtype == np.float64
-    for i, j, k in np.ndindex(values.shape):
-        single = function(float(theta[i, 0, k]), a=float(a[j, 0]), b=1.0)
-        assert values[i, j, k] == pytest.approx(single, rel=4 * EPS, abs=1e-300)
-    assert function(np.empty((0, 3)), a=2.0, b=1.0).shape == (0, 3)
-    assert function([0.0, 1.0], a=2.0, b=1.0).shape == (2,)
-    transposed = np.asfortranarray(np.linspace(0.0, 1.0, 6).reshape(2, 3))
-    strided = np.linspace(0.0, 1.0, 11)[::2].reshape(2, 3)
-    for given in (transposed, strided):
-        before = np.ascontiguousarray(given).copy()
-        assert np.array_equal(function(given, a=2.0, b=1.0), function(before, a=2.0, b=1.0))
-        assert np.array_equal(given, before)

@@ -242,22 +242,6 @@ def test_stronge_is_what_a_simulated_body_does() -> None:
     assert found == pytest.approx([then.x_dot, then.z_dot, then.omega], rel=64 * EPS)
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_arrays_are_what_single_impacts_are(law: Any) -> None:
-    """Every argument may be an array; shapes broadcast; scalars give floats."""
-    state = approaching(6).reshape(4, 2, 3)
-    friction, restitution = np.array([0.1, 0.5, 2.0]), np.array([[0.2], [0.8]])
-    options: dict[str, Any] = {"law": law, **BODY}
-    found = impacts.collide(*state, friction=friction, restitution=restitution, **options)
-    assert all(values.shape == (2, 3) for values in found)
-    for i, j in np.ndindex(2, 3):
-        single = impacts.collide(
-            *state[:, i, j], friction=friction[j], restitution=restitution[i, 0], **options
-        )
-        assert all(type(value) is float for value in single)
-        assert single == tuple(values[i, j] for values in found)
-
-
 def test_the_default_body_is_a_uniform_disc() -> None:
     state: Any = approaching(5)
     law: dict[str, Any] = {**BODY, "friction": 0.2, "restitution": 0.5}

@@ -1,0 +1,111 @@
+"""Functions of numbers: arrays of any layout broadcast, and each element is a single call.
+
+The bits agree, scalars give floats, and the arrays that are given stay as they are.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from rolling_ellipse import Outcome, classify, constraints, flow, geometry, impacts, kinematics
+
+Arguments = dict[str, Any]
+SHAPES = ((3, 1, 5), (4, 1), (5,), ())  # of the arguments in turn; together (3, 4, 5)
+BODY = {"a": (0.5, 3.0), "b": (0.4, 2.0)}
+LIMITS: dict[str, dict[str, tuple[float, float]]] = {
+    "support": {"theta": (-4.0, 9.0), **BODY},
+    "flow": {
+        "t": (-2.0, 9.0), "omega": (-4.0, 4.0), "gravity": (1.6, 9.8), "theta": (-3.0, 3.0), **BODY,
+        "gyration2": (0.2, 2.0),
+    },
+    "classify": {
+        "omega": (-9.0, 9.0), "friction": (0.0, 1.0), "theta": (-3.0, 3.0), "gravity": (1.6, 9.8),
+        **BODY, "gyration2": (0.2, 2.0),
+    },
+    "collide": {
+        "theta": (-3.0, 3.0), "z_dot": (-9.0, -1.0), "restitution": (0.0, 1.0),
+        "omega": (-0.2, 0.2), "friction": (0.0, 2.0), "x_dot": (-3.0, 3.0), **BODY,
+    },
+    "kinetic_speed": {
+        "x_dot": (-3.0, 3.0), "z_dot": (-3.0, 3.0), "omega": (-3.0, 3.0), "gyration2": (0.2, 2.0),
+    },
+}  # fmt: skip
+CALLS: dict[str, tuple[Callable[..., Any], str]] = {
+    **{name: (getattr(geometry, name), "support") for name in geometry.__all__},
+    "flow": (flow, "flow"), "classify": (classify, "classify"),
+    **{law: (lambda law=law, **given: impacts.collide(**given, law=law), "collide")  # type: ignore[misc]
+       for law in impacts.LAWS},
+    "kinetic_speed": (impacts.kinetic_speed, "kinetic_speed"),
+}  # fmt: skip
+each_call = pytest.mark.parametrize("name", CALLS)
+
+
+def drawn(name: str, *shapes: tuple[int, ...]) -> Arguments:
+    """Random arguments whose shapes are the given ones in turn."""
+    rng = np.random.default_rng(3)
+    limits = LIMITS[CALLS[name][1]].items()
+    return {
+        key: rng.uniform(*ends, shapes[i % len(shapes)]) for i, (key, ends) in enumerate(limits)
+    }
+
+
+def answers(name: str, given: Arguments) -> tuple[Any, ...]:
+    found = CALLS[name][0](**given)
+    return found if isinstance(found, tuple) else (found,)
+
+
+@each_call
+def test_an_element_is_a_single_call(name: str) -> None:
+    given = drawn(name, *SHAPES)
+    found, every = answers(name, given), np.broadcast_arrays(*given.values())
+    assert all(values.shape == (3, 4, 5) for values in found)
+    assert all(values.dtype == (np.int8 if name == "classify" else np.float64) for values in found)
+    for index in np.ndindex(3, 4, 5):
+        one = dict(zip(given, (float(values[index]) for values in every), strict=True))
+        for kind in (float, np.float64, np.array):
+            alone = answers(name, {key: kind(value) for key, value in one.items()})
+            assert all(type(value) in (float, Outcome) for value in alone)
+            assert alone == tuple(values[index] for values in found)
+
+
+@each_call
+def test_the_layout_of_an_array_does_not_matter(name: str) -> None:
+    """Lists, other types and strides, arrays that must not be written, and none at all."""
+    given = {key: values.astype(np.float32) for key, values in drawn(name, (4, 3)).items()}
+    expected = answers(name, {key: values.astype(float) for key, values in given.items()})
+    layouts: list[Callable[[Any], Any]] = [
+        lambda v: v, lambda v: v.tolist(), lambda v: tuple(map(tuple, v.tolist())),
+        lambda v: np.asfortranarray(v.astype(float)), lambda v: v.astype(float)[::-1][::-1],
+        lambda v: np.repeat(v.astype(float), 2, axis=1)[:, ::2], lambda v: v.astype(">f8"),
+    ]  # fmt: skip
+    for layout in layouts:
+        arrays = {key: layout(values) for key, values in given.items()}
+        for values in arrays.values():
+            if isinstance(values, np.ndarray):
+                values.flags.writeable = False
+        found = answers(name, arrays)
+        assert all(np.array_equal(*pair) for pair in zip(found, expected, strict=True))
+        for values, before in zip(arrays.values(), given.values(), strict=True):
+            assert np.array_equal(values, before)
+            assert not any(np.shares_memory(np.asarray(values), one) for one in found)
+    for shape in ((0,), (0, 4), (1,), (1, 1)):
+        assert {values.shape for values in answers(name, drawn(name, (), shape))} == {shape}
+
+
+def test_coordinates_broadcast_before_their_last_axis() -> None:
+    theta, omega = np.linspace(-2.0, 5.0, 4)[:, None], np.array([0.5, -1.0, 3.0])
+    axes: Arguments = {"a": 2.0, "b": 1.0}
+    q, q_dot = kinematics(theta, omega, **axes)
+    found = vars(constraints(q.tolist(), q_dot, **axes))
+    assert q.shape == q_dot.shape == (4, 3, 5)
+    assert [values.shape for values in found.values()] == [(4, 3, 3), (4, 3, 4), (4, 3), (4, 3)]
+    for i, j in np.ndindex(4, 3):
+        single = kinematics(float(theta[i, 0]), float(omega[j]), **axes)
+        assert np.array_equal(single, [q[i, j], q_dot[i, j]])
+        alone = vars(constraints(*single, **axes))
+        assert all(np.array_equal(alone[name], found[name][i, j]) for name in found)
+        assert np.ndim(alone["gap"]) == np.ndim(alone["slip"]) == 0
+    for one, other in ((q, q_dot[0, 0]), (q[:, :1], q_dot[:1])):
+        assert constraints(one, other, **axes).velocity.shape == (4, 3, 4)
+    assert constraints(np.empty((0, 5)), np.empty((0, 5)), **axes).position.shape == (0, 3)
