@@ -34,7 +34,7 @@ LIMITS: dict[str, dict[str, tuple[float, float]]] = {
 CALLS: dict[str, tuple[Callable[..., Any], str]] = {
     **{name: (getattr(geometry, name), "support") for name in geometry.__all__},
     "flow": (flow, "flow"), "classify": (classify, "classify"),
-    **{law: (lambda law=law, **given: impacts.collide(**given, law=law), "collide")  # type: ignore[misc]
+    **{law: (lambda law=law, **given: impacts.collide(**given, law=law), "collide")
        for law in impacts.LAWS},
     "kinetic_speed": (impacts.kinetic_speed, "kinetic_speed"),
 }  # fmt: skip

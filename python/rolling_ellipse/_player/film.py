@@ -15,7 +15,7 @@ from .._ask.scene import Scene
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
-from .._pictures.animation.camera import cameras
+from .._pictures.animation.strip import cameras
 from .._pictures.ground import touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment

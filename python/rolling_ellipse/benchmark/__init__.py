@@ -13,8 +13,7 @@ z, theta, x_dot, z_dot, omega.
 from ._equations import Dae, Ode
 from ._files import Result, export
 from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
-from ._score import Score
-from ._scores import Scores, run, score
+from ._scores import Score, Scores, run, score
 
 __all__ = [
     "Dae", "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export",

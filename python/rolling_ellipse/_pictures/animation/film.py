@@ -30,9 +30,8 @@ from ..forces import plot_forces
 from ..ground import flat_angle
 from ..palette import palette_of
 from ..phase import folded, plot_phase
-from .camera import cameras
 from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
-from .strip import Strip
+from .strip import Strip, cameras
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
