@@ -1,29 +1,23 @@
 """Delay of Ctrl-C in long work: in single runs of every model, in batches, in a notebook.
 
-    python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS] [--company]
+    python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS]
 
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
 table has the median, the 95th percentile and the longest time from the signal to the
 KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if the
-bits differ, or if a 95th percentile is more than 200 ms. With --company a Python thread holds the
-GIL as long as Python allows; then a table has the slowdown of four calls by such a thread, which
-is 2 at least on one core: a call asks Python for signals every 50 ms, and waits 5 ms until the
-thread releases the GIL. In the notebook the traceback is one line: Jupyter takes longer to
-draw the source. The last line has the time with the source and is not judged. The times need a
-machine without other load.
+bits differ, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line:
+Jupyter takes longer to draw the source. The last line has the time with the source and is not
+judged. The times need a machine without other load.
 """
 
 import argparse
 import signal
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from common import seconds
 from jupyter_client.manager import start_new_kernel
 from rolling_ellipse import (
     Impulse,
@@ -103,49 +97,6 @@ IN_NOTEBOOK = {  # the first line measures Jupyter's own time
 CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 
-SLOWED: dict[str, Callable[[], Any]] = {
-    "flow, 20 million times": lambda: flow(FORCES, a=2.0, b=1.0, theta=0.1, omega=3.2),
-    "flow, 200 000 motions": lambda: flow(5.0, a=2.0, b=1.0, theta=ANGLES, omega=3.2),
-    "rk4, a million steps": lambda: simulate(
-        scenes.rolling, [1e3], method="rk4", step=1e-3, **ROLLING
-    ),
-    "dop853, 600 000 steps": lambda: simulate(
-        scenes.rolling, [6e4], method="dop853", rtol=1e-13, **ROLLING
-    ),
-}
-ROUNDS = 5  # rounds of each call of SLOWED
-
-
-@contextmanager
-def company() -> Iterator[None]:
-    """A thread that holds the GIL as long as Python allows."""
-    over = threading.Event()
-
-    def busy() -> None:
-        while not over.is_set():
-            sum(range(1000))
-
-    thread = threading.Thread(target=busy)
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
-
-
-def print_slowdown() -> None:
-    """Print the least times of calls alone, and their ratios beside a busy thread."""
-    print(f"{'beside a busy thread':36}  alone     ratio, least of {ROUNDS} rounds")
-    for name, call in SLOWED.items():
-        alone, together = [], []
-        for _ in range(ROUNDS):
-            alone.append(seconds(call))
-            with company():
-                together.append(seconds(call))
-        print(f"{name:36} {min(alone):6.2f} s {min(together) / min(alone):8.2f}")
-
-
 def delay(call: Callable[[], Any], after: float) -> float:
     """Time from Ctrl-C, sent at a moment of a call, to the end of the call [s]."""
     # the alarm calls Python's handler of SIGINT
@@ -218,15 +169,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--tries", type=int, default=50)
     parser.add_argument("--only", default="", help="kinds of work with these words in their names")
-    parser.add_argument("--company", action="store_true")
     options = parser.parse_args()
     moments = np.linspace(0.05, 0.5, options.tries)
     print(f"{'Ctrl-C ends it after [ms]':50}  median    95 %  longest of {options.tries}")
     good, before = True, usable()
     for name, call in WORK.items():
         if options.only in name:
-            with company() if options.company else nullcontext():
-                good &= print_delays(name, [delay(call, after) for after in moments])
+            good &= print_delays(name, [delay(call, after) for after in moments])
             good &= usable() == before
     if any(options.only in name for name in IN_NOTEBOOK):
         notebook = Notebook()
@@ -241,8 +190,6 @@ def main() -> int:
             print_delays(f"{name}, stack drawn", delays)
         finally:
             notebook.close()
-    if options.company:
-        print_slowdown()
     print("usable afterwards, within 200 ms" if good else "NOT GOOD")
     return 0 if good else 1
 
