@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from rolling_ellipse import flow
 
 from oracles.numbers import EPS
 
@@ -44,3 +45,23 @@ def spread(answer: Answer, inputs: Inputs, errors: Inputs) -> Floats:
 def known_to(answer: Answer, inputs: Inputs) -> Floats:
     """Bound of the effect of rounding on an answer."""
     return spread(answer, inputs, roundings(inputs))
+
+
+def state(t: float, **motion: float) -> Floats:
+    """theta, omega and x after time t."""
+    return np.array(flow(t, **motion))
+
+
+def path_grain(motion: Inputs) -> Floats:
+    """Rounding of theta, omega and x: x is a difference of rounded lengths like the body's."""
+    return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
+
+
+def known_to_in_two_moves(first: float, second: float, motion: dict[str, float]) -> Floats:
+    """Bound of rounding for a motion that goes on from its state after the first time: the errors
+    of that state, as the second time changes them, and of the second move."""
+    theta, omega, _ = state(first, **motion)
+    error = known_to(state, {"t": first} | motion)
+    inputs = {"t": second} | motion | {"theta": float(theta), "omega": float(omega)}
+    errors = {"theta": float(error[0]), "omega": float(error[1])}
+    return known_to(state, inputs) + spread(state, inputs, errors) + [0, 0, error[2]]

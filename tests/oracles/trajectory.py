@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, Trajectory, simulate
+from rolling_ellipse._motion.quantities import QUANTITIES
 
 SCENES = {
     "report": rl.scenes.report,
@@ -15,11 +16,7 @@ SCENES = {
     "standing": Scene(0.7, 1.9, mass=3.0, gravity=3.7, inertia=2.0, theta=1.2, omega=1.0, x=-5.0),
     "backwards": Scene(2.0, 1.0, mass=0.2, omega=-3.3, friction=2.0),
 }
-VECTORS = (
-    "t", "x", "z", "theta", "psi", "r", "x_dot", "z_dot", "omega", "psi_dot", "r_dot", "x_ddot",
-    "z_ddot", "omega_dot", "psi_ddot", "r_ddot", "contact_x", "turns", "normal_force",
-    "friction_force", "friction_needed", "energy", "kinetic_energy", "potential_energy",
-)  # fmt: skip
+VECTORS = ("t", *(quantity.name for quantity in QUANTITIES))
 MATRICES = {"q": 5, "q_dot": 5, "multipliers": 4}
 
 TIMES = np.linspace(0.0, 2.0, 21)

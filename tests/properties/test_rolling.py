@@ -9,15 +9,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 from oracles.drawn import SIGNS, motions, powers, rate, spans
 from oracles.numbers import EPS
-from oracles.spread import ROUNDINGS, Floats, known_to, spread
+from oracles.spread import Floats, known_to, known_to_in_two_moves, path_grain, spread, state
 from rolling_ellipse import flow, geometry
 
 MOST_HALF_TURNS = 1e9
-
-
-def state(t: float, **motion: float) -> Floats:
-    """theta, omega and x after time t."""
-    return np.array(flow(t, **motion))
 
 
 def leave_equilibria_out(motion: dict[str, float]) -> None:
@@ -26,11 +21,6 @@ def leave_equilibria_out(motion: dict[str, float]) -> None:
     roundness = abs(motion["a"] / motion["b"] - motion["b"] / motion["a"])
     leaning = roundness * abs(math.sin(2 * motion["theta"]))
     assume(motion["omega"] != 0 or roundness == 0 or leaning > 1e-6)
-
-
-def path_grain(motion: dict[str, float]) -> Floats:
-    """Rounding of theta, omega and x: x is a difference of rounded lengths like the body's."""
-    return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
 
 
 def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> Floats:
@@ -133,15 +123,11 @@ def test_two_moves_are_one(data: Any) -> None:
     leave_equilibria_out(motion)
     first, second = data.draw(spans(motion, 1e4)), data.draw(SIGNS) * data.draw(spans(motion, 1e4))
     whole = state(first + second, **motion)
-    allowed = known_to(state, {"t": first + second} | motion)
+    allowed = known_to(state, {"t": first + second} | motion) + 3 * path_grain(motion)
+    allowed += known_to_in_two_moves(first, second, motion)
 
     between = state(first, **motion)
-    error = known_to(state, {"t": first} | motion)
     reached = motion | {"theta": float(between[0]), "omega": float(between[1])}
-    inputs = {"t": second} | reached
-    errors = {"theta": float(error[0]), "omega": float(error[1])}
-    allowed += known_to(state, inputs) + spread(state, inputs, errors)
-    allowed += [0, 0, error[2]] + 3 * path_grain(motion)
     found = np.add(state(second, **reached), [0, 0, between[2]])
     assert np.all(np.abs(found - whole) <= allowed)
 

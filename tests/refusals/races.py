@@ -36,15 +36,24 @@ def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
 def damaged(road: str, value: Any) -> Callable[[Path], Any]:
     """Load a file of a race with another value at a place of its text."""
 
-    def call(folder: Path) -> Any:
-        path = folder / "race.json"
-        race()(folder).save(path)
-        known = part = json.loads(path.read_text())
+    def change(text: str) -> str:
+        known = part = json.loads(text)
         *steps, last = (int(step) if step.isdigit() else step for step in road.split("."))
         for step in steps:
             part = part[step]
         part[last] = value
-        path.write_text(json.dumps(known))
+        return json.dumps(known)
+
+    return changed(change)
+
+
+def changed(change: Callable[..., str]) -> Callable[[Path], Any]:
+    """Load a file of a race whose text is changed."""
+
+    def call(folder: Path) -> Any:
+        path = folder / "race.json"
+        race()(folder).save(path)
+        path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
         return WorkPrecision.load(path)
 
     return call
@@ -59,6 +68,8 @@ DAMAGED: list[tuple[str, Any]] = [
     *(("scene.a", wrong) for wrong in (-1.0, "2.0", 2)), ("machine", []), ("machine", 1),
     ("machine.rounds", 20), ("more", 1),
 ]  # fmt: skip
+
+TEXTS = ("", "{", "[]", "3", '"race"', "{}", "\ufeff{}", '{"a":1,"a":2}')
 
 REFUSALS: list[Row] = [
     # requests
@@ -80,4 +91,6 @@ REFUSALS: list[Row] = [
     ("highlight", result(lambda found: found.plot(highlight=3))),  # type: ignore[arg-type]
     ("ax", result(lambda found: found.plot(by="library", ax=WRONG))),
     *(("path", damaged(*each)) for each in DAMAGED),
+    *(("path", changed(lambda _, text=text: text)) for text in TEXTS),
+    *(("path", changed(lambda text, k=k: text[: k * len(text) // 20])) for k in range(20)),
 ]  # fmt: skip

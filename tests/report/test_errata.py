@@ -398,19 +398,3 @@ def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
     printed_41 = float(report.eq_41(q, q_ddot, **UNEVEN))
     assert printed_41 == pytest.approx(head - printed * third / complete, rel=1e-12)
     assert abs(printed_41 - complete_41) > 0.1
-
-
-@pytest.mark.parametrize(
-    ("function", "power", "agrees"),
-    [(report.complete_f, 6, True), (report.eq_40, 6, False), (report.eq_42, 9, False)],
-)
-def test_dimensions(function: Any, power: int, agrees: bool) -> None:
-    """The same state in millimetres and grams gives 1000^power times 1000 the number.
-
-    F is kg m^6/s^2, F1 = 2 (...)^(3/2) F is m^3 more.
-    """
-    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
-    q_ddot, lengths = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1e3, 1e3, 1, 1, 1e3])
-    small = {"a": 2e3, "b": 0.7e3, "mass": 3e3, "gravity": 9.81e3}
-    ratio = function(q * lengths, q_ddot * lengths, **small) / function(q, q_ddot, **UNEVEN)
-    assert (abs(ratio / 1e3 ** (power + 1) - 1) < 1e-12) == agrees

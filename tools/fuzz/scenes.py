@@ -8,6 +8,7 @@ from typing import Any
 
 import rolling_ellipse as rl
 from oracles import drawn
+from oracles.units import UNITS, exponents
 
 from .values import Draw, call
 
@@ -29,10 +30,8 @@ MANNERS: tuple[tuple[str, str, str], ...] = (
 )
 # Powers of the units of length, time and mass in the numbers of a scene and of an impulse.
 POWERS = {
-    "a": (1, 0, 0), "b": (1, 0, 0), "x": (1, 0, 0), "z": (1, 0, 0), "gravity": (1, -2, 0),
-    "mass": (0, 0, 1), "inertia": (2, 0, 1), "omega": (0, -1, 0), "x_dot": (1, -1, 0),
-    "z_dot": (1, -1, 0), "jx": (1, -1, 1), "jz": (1, -1, 1), "dx": (1, 0, 0), "dz": (1, 0, 0),
-}  # fmt: skip
+    name: exponents(unit).tolist() for k in ("Scene", "Impulse") for name, unit in UNITS[k].items()
+}
 
 
 @dataclass(frozen=True)
