@@ -19,17 +19,18 @@ from . import StabilityWarning, Status, Trajectory, examples, simulate
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
-from ._show.command.options import (
+from ._show.command_line import (
     PROGRAM,
     act,
     benchmark_parser,
     chosen_scene,
     examples_parser,
     explore_parser,
+    lines,
     motion_parser,
     require_file,
+    summary,
 )
-from ._show.command.summary import lines, summary
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
@@ -78,14 +79,8 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
             require_file(f"--{name}", path)
     if options.save is not None:
         film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
-    trajectory = simulate(
-        chosen_scene(options),
-        options.time,
-        model=options.model,
-        method=options.method,
-        step=options.step,
-        raise_on_failure=False,
-    )
+    how = {name: getattr(options, name) for name in ("model", "method", "step")}
+    trajectory = simulate(chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
     if options.plot is not None:
         files.append(_write_figure(trajectory, options.plot))

@@ -26,7 +26,7 @@ from rolling_ellipse import Impulse, Scene, _core
 from rolling_ellipse._ask.settings import DEFAULTS, Settings
 from rolling_ellipse._motion.export.files import event_row, event_values
 from rolling_ellipse._motion.export.strict import scene_of
-from rolling_ellipse._show.command.options import (
+from rolling_ellipse._show.command_line import (
     NOT_TYPED,
     SCENE_OPTIONS,
     chosen_scene,

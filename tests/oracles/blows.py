@@ -1,9 +1,9 @@
-"""Random blows, and their outcomes as seen in the computed motions."""
+"""Outcomes as seen in the computed motions."""
 
 import math
 
 import numpy as np
-from rolling_ellipse import EventKind, Impulse, Mode, Outcome, Scene, Status, simulate
+from rolling_ellipse import EventKind, Mode, Outcome, Scene, Status, simulate
 
 SPANS = 24  # number of spans, each twice as long as the one before
 SAMPLES = 300
@@ -13,41 +13,6 @@ AT_ONCE = {
     Mode.REST: Outcome.RESTS,
 }
 ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES_CONTACT}
-
-
-def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
-    """A blow of a size at any point of the body, mostly a press, half of them straight."""
-    push = rng.choice([0.0, rng.normal()])
-    share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
-    along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
-    return Impulse(
-        size * push,
-        size * rng.choice([-1.0, -1.0, 1.0]),
-        dx=along * math.cos(theta) + across * math.sin(theta),
-        dz=across * math.cos(theta) - along * math.sin(theta),
-    )
-
-
-def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
-    """A scene of any shape up to 30:1, at rest or rolling, with a blow about strong enough to roll
-    it over, mostly a press."""
-    b = 10 ** rng.uniform(-1, 1)
-    a = b * 10 ** rng.uniform(-1.5, 1.5) if rng.random() < 0.8 else b
-    mass, gravity = 10 ** rng.uniform(-1, 1, 2)
-    speed = math.sqrt(gravity * max(a, b))
-    strength = mass * speed * 10 ** rng.uniform(-1.5, 0.7)
-    theta = rng.choice([0.0, rng.uniform(-4, 4)])
-    return Scene(
-        a,
-        b,
-        mass=mass,
-        gravity=gravity,
-        friction=rng.choice([math.inf, 10 ** rng.uniform(-1.5, 0.8)]),
-        slope=rng.uniform(-0.7, 0.7) if slope else 0.0,
-        theta=theta,
-        omega=rng.choice([0.0, speed / max(a, b) * rng.normal()]),
-        impulse=random_blow(rng, a, b, theta, strength),
-    )
 
 
 def tips_passed(scene: Scene, theta: float) -> int:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from rolling_ellipse import InitialState, Scene
+from rolling_ellipse import Impulse, InitialState, Scene
 
 from oracles.geometry import support
 
@@ -96,20 +96,36 @@ def energy(scene: Scene, state: InitialState) -> float:
     return kinetic_energy(scene, state) + scene.mass * scene.gravity * height
 
 
-def random_scenes(count: int, seed: int, **given: Any) -> Iterator[Scene]:
-    """Scenes in the air, sliding or rolling, lying or standing, a tenth of them circles."""
+def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
+    """A blow of a size at any point of the body, mostly a press, half of them straight."""
+    push = rng.choice([0.0, rng.normal()])
+    share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
+    along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
+    return Impulse(
+        size * push,
+        size * rng.choice([-1.0, -1.0, 1.0]),
+        dx=along * math.cos(theta) + across * math.sin(theta),
+        dz=across * math.cos(theta) - along * math.sin(theta),
+    )
+
+
+def random_scenes(count: int, seed: int, struck: float = 0.0, **given: Any) -> Iterator[Scene]:
+    """Scenes in the air, sliding or rolling, lying or standing, a tenth of them circles, some flat,
+    on the tip or at rest; a share of them with a blow about strong enough to roll them over."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
-        a, b = (10 ** rng.uniform(-0.5, 0.5, 2)).tolist()
+        a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
         b = a if rng.random() < 0.1 else b
-        theta, omega = float(rng.uniform(-4, 4)), float(3 * rng.normal())
-        values = {
+        theta = float(rng.choice([0.0, math.pi / 2, *rng.uniform(-4, 4, 6)]))
+        mass, disc = 10 ** rng.uniform(-1, 1), (a * a + b * b) / 4
+        values: dict[str, Any] = {
             "theta": theta,
-            "omega": omega,
-            "friction": float(rng.choice(FRICTIONS)),
+            "omega": float(rng.choice([0.0, 0.0, *rng.normal(size=6)])) * 3,
+            "friction": float(rng.choice([*FRICTIONS, 10 ** rng.uniform(-6, 6)])),
             "restitution": float(rng.choice(RESTITUTIONS)),
-            "slope": float(rng.choice(SLOPES)),
-            "mass": float(10 ** rng.uniform(-1, 1)),
+            "slope": float(rng.choice([*SLOPES, rng.uniform(-1.4, 1.4)])),
+            "mass": float(mass),
+            "inertia": mass * disc * 10 ** rng.uniform(-1, 1) if rng.random() < 0.5 else None,
         }
         start = rng.integers(3)
         speeds = rng.normal(size=3).tolist()
@@ -118,4 +134,7 @@ def random_scenes(count: int, seed: int, **given: Any) -> Iterator[Scene]:
             values |= {"z": height, "x_dot": 2 * speeds[1], "z_dot": speeds[2]}
         elif start == 1:
             values |= {"x_dot": 3 * speeds[1]}
+        if rng.random() < struck:
+            strength = mass * math.sqrt(9.81 * max(a, b)) * 10 ** rng.uniform(-1.5, 0.7)
+            values["impulse"] = random_blow(rng, a, b, theta, strength)
         yield Scene(a, b, **(values | given))

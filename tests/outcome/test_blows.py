@@ -8,7 +8,7 @@ import numpy as np
 import oracles.rolling
 import pytest
 import rolling_ellipse as rl
-from oracles.blows import random_scene
+from oracles.contact import random_scenes
 from rolling_ellipse import (
     Impulse,
     Mode,
@@ -127,10 +127,8 @@ def test_required_friction_is_what_blow_and_motion_need() -> None:
     """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
     (1e-12 of the forces). Below it the certificate finds the end of rolling, with a little more it
     proves rolling: its squared polynomials leave some 1e-6 between these undecided."""
-    rng = np.random.default_rng(11)
     by_the_blow = by_the_motion = never = 0
-    for _ in range(400):
-        scene = random_scene(rng)
+    for scene in random_scenes(400, 11, struck=0.8, slope=0.0):
         found = required_friction(scene)
         assert found == required_friction(replace(scene, friction=0.123))
         if math.isinf(found):

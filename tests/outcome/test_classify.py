@@ -8,8 +8,8 @@ import numpy as np
 import oracles.geometry
 import oracles.rolling
 import pytest
+from oracles.crowd import Sample, random_sample
 from oracles.numbers import DIGITS
-from oracles.outcome import Sample, random_sample
 from rolling_ellipse import Outcome, Scene, Validity, certify, classify, thresholds
 
 # -------------------------------------------------------------------------------------- exact edges
@@ -184,9 +184,9 @@ def test_the_default_is_a_disc_on_earth_with_unlimited_friction_lying_on_its_sid
 
 def test_workers() -> None:
     """20,000 scenes have the same answers for any number of workers."""
-    sample = random_sample(400, 21)
+    sample, _ = random_sample(400, 21)
     big = Sample(*(np.tile(field, 50) for field in sample))
     big = big._replace(omega=big.omega * np.linspace(0.5, 1.5, big.omega.size))
-    one, two, every = (classify(**big._asdict(), workers=n) for n in (1, 2, -1))
+    one, two, every = (classify(**big.arguments(), workers=n) for n in (1, 2, -1))
     assert isinstance(one, np.ndarray) and one.shape == (20_000,)
     assert np.array_equal(one, two) and np.array_equal(one, every)

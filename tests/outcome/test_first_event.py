@@ -13,12 +13,13 @@ import oracles.geometry
 import oracles.rolling
 import pytest
 from numpy.typing import NDArray
+from oracles.crowd import Sample, random_sample
 from oracles.numbers import PI, Long
-from oracles.outcome import Codes, Sample, random_sample
 from oracles.rolling import Motion
 from rolling_ellipse import Outcome, classify
 
 STEPS, CHUNK = 4000, 100
+Codes = NDArray[np.int8]
 CLEAR = 1e-6  # share of forces, energy and gravity; a margin nearer to zero decides nothing
 
 
@@ -120,14 +121,14 @@ class Walked(NamedTuple):
 
 @pytest.fixture(scope="module")
 def walked() -> list[Walked]:
-    """The answers of 600 scenes in chunks: 100 scenes x 4001 angles of long double are 6.4 MB per
-    intermediate array."""
+    """The answers of 800 scenes, a fifth of them too near to a threshold to tell, in chunks: 100
+    scenes x 4001 angles of long double are 6.4 MB per intermediate array."""
     chunks = []
-    for seed in range(6):
-        sample = random_sample(CHUNK, seed)
+    for seed in range(8):
+        sample, _ = random_sample(CHUNK, seed)
         found = walk(sample)
         chunks.append(Walked(sample.only(found.clear), found.outcome[found.clear]))
-    assert sum(chunk.truth.size for chunk in chunks) > 0.95 * 6 * CHUNK
+    assert sum(chunk.truth.size for chunk in chunks) > 0.75 * 8 * CHUNK
     return chunks
 
 
@@ -158,7 +159,7 @@ def test_the_random_scenes_meet_every_case(walked: list[Walked]) -> None:
 
 def test_what_comes_first_on_the_walk(walked: list[Walked]) -> None:
     for sample, truth in walked:
-        wrong = np.flatnonzero(sample.outcomes() != truth)
+        wrong = np.flatnonzero(np.asarray(classify(**sample.arguments())) != truth)
         assert wrong.size == 0, [
             (sample.scene(int(row)), Outcome(int(truth[row])).name) for row in wrong[:3]
         ]
@@ -168,7 +169,8 @@ def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
     """The opposite direction changes the first event of some scenes, so the test above is sharp."""
     differ = 0
     for sample, truth in walked:
-        differ += int((sample._replace(omega=-sample.omega).outcomes() != truth).sum())
+        back = sample._replace(omega=-sample.omega)
+        differ += int((np.asarray(classify(**back.arguments())) != truth).sum())
     assert differ >= 5
 
 

@@ -29,7 +29,7 @@ class Hit(NamedTuple):
         return response(self.scene, self.event.state_after)
 
 
-def hits(count: int, seed: int, bounces: int = 100, **given: Any) -> list[Hit]:
+def hits(count: int, seed: int, bounces: int = 20, **given: Any) -> list[Hit]:
     """Impacts of bouncing bodies."""
     found: list[Hit] = []
     for scene in random_scenes(10 * count, seed, **given):
@@ -220,7 +220,7 @@ def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
     """The energy lost is the impulse times the mean velocity of the contact, up to roundings of the
     kinetic energy."""
     lossless = 0
-    for hit in hits(300, 19):
+    for hit in hits(600, 19, bounces=3):
         along, away = impulses(hit)
         work = 0.5 * along * (hit.before.slip + hit.after.slip)
         work += 0.5 * away * (hit.before.gap_rate + hit.after.gap_rate)
@@ -231,4 +231,4 @@ def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
         assert lost == pytest.approx(-work, abs=10 * rounding)  # heights have energies, too
         assert hit.event.state_after.energy_lost >= 0 == hit.event.state_before.energy_lost
         lossless += abs(work) < rounding
-    assert 0 < lossless < 150
+    assert 0 < lossless < 300
