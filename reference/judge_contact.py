@@ -3,8 +3,8 @@
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
-one scene of a seed and prints all of its values, `--family well` draws from one family, `--report`
-only prints the findings in a file. The report counts the judged scenes by family, shape and
+one scene of a seed and prints all of its values, `--family well` draws from one family, `--scenes
+0` only prints the findings in a file. The report counts the judged scenes by family, shape and
 friction, and reproduces each scene above `--limit` units.
 
 Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
@@ -495,13 +495,9 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
     return False
 
 
-class TooSlow(Exception):
-    """The judgement of a scene has taken longer than `MOST_SECONDS`."""
-
-
 def too_slow(*_: Any) -> None:
-    """Raise `TooSlow`; the handler of the alarm."""
-    raise TooSlow
+    """The handler of the alarm."""
+    raise TimeoutError
 
 
 def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, Any]:
@@ -522,7 +518,7 @@ def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, An
         record |= {"verdict": "refused", "why": str(error)}
     except Undecided as error:
         record |= {"verdict": "undecided", "why": str(error)}
-    except TooSlow:
+    except TimeoutError:
         record |= {"verdict": "too slow", "why": ""}
     except Exception as error:
         record |= {"verdict": "failed", "why": repr(error)}
@@ -1014,7 +1010,6 @@ def main() -> None:
     asked.add_argument("--file", type=Path)
     asked.add_argument("--limit", type=float, default=8.0)
     asked.add_argument("--only", type=int)
-    asked.add_argument("--report", action="store_true", help="only print what the file says")
     given = asked.parse_args()
     if given.only is not None:
         record = judge((given.seed, given.only, given.family), tell=True)
@@ -1025,14 +1020,13 @@ def main() -> None:
     done = {one["number"] for one in records}
     tasks = [(given.seed, i, given.family) for i in range(given.scenes) if i not in done]
     began = time.perf_counter()
-    if not given.report:
-        with multiprocessing.Pool(given.workers) as pool, file.open("a") as out:
-            for count, record in enumerate(pool.imap_unordered(judge, tasks), 1):
-                print(json.dumps(record), file=out, flush=True)
-                records.append(record)
-                if count % 25 == 0:
-                    spent = time.perf_counter() - began
-                    print(f"{count} of {len(tasks)}, {spent:.0f} s", flush=True)
+    with multiprocessing.Pool(given.workers) as pool, file.open("a") as out:
+        for count, record in enumerate(pool.imap_unordered(judge, tasks), 1):
+            print(json.dumps(record), file=out, flush=True)
+            records.append(record)
+            if count % 25 == 0:
+                spent = time.perf_counter() - began
+                print(f"{count} of {len(tasks)}, {spent:.0f} s", flush=True)
     report(records, given.limit)
 
 

@@ -60,10 +60,9 @@ NEAREST = {
     "scene": ["scene", "contact", "refusals"],
     "_ask": ["scene", "refusals", "border"],
     "_motion": ["trajectory", "contact", "border"],
-    "_show": ["border", "trajectory"],
+    "_show": ["project", "border", "trajectory"],
     "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling"],
     "batches": ["batches", "refusals"],
-    "command": ["project"],
     "export": ["export", "refusals", "trajectory"],
     "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }

@@ -102,7 +102,18 @@ def dask() -> Iterator[Client]:
         yield client
 
 
-def require_the_same_bits(workers: Any, folder: Path) -> None:
+@pytest.fixture(params=["threads", "only maps", "processes", "dask"])
+def pool(request: pytest.FixtureRequest) -> Iterator[Any]:
+    if request.param == "threads":
+        with ThreadPoolExecutor(3) as threads:
+            yield threads
+    else:
+        named = request.param in ("processes", "dask")
+        yield request.getfixturevalue(request.param) if named else Mapping()
+
+
+def test_every_pool_gives_the_same_bits(pool: Any, tmp_path: Path) -> None:
+    workers, folder = pool, tmp_path / "out"
     found = simulate_many(NAMED * 5, TIMES, workers=workers)
     expected = simulate_many(NAMED * 5, TIMES)
     for one, other in zip(found, expected, strict=True):
@@ -122,23 +133,6 @@ def require_the_same_bits(workers: Any, folder: Path) -> None:
     for wrong in ({"a": -1.0}, {"theta": np.append(THETA, np.nan)}):
         with pytest.raises(ValueError, match=r"^(a|theta)(\[\d+\])? must be"):
             rl.classify(**{"theta": 0.1, **body, **wrong}, workers=workers)
-
-
-def test_threads(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(3) as pool:
-        require_the_same_bits(pool, tmp_path / "out")
-
-
-def test_a_pool_that_only_maps(tmp_path: Path) -> None:
-    require_the_same_bits(Mapping(), tmp_path / "out")
-
-
-def test_processes(processes: ProcessPoolExecutor, tmp_path: Path) -> None:
-    require_the_same_bits(processes, tmp_path / "out")
-
-
-def test_dask(dask: Client, tmp_path: Path) -> None:
-    require_the_same_bits(dask, tmp_path / "out")
 
 
 def test_few_elements_and_none() -> None:

@@ -14,29 +14,12 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion
+from oracles.flow import LARGEST_ERROR, MOTIONS, PARAMETERS, Motion
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
 
 DIGITS = 40
-ROLL_OVER = thresholds(2.0, 1.0).roll_over_speed
-# semi-axes, k^2, gravity, theta, omega
-MOTIONS = {
-    "libration": (2.0, 1.0, 1.25, 9.81, 0.2, 1.0),
-    "small libration": (2.0, 1.0, 1.25, 9.81, 1e-3, 0.0),
-    "rotation": (2.0, 1.0, 1.25, 9.81, 0.2, 3.2),
-    "backwards": (2.0, 1.0, 1.25, 9.81, -1.1, -4.0),
-    "fast": (1.5, 1.0, 0.3, 3.7, 0.4, 1e4),
-    "just over the tip": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 + 1e-9)),
-    "just not over it": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 - 1e-9)),
-    "thin": (2.0, 0.02, 1.0001, 9.81, 0.3, 0.0),
-    "thin turning": (1.0, 1.1e-3, 0.25, 9.81, 0.1, 7.0),
-    "standing": (0.7, 1.9, 1.025, 9.81, 1.3, 0.8),
-    "standing turning": (0.7, 1.9, 1.025, 9.81, 0.1, -2.5),
-    "hoop": (1.1, 1.0, 1.21, 1.62, 0.7, 0.3),
-    "circle + 1e-8": (1.0 + 1e-8, 1.0, 0.5, 9.81, 0.3, 2.0),
-}
 each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 
 

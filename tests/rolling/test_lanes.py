@@ -145,17 +145,9 @@ def test_extremes(level: str, case: str) -> None:
 
 
 WRONG = {
-    "a": (-1.0, r"^a\[700\] must be a positive finite length \[m\], got -1.0$"),
-    "b": (math.nan, r"^b\[700\] must be a positive finite length \[m\], got nan$"),
-    "theta": (math.inf, r"^theta\[700\] must be a finite number \[rad\] of at most 1e50, got inf$"),
-    "omega": (
-        1e60,
-        r"^omega\[700\] must be a finite number \[rad/s\] of at most 1e50, got 1e",
-    ),
-    "gravity": (0.0, r"^gravity\[700\] must be a positive finite acceleration "),
-    "gyration2": (-0.1, r"^gyration2\[700\] must be a positive finite area \[m\^2\], got -0.1$"),
-    "t": (math.nan, r"^t\[700\] must be finite \[s\], got nan$"),
-}
+    "a": -1.0, "b": math.nan, "theta": math.inf, "omega": 1e60, "gravity": 0.0, "gyration2": -0.1,
+    "t": math.nan,
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -164,10 +156,9 @@ WRONG = {
 def test_a_wrong_number_is_told_by_name_and_place(level: str, workers: int, name: str) -> None:
     """The first wrong number is named, even if later chunks or later steps contain more of them."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
-    wrong, message = WRONG[name]
-    motions[name][[700, 2900]] = wrong
+    motions[name][[700, 2900]] = WRONG[name]
     motions["t"][[705, 2901]] = 1e30
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=rf"^{name}\[700\] must be .* got "):
         states(level, motions, workers)
 
 
