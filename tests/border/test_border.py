@@ -159,13 +159,6 @@ def test_help_tells_units() -> None:
         assert f"``{name}``" in (rl.scenes.__doc__ or ""), name
 
 
-@pytest.mark.parametrize(
-    "t", [[0.0, 6.0], np.array([0.0, 6.0]), (1.0, 6.0), (0.0, 3.0, 6.0), (6.0,)]
-)
-def test_times_of_other_kinds_are(t: Any) -> None:
-    assert rl.simulate(rl.scenes.report, t).t.tolist() == list(t)
-
-
 class Dial:
     """A number whose value changes."""
 

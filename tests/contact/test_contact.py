@@ -431,11 +431,14 @@ def test_unlimited_friction_never_jams() -> None:
 
 
 def test_what_no_motion_may_do() -> None:
-    """1e5 samples obey the laws: no penetration, N >= 0, friction within its cone and against the
+    """3e5 samples obey the laws: no penetration, N >= 0, friction within its cone and against the
     slip, energy never grows. Integrated arcs have an error of 1e-13 per step at their ends and a
     few 1e-11 between them; averaged bounces gain at most the square of their duration."""
-    for i, (scene, motion) in enumerate(random_motions(100, 41, np.linspace(0, 4, 1001), 300)):
+    for i, (scene, motion) in enumerate(random_motions(300, 41, np.linspace(0, 4, 1001), 300)):
         size, weight = max(scene.a, scene.b), scene.mass * scene.gravity
+        for event in motion.events:
+            flies = event.state_after.mode is Mode.FLIGHT
+            assert flies == (event.kind is EventKind.LIFT_OFF) or event.kind is EventKind.IMPACT
         residuals = motion.constraint_residuals()
         assert residuals.gap.min() >= -1e-12 * size, i
         assert np.all(np.abs(residuals.gap[motion.mode != Mode.FLIGHT]) <= 4 * EPS * size)
@@ -595,13 +598,6 @@ def test_leaving_the_ground_is_no_slip() -> None:
     motion = simulate(scene, 2.3)
     assert kinds(motion)[0] is EventKind.LIFT_OFF
     assert motion.events[0].t == pytest.approx(2.152772, abs=1e-6)
-    for _, found in random_motions(600, 83, max_events=50):
-        for event in found.events:
-            flies = event.state_after.mode is Mode.FLIGHT
-            if event.kind is EventKind.SLIP:
-                assert not flies
-            if event.kind is EventKind.LIFT_OFF:
-                assert flies
 
 
 # ----------------------------------------------------------------------------- units
