@@ -367,9 +367,11 @@ def test_a_jam() -> None:
 
 
 def test_only_slip_jams() -> None:
-    """A jam needs slip; without slip the contact acceleration always has a solution."""
+    """A jam needs slip; without slip the contact acceleration always has a solution. Slides end
+    before two motions are possible, and an impact ends without the slip for it."""
     jams = 0
-    for scene, motion in random_motions(600, 31, friction=3.0, slope=0.0):
+    for scene, motion in random_motions(1000, 31, friction=3.0, restitution=0.0):
+        assert "two motions" not in motion.message or motion.t_end == 0
         if motion.status is Status.JAMMED:
             last = motion.events[-1].state_after
             contact = response(scene, last)
@@ -411,15 +413,6 @@ def test_a_blow_may_lead_to_two_motions() -> None:
     assert struck.initial_state.mode is Mode.SLIDING
     assert "two motions" in struck.initial_state.reason
     assert "two motions" in simulate(struck, 1.0).message
-
-
-def test_no_motion_leads_to_two_motions() -> None:
-    """Slides end before two motions are possible, and an impact ends without the slip for it."""
-    jams = 0
-    for _, motion in random_motions(600, 43, friction=3.0, restitution=0.0):
-        jams += motion.status is Status.JAMMED
-        assert "two motions" not in motion.message or motion.t_end == 0
-    assert jams > 20
 
 
 def test_unlimited_friction_never_jams() -> None:

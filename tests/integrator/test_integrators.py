@@ -348,16 +348,12 @@ def test_time_zero(name: str) -> None:
 
 @each_method
 def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
-    """Samples keep their bits among others: more than a thousand, each third, in another order, and
-    beyond any chunk."""
+    """Samples keep their bits among others: more than a thousand, each third, and beyond any
+    chunk."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)
     assert same_bits(third, trajectory.sol(times[1001::3]))
-    order = np.random.default_rng(3).permutation(times.size)
-    mixed = trajectory.sol(times[order])
-    for field in STATE:
-        assert np.array_equal(getattr(mixed, field), getattr(trajectory, field)[order])
     assert same_bits(trajectory.sol(times), trajectory)
 
 

@@ -100,16 +100,6 @@ def test_constraints_alone_do_not_keep_the_energy(name: str, power: int) -> None
     assert slope == pytest.approx(power, abs=0.15)
 
 
-def test_projection_with_the_energy_loses_none() -> None:
-    """The energy of 1000 half turns is constant within 8 ulp: it is a sum of four products."""
-    start = simulate(FED_BACK, 0.0).energy[0]
-    found = kept("projection+energy")
-    times = np.random.default_rng(5).uniform(0, found.t_end, 1000)
-    lost = np.max(np.abs(found.sol(times).energy / start - 1))
-    told(f"projection+energy, at any of 1000 times: {lost / EPS:.2g} ulp")
-    assert lost <= 8 * EPS
-
-
 # ----------------------------------------------------------------- Gauss walks at random
 
 

@@ -17,7 +17,8 @@ ROLLED = rl.Scene(2.0, 1.0, theta=0.2, omega=3.2)
 STEPPED: list[dict[str, Any]] = [
     {"model": "rolling", "method": "rk4", "step": 0.02},
     {"model": "rolling", "method": "gauss", "step": 0.02},
-    {"model": "rolling", "method": "dopri5"},
+    *({"model": "rolling", "method": method} for method in ("dopri5", "dop853")),
+    {"model": "rolling", "method": "radau", "step": 0.02},
     {"model": "multipliers", "method": "rk4", "step": 0.02},
     {"model": "multipliers", "method": "dop853", "stabilization": "none"},
     {"model": "multipliers", "method": "radau", "step": 0.02, "stabilization": "ggl"},
