@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "bindings/bindings.hpp"
+#include "multipliers/steps.hpp"
 #include "outcome/passages.hpp"
 #include "simulate.hpp"
 
@@ -91,6 +92,31 @@ py::dict sample_contact(const Solution& solution, const Array& t) {
             columns.store(samples, begin, end);
         });
     found["mode"] = read_only(mode);
+    return found;
+}
+
+// The numbers of a sample at one time, by the names of the arrays of a motion, and its mode.
+py::dict sample_at(const Solution& solution, const Scene& scene, const Settings& settings,
+                   double t) {
+    validate_times(solution, &t, 0, 1);
+    const Sampler sampler(solution.motion, 1);
+    ContactSample sample;
+    sampler(&t, 1, &sample);
+    const State& state = sample.state;
+    CoordinateState at = coordinate_state(scene.axes(), state);
+    if (solution.model == Model::multipliers) {
+        sampler(&t, 1, &at);
+        const Eigen::Vector4d forces =
+            accelerations(ConstrainedBody(scene), settings, at).multipliers;
+        sample.force = {forces[1], forces[0]};
+    }
+    py::dict found;
+    for (const auto& field : state_fields) found[field.name] = state.*field.number;
+    for (const auto& field : force_fields) found[field.name] = sample.force.*field.number;
+    found["contact_x"] = state.x + geometry(scene.axes(), state.theta).dh;
+    found["psi"] = at.q[coordinate::psi];
+    found["r"] = at.q[coordinate::r];
+    found["mode"] = static_cast<int>(state.mode);
     return found;
 }
 
@@ -226,6 +252,7 @@ void bind_solution(py::module_& m) {
         .def("knots", [](const Solution& s) { return array_of(knot_times(s.motion)); })
         .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)
         .def("zeros", zeros_of, "function"_a, "direction"_a)
+        .def("sample_at", sample_at, "scene"_a, "settings"_a, "t"_a)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);

@@ -139,7 +139,7 @@ def test_only_what_is_public_is_offered() -> None:
         assert dir(module) == sorted(module.__all__)
 
 
-WITHOUT_UNITS = ("events", "success", "reason", "stats")
+WITHOUT_UNITS = ("events", "success", "reason", "stats", "model", "method", "status", "message")
 
 
 def test_help_tells_units() -> None:

@@ -168,19 +168,15 @@ class Scene(FieldsOnly, Listed):
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
         """Check the arguments, and keep them as the fields of this scene."""
-        impulse = given.pop("impulse")
         for name, value in given.items():
-            if type(value) is not float and not (value is None and name in OPTIONAL):
-                given[name] = number(name, value)
-        if impulse is not None and not isinstance(impulse, Impulse):
-            raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
-        if impulse is not None and impulse.shape != ():
-            raise ValueError(
-                f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
-                "use outcome(scene, impulse)"
-            )
-        core = _for_core(given, impulse, reached)  # refuses numbers out of range
-        object.__setattr__(self, "__dict__", given | {"impulse": impulse, "core": core})
+            if type(value) is float or name == "impulse" or (value is None and name in OPTIONAL):
+                continue
+            given[name] = number(name, value)
+        impulse = given["impulse"]
+        if impulse is not None:
+            _require_one_blow(impulse)
+        given["core"] = _for_core(given, impulse, reached)  # refuses numbers out of range
+        object.__setattr__(self, "__dict__", given)
 
     @classmethod
     def from_density(
@@ -266,6 +262,16 @@ class Scene(FieldsOnly, Listed):
 
 
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)
+
+
+def _require_one_blow(impulse: Any) -> None:
+    if not isinstance(impulse, Impulse):
+        raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
+    if impulse.shape != ():
+        raise ValueError(
+            f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
+            "use outcome(scene, impulse)"
+        )
 
 
 def _for_core(numbers: dict[str, Any], impulse: Impulse | None, reached: bool) -> _core.Scene:

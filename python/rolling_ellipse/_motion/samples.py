@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -12,7 +13,9 @@ import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import FloatArray, array, shown
+from .._ask.records import trusted
 from .._core import Mode
+from .events import energies
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -32,6 +35,7 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
+_MODES = {mode.value: mode for mode in Mode}
 _known_of_all = itemgetter("t", "theta", "omega", "x")
 _beside = itemgetter(*ContactSamples._fields)
 
@@ -50,9 +54,9 @@ def even_times(begin: float, end: float, count: int) -> FloatArray:
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return a solution's samples at times as fields of a Trajectory, in any order of times."""
     if _core.are_sample_times(times):
-        return _ascending(solution, times)
+        return ascending(solution, times)
     order = np.argsort(times, kind="stable")
-    found: dict[str, Any] = taken(_ascending(solution, times[order]), np.argsort(order))
+    found: dict[str, Any] = taken(ascending(solution, times[order]), np.argsort(order))
     return found
 
 
@@ -66,8 +70,9 @@ def taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
     return None if values is None else frozen(values[places])
 
 
-def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    t = frozen(np.array(times))
+def ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
+    """Return a solution's samples at increasing times as fields of a Trajectory."""
+    t = frozen(times.copy())
     if solution.model == "rolling":
         theta, omega, x = solution.sample_rolling(times)
         return {"t": t, "theta": theta, "omega": omega, "x": x}
@@ -200,8 +205,14 @@ class Sample:
     mode: Mode
 
 
-def first_sample(motion: Trajectory) -> Sample:
-    """Return the first sample of a motion in plain floats."""
-    names = [field.name for field in fields(Sample) if field.name != "mode"]
-    values = {name: float(getattr(motion, name)[0]) for name in names}
-    return Sample(**values, mode=Mode(int(motion.mode[0])))
+def sample_at(motion: Trajectory, t: float) -> Sample:
+    """Return a motion's sample at a time in [0, t_end]."""
+    scene = motion.scene
+    values = motion._solution.sample_at(scene.core, motion.settings.core, t)
+    values["t"], values["turns"] = t, (values["theta"] - scene.theta) / (2 * math.pi)
+    values["mode"] = _MODES[values["mode"]]
+    if motion.contact is None and scene.initial_state.mode is Mode.REST:
+        values["mode"] = Mode.REST
+    found = trusted(Sample, values)
+    values["energy"] = sum(energies(scene, found))
+    return found

@@ -25,11 +25,12 @@ from .samples import (
     ContactSamples,
     Pair,
     Sample,
+    ascending,
     contact_samples,
     coordinate_pair,
     details,
-    first_sample,
     frozen,
+    sample_at,
     sampled,
     sentence,
     touch,
@@ -206,23 +207,13 @@ class Trajectory(FieldsOnly):
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)
-        status, t_end = STATUSES[solution.ending], solution.followed_until
-        if status is not COMPLETED:
-            times = times[times <= (t_end if solution.stats["segments"] else -math.inf)]
-        known: dict[str, Any] = {
-            "scene": scene, "model": solution.model, "method": solution.method, "status": status,
-            "message": solution.message or status.value, "valid_until": solution.valid_until,
-            "t_end": t_end, "span": span, "settings": settings,
-            "start": None if start is None else coordinate_pair("start", start, (COORDINATES,)),
-        }  # fmt: skip
-        return cls._sampled(solution, times, known)
-
-    @classmethod
-    def _sampled(
-        cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
-    ) -> Trajectory:
-        """Return a solution sampled at times, with the facts in `known`; it keeps the solution."""
-        return trusted(cls, known | sampled(solution, times) | {"_solution": solution})
+        if STATUSES[solution.ending] is not COMPLETED:
+            reached = solution.followed_until if solution.stats["segments"] else -math.inf
+            times = times[times <= reached]
+        given = start if start is None else coordinate_pair("start", start, (COORDINATES,))
+        found = ascending(solution, times)
+        found |= {"scene": scene, "settings": settings, "span": span, "start": given}
+        return trusted(cls, found | {"_solution": solution})
 
     @cached_property
     def _solution(self) -> _core.Solution:
@@ -344,7 +335,9 @@ class Trajectory(FieldsOnly):
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        return self._sampled(self._solution, times, self.__getstate__())
+        solution = self._solution
+        found = self.__getstate__() | sampled(solution, times)
+        return trusted(type(self), found | {"_solution": solution})
 
     def at(self, t: float) -> Sample:
         """Return the state at time t [s] in plain floats.
@@ -354,7 +347,10 @@ class Trajectory(FieldsOnly):
         ValueError
             If t is outside of [0, t_end].
         """
-        return first_sample(self.sol(number("t", t)))
+        time = number("t", t)
+        if not 0 <= time <= self.t_end:
+            raise ValueError(f"t must lie in [0, {self.t_end!r}], got {time!r}")
+        return sample_at(self, time)
 
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
@@ -451,12 +447,27 @@ def _reason(self: Trajectory) -> str:
     return self._solution.reason(self.scene.core)
 
 
-def _stats(self: Trajectory) -> dict[str, int]:
-    """Counts of the solver by name: segments, steps, rejected_steps, evaluations."""
-    return self._solution.stats
+def _told(meaning: str, read: Callable[[_core.Solution], Any]) -> Callable[[Trajectory], Any]:
+    """Make a function that reads a fact of a motion from its solution."""
+
+    def fact(self: Trajectory) -> Any:
+        return read(self._solution)
+
+    fact.__doc__ = meaning
+    return fact
 
 
-find_late(Trajectory, reason=_reason, stats=_stats)
+find_late(
+    Trajectory,
+    reason=_reason,
+    stats=_told(f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda s: s.stats),
+    model=_told("Model used.", lambda s: s.model),
+    method=_told("Method used.", lambda s: s.method),
+    status=_told("How the motion ended.", lambda s: STATUSES[s.ending]),
+    message=_told("The status as a sentence.", lambda s: s.message or STATUSES[s.ending].value),
+    valid_until=_told("Time until which the model is true [s].", lambda s: s.valid_until),
+    t_end=_told("Last time that was reached [s].", lambda s: s.followed_until),
+)
 for _each in (*QUANTITIES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence
