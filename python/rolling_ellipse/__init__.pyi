@@ -39,7 +39,9 @@ from ._pictures import plot_strobe as plot_strobe
 from ._player import Explorer as Explorer
 from ._player import animate as animate
 from ._player import explore as explore
+from ._verbs.batches import Ends as Ends
 from ._verbs.batches import MotionArrays as MotionArrays
+from ._verbs.batches import ends as ends
 from ._verbs.batches import load_many as load_many
 from ._verbs.batches import simulate_many as simulate_many
 from ._verbs.blows import blow_to as blow_to

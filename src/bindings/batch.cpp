@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "bindings/bindings.hpp"
 #include "simulate.hpp"
@@ -190,6 +191,49 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
     return found;
 }
 
+// The state of each motion at its time, NaN where the motion has ended before, and codes: its mode
+// then, the number of its events, the kind of the first one, and its ending; -1 where there is
+// none.
+py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
+                    int workers) {
+    const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
+    const py::ssize_t each = times.size() == 1 ? 0 : 1;
+    if (each) require_length("times", times, n);
+    Array states = matrix(std::size(state_fields), n);
+    py::array_t<std::int32_t> codes({py::ssize_t{4}, n});
+    std::fill_n(states.mutable_data(), states.size(), std::numeric_limits<double>::quiet_NaN());
+    std::fill_n(codes.mutable_data(), codes.size(), -1);
+    const auto end = [&](py::ssize_t i, const Checkpoint& checkpoint) {
+        const double t = times.data()[i * each];
+        Scene scene{};
+        Solution found;
+        try {
+            scene = scene_in(scenes.data(i, 0), most_energy_reached);
+            found = simulate(scene, settings, t, checkpoint);
+        } catch (const std::invalid_argument&) {
+            return;
+        }
+        const std::vector<Event>& events = found.motion.events;
+        codes.mutable_at(1, i) = static_cast<std::int32_t>(events.size());
+        if (!events.empty()) codes.mutable_at(2, i) = static_cast<int>(events.front().kind);
+        codes.mutable_at(3, i) = static_cast<int>(found.ending);
+        if (found.motion.segments.empty() || t > found.followed_until) return;
+        ContactSample last;
+        Sampler(found.motion, 1)(&t, 1, &last);
+        double* to = states.mutable_data() + i;
+        for (const auto& field : state_fields) {
+            *to = last.state.*field.number;
+            to += n;
+        }
+        if (found.model != Model::contact && last.state.omega == 0) {
+            last.state.mode = first_continuation(scene, initial_state(scene).state).mode;
+        }
+        codes.mutable_at(0, i) = static_cast<int>(last.state.mode);
+    };
+    run_each(n, workers, end);
+    return py::dict("states"_a = states, "codes"_a = codes);
+}
+
 }  // namespace
 
 void bind_batch(py::module_& m) {
@@ -199,6 +243,7 @@ void bind_batch(py::module_& m) {
         [](const Settings& settings, double t_end) { validate(settings, t_end); }, "settings"_a,
         "t_end"_a);
     m.attr("COLUMNS") = columns();
+    m.def("ends_table", ends_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
     m.def("simulate_table", simulate_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
 }
 

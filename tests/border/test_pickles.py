@@ -56,6 +56,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "thresholds": lambda: rl.thresholds(2.0, 1.0),
     "settings": lambda: MOTIONS["gauss"]().settings,
     "arrays": lambda: rl.simulate_many([rl.scenes.report], TIMES, returns="x"),
+    "ends": lambda: rl.ends([rl.scenes.report], 1.0),
     "sample": lambda: MOTIONS["contact"]().at(0.3),
     "residuals": lambda: MOTIONS["rolling"]().constraint_residuals(),
     "integration error": integration_error,

@@ -158,6 +158,12 @@ REFUSALS: list[Row] = [
     ("out", fewer),
     (rl.WorkerError, broken),
     ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=ThreadPoolExecutor(1))),
+    *wrong(rl.ends, {"scenes": MIXED, "t": 1.0},
+           t=[-1.0, [1.0, 2.0], [[1.0]], math.nan, "x"], scenes=[1], progress=[1],
+           rest_speed=[-1.0, "x"], workers=WORKERS),
+    ("arguments", lambda _: rl.ends(MANY, [1.0, 2.0, 3.0])),
+    ("t", lambda _: rl.ends(iter(MIXED), [1.0, 2.0, 3.0])),
+    (rl.WorkerError, lambda _: rl.ends(MANY, 1.0, workers=Broken(1))),
     # folders
     ("path", lambda folder: rl.load_many(folder)), *wrong(rl.load_many, {}, path=[3]),
     ("path", spoilt(lambda path: (path / "end.json").unlink())),

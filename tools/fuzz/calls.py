@@ -29,7 +29,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
-OWN = ("rl.simulate", "rl.simulate_many", "rl.load", "rl.load_many", *PICTURES)
+OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
 #: Functions that take seconds a call; tests/refusals has their arguments.
 SLOW = (
     "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
@@ -305,6 +305,8 @@ def many(draw: Draw, of: Body) -> list[str]:
     }  # fmt: skip
     asked = draw.mutated(asked) if draw.chance(0.3) else asked
     lines = [f"found = {call('rl.simulate_many', **asked)}", "repr(found[:3])"]
+    only = {name: asked[name] for name in ("scenes", "t", "workers", "rest_speed") if name in asked}
+    lines += [f"repr({call('rl.ends', **only)})"] if draw.chance(0.3) else []
     if draw.chance(0.3):
         file = f"sorted(map(str, Path(folder).iterdir()))[-{draw.pick(1, 2)}]"
         lines += [

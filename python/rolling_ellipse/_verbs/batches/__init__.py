@@ -1,5 +1,7 @@
 """Many motions: scenes as tables, chunk by chunk, by any workers, kept in memory or in a folder."""
 
 from .answers import MotionArrays as MotionArrays
+from .ends import Ends as Ends
+from .ends import ends as ends
 from .folders import load_many as load_many
 from .many import simulate_many as simulate_many

@@ -28,7 +28,7 @@ from ..._motion.quantities import MODE, QUANTITIES, TIME
 from ..._motion.samples import frozen, of_contact, of_coordinates
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
-from .asked import BLOW, NAMES, name_of, scenes_of
+from .asked import BLOW, NAMES, Chunk, name_of, scenes_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -64,18 +64,27 @@ class Request:
     times: FloatArray
     raise_on_failure: bool
 
-    def task(self, table: FloatArray) -> bytes:
-        """Return a task for `solve_task` in another process."""
-        return pickle.dumps((table, self.settings, self.times))
+    @property
+    def samples(self) -> int:
+        """Number of samples of a scene."""
+        return self.times.size
 
+    @property
+    def size(self) -> int:
+        """Bytes of the samples of a scene."""
+        return self.samples * SAMPLE_BYTES[self.settings.model]
 
-def solve(request: Request, table: FloatArray, threads: int) -> Tables:
-    return _core.simulate_table(table, request.settings.core, request.times, threads)
+    def solve(self, chunk: Chunk, threads: int) -> Tables:
+        return _core.simulate_table(chunk.table, self.settings.core, self.times, threads)
 
+    def task(self, chunk: Chunk) -> bytes:
+        """Return a task for `run` in another process."""
+        return pickle.dumps((chunk.table, self.settings, self.times))
 
-def solve_task(task: bytes) -> Tables:
-    table, settings, times = pickle.loads(task)
-    return _core.simulate_table(table, settings.core, times, 1)
+    @staticmethod
+    def run(task: bytes) -> Tables:
+        table, settings, times = pickle.loads(task)
+        return _core.simulate_table(table, settings.core, times, 1)
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:

@@ -84,10 +84,11 @@ class SceneList:
 class SceneGrid:
     """Scenes of the arguments in a mapping, numbers and arrays that broadcast, in C order.
 
-    All scenes are checked at once; an error names the argument and its index.
+    All scenes are checked at once; an error names the argument and its index. `beside` are other
+    arrays that broadcast with them.
     """
 
-    def __init__(self, arguments: Mapping[Any, Any]) -> None:
+    def __init__(self, arguments: Mapping[Any, Any], **beside: FloatArray) -> None:
         for name in arguments:
             if name not in _DEFAULTS:
                 hint, names = meant(str(name), _DEFAULTS), ", ".join(_DEFAULTS)
@@ -110,7 +111,7 @@ class SceneGrid:
             if name in OPTIONAL and np.isnan(values).any():
                 first = tuple(np.argwhere(np.isnan(values))[0])
                 raise ValueError(f"{_entry(name, first)} must be a number, got nan")
-        entries = {_entry(name): values for name, values in self._arrays.items()}
+        entries = {_entry(name): values for name, values in self._arrays.items()} | beside
         self.shape = common_shape(entries, slice(None))
         self.total = int(np.prod(self.shape, dtype=object))
         for begin, size in sizes(1):
@@ -182,10 +183,10 @@ def _indexed(index: tuple[Any, ...]) -> str:
     return f"[{', '.join(str(int(i)) for i in index)}]" if index else ""
 
 
-def asked(scenes: Any) -> SceneList | SceneGrid:
+def asked(scenes: Any, **beside: FloatArray) -> SceneList | SceneGrid:
     """Return the argument `scenes` as a SceneList or a SceneGrid, or raise TypeError."""
     if isinstance(scenes, Mapping):
-        return SceneGrid(scenes)
+        return SceneGrid(scenes, **beside)
     with suppress(TypeError):  # an array without axes has `__iter__`, but cannot be iterated
         return SceneList(scenes)
     raise TypeError(

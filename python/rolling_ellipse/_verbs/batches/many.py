@@ -15,7 +15,7 @@ from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
-from .answers import SAMPLE_BYTES, Answer, Request, answers, gathered, names_in, solve, solve_task
+from .answers import Answer, Request, answers, gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
@@ -127,34 +127,32 @@ def _parts(
     request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
 ) -> Iterator[tuple[Chunk, Any]]:
     """Yield the chunks with their tables, or with the loss of their worker."""
-    for chunk, tables in _solved(request, wanted.chunks(request.times.size), workers):
-        yield chunk, _worker_error(chunk, tables) if isinstance(tables, Lost) else tables
+    for chunk, tables in solved(request, wanted.chunks(request.samples), workers):
+        yield chunk, worker_error(chunk, tables) if isinstance(tables, Lost) else tables
         report(chunk.begin + len(chunk.table), wanted.total)
 
 
-def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
+def solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
     """Yield each chunk with the tables of its motions, or with `Lost` if its worker failed."""
     threads = threads_of(workers)
     if threads is not None:
         for chunk in chunks:
-            yield chunk, solve(request, chunk.table, threads)
+            yield chunk, request.solve(chunk, threads)
         return
     held: dict[int, Chunk] = {}
-    samples = request.times.size
-    _, scenes = next(sizes(samples))
-    # most bytes of results per scene so far; at first, the bytes of its samples
-    each = samples * SAMPLE_BYTES[request.settings.model]
+    _, scenes = next(sizes(request.samples))
+    each: int = request.size  # most bytes of results per scene so far; at first, of its samples
 
     def tasks() -> Iterator[bytes]:
         nonlocal scenes
         for place, chunk in enumerate(chunks):
             held[place], scenes = chunk, len(chunk.table)
-            yield request.task(chunk.table)
+            yield request.task(chunk)
 
     def size() -> int:
         return scenes * each
 
-    for place, tables in in_order(workers, solve_task, tasks(), size):
+    for place, tables in in_order(workers, request.run, tasks(), size):
         chunk = held.pop(place)
         if not isinstance(tables, Lost):
             there = sum(table.nbytes for table in tables.values())
@@ -169,16 +167,16 @@ def _to_folder(
 
     def missing() -> Iterator[Chunk]:
         nonlocal done, count
-        for chunk in wanted.chunks(request.times.size):
+        for chunk in wanted.chunks(request.samples):
             count += 1
             if folder.has(chunk):
                 done += len(chunk.table)
             else:
                 yield chunk
 
-    for chunk, tables in _solved(request, missing(), workers):
+    for chunk, tables in solved(request, missing(), workers):
         if isinstance(tables, Lost):
-            lost.append(_worker_error(chunk, tables))
+            lost.append(worker_error(chunk, tables))
             if tables.refused:
                 break
             continue
@@ -191,7 +189,7 @@ def _to_folder(
     return str(folder.path)
 
 
-def _worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
+def worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
     last = chunk.begin + len(chunk.table) - 1
     why = f"{type(lost.error).__name__}: {lost.error}"
     error = WorkerError(f"scenes {chunk.begin} to {last} got lost with their worker, {why}")

@@ -1,0 +1,168 @@
+"""Only the ends of many motions."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import _core
+from ..._ask.check import FloatArray, array, require
+from ..._ask.habits import understood
+from ..._ask.progress import reporting
+from ..._ask.records import FieldsOnly
+from ..._ask.scene import STATE_UNITS, Scene
+from ..._ask.settings import DEFAULTS, Settings
+from ..._motion.status import STATUSES, IntegrationError
+from ..simulate import simulate
+from ..workers import Lost
+from .answers import AT_AN_END, Tables
+from .asked import Chunk, asked
+from .many import solved, worker_error
+
+Codes = npt.NDArray[np.int32]
+_NAMES = {code: each.name for code, each in STATUSES.items()} | {-1: "REFUSED"}
+_FAILED = -1, *(code for code, each in STATUSES.items() if each not in AT_AN_END)
+_NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((4, 0), np.int32)}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ends(FieldsOnly):
+    """The ends of many motions: arrays of the shape of the scenes.
+
+    Attributes
+    ----------
+    theta, omega, x, z, x_dot, z_dot : ndarray
+        States [rad, rad/s, m, m, m/s, m/s]; NaN where a motion has ended before its time.
+    mode, first : ndarray of int8
+        Codes of `Mode` at the end, and of the `EventKind` of the first event; -1: none.
+    events : ndarray of int32
+        Numbers of events; 0 for rolling that is proved.
+    status : ndarray of str
+        Names of `Status`, or REFUSED.
+    errors : dict
+        The exceptions that `simulate` would raise, by the index of the scene, a tuple.
+    """
+
+    theta: FloatArray
+    omega: FloatArray
+    x: FloatArray
+    z: FloatArray
+    x_dot: FloatArray
+    z_dot: FloatArray
+    mode: npt.NDArray[np.int8]
+    events: Codes
+    first: npt.NDArray[np.int8]
+    status: npt.NDArray[np.str_]
+    errors: dict[tuple[int, ...], Exception]
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n} {name}" for name, n in Counter(self.status.flat).items())
+        return f"<Ends of shape {self.theta.shape}: {counts or 'no scenes'}>"
+
+
+@dataclass(frozen=True)
+class _Request:
+    """Settings, and one time for all scenes or one for each."""
+
+    settings: Settings
+    times: FloatArray
+    samples: int = 1
+    size: int = 8 * (len(STATE_UNITS) + 2)
+
+    def _given(self, chunk: Chunk) -> tuple[FloatArray, Settings, FloatArray]:
+        own = slice(chunk.begin, chunk.begin + len(chunk.table))
+        return chunk.table, self.settings, self.times if self.times.size == 1 else self.times[own]
+
+    def solve(self, chunk: Chunk, threads: int) -> Tables:
+        table, settings, times = self._given(chunk)
+        return _core.ends_table(table, settings.core, times, threads)
+
+    def task(self, chunk: Chunk) -> bytes:
+        """Return a task for `run` in another process."""
+        return pickle.dumps(self._given(chunk))
+
+    @staticmethod
+    def run(task: bytes) -> Tables:
+        table, settings, times = pickle.loads(task)
+        return _core.ends_table(table, settings.core, times, 1)
+
+
+@understood
+def ends(
+    scenes: Iterable[Scene] | Mapping[str, Any],
+    t: Any,
+    *,
+    workers: Any = 1,
+    progress: bool | Callable[[int, int | None], Any] = False,
+    rest_speed: float | None = None,
+) -> Ends:
+    """Return only the ends of many motions, with the bits of `simulate`.
+
+    Parameters
+    ----------
+    scenes : iterable of Scene, or mapping
+        As of `simulate_many`.
+    t : float or array_like
+        Times of the ends [s]: one for each scene of an iterable, or an array that broadcasts with
+        those of a mapping.
+    workers, progress
+        As of `simulate_many`.
+    rest_speed : float, optional
+        As of `simulate` [m/s].
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is wrong.
+    WorkerError
+        If a worker was lost.
+    """
+    how = replace(DEFAULTS, rest_speed=rest_speed)
+    times = array("t", t)
+    require("t", "finite and not negative [s]", times, (times >= 0) & (times < math.inf))
+    _core.validate_settings(how.core, float(times.max(initial=0.0)))
+    wanted = asked(scenes, t=times)
+    shape = wanted.shape
+    if shape is None and times.ndim and times.shape != (wanted.total,):
+        raise ValueError(f"t must be one time, or one for each of a list, got shape {times.shape}")
+    if shape is not None and times.ndim:
+        times = np.broadcast_to(times, shape)
+    request, done = _Request(how, times.ravel()), 0
+    tables, errors = [_NONE], {}
+    with reporting(progress, "scenes") as report:
+        for chunk, found in solved(request, wanted.chunks(1), workers):
+            if isinstance(found, Lost):
+                raise worker_error(chunk, found)
+            tables.append(found)
+            for k in np.flatnonzero(np.isin(found["codes"][-1], _FAILED)).tolist():
+                place = chunk.begin + k
+                index = (place,) if shape is None else np.unravel_index(place, shape)
+                errors[tuple(map(int, index))] = _error(chunk.scenes[k], request, place)
+            done = chunk.begin + len(chunk.table)
+            report(done, wanted.total)
+    states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
+    whole = (done,) if shape is None else shape
+    mode, events, first, ending = (row.reshape(whole) for row in codes)
+    names = np.array([_NAMES[code] for code in range(-1, len(STATUSES))])
+    state = dict(zip(STATE_UNITS, (row.reshape(whole) for row in states), strict=True))
+    return Ends(
+        **state, mode=mode.astype(np.int8), events=events,
+        first=first.astype(np.int8), status=names[ending + 1], errors=errors,
+    )  # fmt: skip
+
+
+def _error(scene: Scene, request: _Request, place: int) -> Exception:
+    """Return the exception that `simulate` raises for a scene."""
+    t = request.times[0 if request.times.size == 1 else place]
+    try:
+        found = simulate(scene, [t], rest_speed=request.settings.rest_speed, raise_on_failure=False)
+    except ValueError as error:  # a time beyond what a double resolves
+        return error
+    return IntegrationError(found)

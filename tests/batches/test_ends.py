@@ -1,0 +1,59 @@
+"""`ends` has the last samples and the events of `simulate`, in any shape, by any workers."""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.batches import NAMED
+from oracles.contact import random_scenes
+from oracles.pickles import require_same
+
+STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
+JAMS = rl.Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)
+SCENES = [*NAMED, JAMS, rl.Scene(2.0, 1.0), *random_scenes(60, 8), *random_scenes(60, 9, slope=0.2)]
+TIMES = np.linspace(0.0, 6.0, len(SCENES))
+
+
+def arrays(found: rl.Ends) -> list[Any]:
+    return [getattr(found, name) for name in (*STATE, "mode", "events", "first", "status")]
+
+
+def test_bits_of_simulate() -> None:
+    found = rl.ends(SCENES, TIMES)
+    for k, (scene, t) in enumerate(zip(SCENES, TIMES.tolist(), strict=True)):
+        motion = rl.simulate(scene, [t], raise_on_failure=False)
+        assert found.status[k] == motion.status.name and found.events[k] == len(motion.events)
+        assert found.first[k] == (motion.events[0].kind.value if motion.events else -1)
+        there = motion.t.size == 1
+        assert found.mode[k] == (motion.mode[0] if there else -1)
+        for name in STATE:
+            value = getattr(found, name)[k]
+            assert value == getattr(motion, name)[0] if there else np.isnan(value), (k, name)
+    assert set(found.mode) == {-1, 0, 1, 2, 3} and {"COMPLETED", "JAMMED"} <= set(found.status)
+
+
+@pytest.mark.parametrize("workers", [2, -1, ThreadPoolExecutor(2)])
+def test_workers_change_no_bit(workers: Any) -> None:
+    require_same(arrays(rl.ends(SCENES, TIMES, workers=workers)), arrays(rl.ends(SCENES, TIMES)))
+
+
+def test_shapes() -> None:
+    """Times broadcast with the arguments of a mapping; one motion has the shape ()."""
+    body: dict[str, Any] = {"a": 2.0, "b": 1.0, "z": 3.0, "restitution": 0.3}
+    found = rl.ends(body | {"omega": [[1.0], [2.0]]}, [0.5, 1.0, 2.0])
+    each = [rl.ends([rl.Scene(**body, omega=w)] * 3, [0.5, 1.0, 2.0]) for w in (1.0, 2.0)]
+    for name in STATE:
+        assert np.array_equal(getattr(found, name), [getattr(one, name) for one in each])
+    assert rl.ends(body, 1.0).theta.shape == () and rl.ends([], 1.0).theta.shape == (0,)
+    assert "6 COMPLETED" in repr(found)
+
+
+def test_a_motion_without_its_end_has_its_exception() -> None:
+    endless = rl.Scene(1.0, 1.0, z=1.5, friction=0.0, restitution=1.0)
+    seen: list[Any] = []
+    found = rl.ends([NAMED[0], endless], 1e5, progress=lambda *done: seen.append(done))
+    assert found.status.tolist() == ["COMPLETED", "MAX_EVENTS"] and list(found.errors) == [(1,)]
+    assert isinstance(found.errors[1,], rl.IntegrationError) and np.isnan(found.theta[1])
+    assert seen == [(2, 2)]
