@@ -103,7 +103,7 @@ class Explorer(FieldsOnly):
     words : dict of str to str
         All texts of the page.
     live : bool
-        Whether it carries the core itself.
+        Whether it carries the core itself, if this installation has it as WebAssembly.
     """
 
     scene: Scene
