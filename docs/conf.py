@@ -18,7 +18,7 @@ release = version = installed("rolling-ellipse")
 extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline"]
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
-autodoc_member_order = "bysource"
+autodoc_member_order, default_role = "bysource", "py:obj"  # names in backticks are links
 autodoc_typehints = "none"  # the docstrings have the types, with shapes and units
 autodoc_default_options = {"members": True}
 numpydoc_show_class_members = False
