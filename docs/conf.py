@@ -3,27 +3,27 @@
 import re
 from importlib.metadata import version as installed
 from pathlib import Path
-from shutil import copytree, rmtree
+from shutil import copy, copytree, rmtree
 
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
-LIVE = HERE / "live"  # a page of its own, copied as it is; the page `explore` shows it
-rmtree(HERE / "notebooks", ignore_errors=True)
-copytree(HERE.parent / "notebooks", HERE / "notebooks")  # git ignores it
+LIVE = HERE / "live" / "index.html"  # a page of its own, which the page `explore` shows
+rmtree(HERE / "notebooks", ignore_errors=True)  # copies, which git ignores
+copytree(HERE.parent / "notebooks", HERE / "notebooks")
 
-project, author, language = "rolling_ellipse", "The rolling_ellipse developers", "en"
-copyright = author
+project, language = "rolling_ellipse", "en"
+author = copyright = "The rolling_ellipse developers"
 release = version = installed("rolling-ellipse")
 extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline"]
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
-autodoc_member_order, default_role = "bysource", "py:obj"  # names in backticks are links
+default_role = "py:obj"  # names in backticks are links
 autodoc_typehints = "none"  # the docstrings have the types, with shapes and units
-autodoc_default_options = {"members": True}
+autodoc_default_options = {"members": True, "member-order": "bysource"}
 numpydoc_show_class_members = False
 python_maximum_signature_line_length = 90
-html_theme, html_title, pygments_dark_style = "furo", "rolling_ellipse", "github-dark"
+html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
 templates_path, html_static_path = ["_templates"], ["_static"]
 html_css_files, html_js_files = ["site.css"], ["site.js"]
 html_show_search_summary = False  # it reads pages, which a browser forbids from files
@@ -35,6 +35,7 @@ def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
 
 def setup(app: Sphinx) -> None:
     app.connect("source-read", lead_to_copies)
-    if LIVE.is_dir():
+    if LIVE.exists():
         app.tags.add("live")
-        copytree(LIVE, Path(app.outdir) / "live", dirs_exist_ok=True)
+        (Path(app.outdir) / "live").mkdir(parents=True, exist_ok=True)
+        copy(LIVE, Path(app.outdir) / "live")
