@@ -18,8 +18,7 @@ release = version = installed("rolling-ellipse")
 extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline"]
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
-default_role = "py:obj"  # names in backticks are links
-autodoc_typehints = "none"  # the docstrings have the types, with shapes and units
+default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 numpydoc_show_class_members = False
 python_maximum_signature_line_length = 90

@@ -65,7 +65,7 @@ def test_a_finding_is_made_short(capfd: pytest.CaptureFixture[str]) -> None:
 
     process: Any = Touchy()
     hunt = Hunt(process, 1)
-    hunt.go(300)
+    hunt.go(1000)
     (found,) = hunt.found.values()
     assert "restitution=1.0" in found.lines[0] and "slope=0.0" in found.lines[0]
     assert "planted: elastic" in capfd.readouterr().out

@@ -30,9 +30,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
-#: Functions that take seconds a call; tests/refusals has their arguments.
+#: Functions that write many files or take seconds a call; tests/refusals has their arguments.
 SLOW = (
-    "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
+    "rl.examples", "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
     "rl.report.errata_table",
 )  # fmt: skip
 PLAIN = tuple(name for name in FUNCTIONS if name not in (*OWN, *SLOW))
