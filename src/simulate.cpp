@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "proof/slope.hpp"
 
 namespace rolling_ellipse {
 namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // The settings with "auto" replaced by the simplest model that the scene needs, and its method.
 Settings chosen(Settings settings, Validity validity) {
@@ -48,12 +51,15 @@ struct Proof {
     double time = infinity;
 };
 
-Proof prove(const Scene& scene, Beginning& from) {
+// On a slope the law is followed up to a time, unless it is broken or touched before; beyond that
+// time the end is unknown, NaN.
+Proof prove(const Scene& scene, Beginning& from, double until = infinity) {
     if (from.rolling) return {end_of_rolling(*from.rolling, scene.friction)};
     if (!from.on_slope) return {};
-    const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
+    LawMeetings met = law_meetings(*from.on_slope, scene.friction, until);
+    if (met.touched) met = law_meetings(*from.on_slope, scene.friction);
     const auto& end = met.touched ? met.touched : met.broken;
-    return {end_of_rolling(met), end ? end->time : infinity};
+    return {end_of_rolling(met), end ? end->time : until < infinity ? unknown : infinity};
 }
 
 // Whether the contact model computes the motion: it proves each arc of rolling, up to the last time
@@ -74,6 +80,7 @@ void end_validity(double t, double t_end, Solution& solution) {
 
 // Ends the validity of a computed rolling motion where the proof says.
 void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Solution& solution) {
+    if (std::isnan(proof.time)) solution.valid_until = proof.time;
     if (!proof.end.angle) return;
     if (from.on_slope) return end_validity(proof.time, t_end, solution);
     const auto* flow = std::get_if<Apart<RollingFlow>>(&solution.motion.segments.front().law);
@@ -185,7 +192,10 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
     Beginning from = beginning(scene);
-    const Proof proof = is_proved_by_arcs(scene, from, asked) ? Proof{} : prove(scene, from);
+    const bool chooses = asked.model == Model::automatic && asked.method == Method::automatic;
+    const Proof proof = is_proved_by_arcs(scene, from, asked)
+                            ? Proof{}
+                            : prove(scene, from, chooses ? infinity : t_end);
     const Settings settings = chosen(asked, proof.end.validity);
     Solution found = solution(solve(scene, from, settings, t_end, checkpoint), settings, t_end);
     if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, found);
@@ -201,6 +211,12 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
                               settings, t_end);
     judge_by_watch(scene, t_end, checkpoint, found);
     return found;
+}
+
+double valid_until(const Scene& scene, const Solution& solution) {
+    if (!std::isnan(solution.valid_until)) return solution.valid_until;
+    Beginning from = beginning(scene);
+    return prove(scene, from).time;
 }
 
 std::optional<Losses> losses(const Solution& solution) {

@@ -17,7 +17,9 @@ namespace rolling_ellipse {
 struct Solution : Integration<Motion> {
     Model model = Model::rolling;
     Method method = Method::exact;
-    double valid_until = infinity;  // time at which the model stops being valid
+    // Time at which the model stops being valid; NaN if only its validity up to the last time asked
+    // for is known.
+    double valid_until = infinity;
     std::string message = {};
     std::optional<ContactWatch> watch = {};  // contact forces seen, if there is no proof
 };
@@ -45,6 +47,10 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
 // The multiplier model from any coordinates and velocities; the scene gives body and ground.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
+
+// The time at which the model of a scene's solution stops being valid, followed beyond the last
+// time asked for where that is needed.
+double valid_until(const Scene& scene, const Solution& solution);
 
 // Numerical errors of energy and constraints in a motion with steps; empty for all others.
 std::optional<Losses> losses(const Solution& solution);

@@ -71,7 +71,9 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     Answer found;
     Solution& solution = found.solution;
     try {
-        solution = simulate(scene_in(row, most_energy_reached), settings, times[n - 1], checkpoint);
+        const Scene scene = scene_in(row, most_energy_reached);
+        solution = simulate(scene, settings, times[n - 1], checkpoint);
+        solution.valid_until = valid_until(scene, solution);
     } catch (const std::invalid_argument& error) {
         solution.message = error.what();
         return found;

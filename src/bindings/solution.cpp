@@ -238,7 +238,9 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("ending",
                                [](const Solution& s) { return static_cast<int>(s.ending); })
         .def_readonly("followed_until", &Solution::followed_until)
-        .def_readonly("valid_until", &Solution::valid_until)
+        .def(
+            "valid_until",
+            [](const Solution& s, const Scene& scene) { return valid_until(scene, s); }, "scene"_a)
         .def_readonly("message", &Solution::message)
         .def_property_readonly("model", [](const Solution& s) { return name(s.model); })
         .def_property_readonly("method", [](const Solution& s) { return name(s.method); })

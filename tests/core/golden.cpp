@@ -266,7 +266,8 @@ void print_motion(const Asked& asked) {
            or_nan(scene.x_dot), or_nan(scene.z_dot), blow.jx, blow.jz, blow.dx, blow.dz});
     const Solution solution = simulate(scene, settings, asked.t_end, [] {});
     print(std::string("solution ") + name(solution.model) + " " + name(solution.method),
-          {static_cast<double>(solution.ending), solution.followed_until, solution.valid_until});
+          {static_cast<double>(solution.ending), solution.followed_until,
+           valid_until(scene, solution)});
     for (const Event& event : solution.motion.events) {
         std::vector<double> line = numbers(event.after);
         line.insert(line.begin(), event.t);

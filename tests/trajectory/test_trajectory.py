@@ -68,6 +68,8 @@ ENDING = {
     "rocking": Scene(2.0, 1.0, theta=0.1, omega=1.5, friction=0.2),
     "standing": Scene(0.7, 1.9, theta=1.5, omega=2.2, friction=0.3),
     "backwards": Scene(2.0, 1.0, mass=10.0, theta=-0.1, omega=-5.0, friction=0.7),
+    "downhill": Scene(2.0, 1.0, theta=0.2, omega=3.0, slope=0.2, friction=0.5),
+    "uphill": Scene(2.0, 1.0, theta=0.2, omega=-4.0, slope=0.2, friction=0.6),
 }
 
 
@@ -81,7 +83,8 @@ def test_rolling_that_ends(scene: Scene) -> None:
     assert trajectory.status is Status.VALIDITY_LOST and not trajectory.success
     assert trajectory.t.size == 1001 and trajectory.t[-1] == 10
     assert all(np.all(np.isfinite(getattr(trajectory, name))) for name in ("x", "omega", "psi"))
-    end, weight = trajectory.valid_until, scene.mass * scene.gravity
+    end = trajectory.valid_until
+    weight = scene.mass * scene.gravity * math.cos(scene.slope)
     assert 0 < end < 10
 
     def spare(times: Any) -> np.ndarray:

@@ -447,6 +447,11 @@ def _reason(self: Trajectory) -> str:
     return self._solution.reason(self.scene.core)
 
 
+def _valid_until(self: Trajectory) -> float:
+    """Time until which the model is true [s]; infinite if it always is."""
+    return self._solution.valid_until(self.scene.core)
+
+
 def _told(meaning: str, read: Callable[[_core.Solution], Any]) -> Callable[[Trajectory], Any]:
     """Make a function that reads a fact of a motion from its solution."""
 
@@ -465,7 +470,7 @@ find_late(
     method=_told("Method used.", lambda s: s.method),
     status=_told("How the motion ended.", lambda s: STATUSES[s.ending]),
     message=_told("The status as a sentence.", lambda s: s.message or STATUSES[s.ending].value),
-    valid_until=_told("Time until which the model is true [s].", lambda s: s.valid_until),
+    valid_until=_valid_until,
     t_end=_told("Last time that was reached [s].", lambda s: s.followed_until),
 )
 for _each in (*QUANTITIES, MODE):
