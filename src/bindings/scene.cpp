@@ -37,7 +37,12 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         arguments, row);
 }
 
-// Makes a scene from numbers by the names of its fields; None stands for an absent one.
+bool may_be_absent(const SceneField& field) {
+    return field.otherwise || std::holds_alternative<std::optional<double> Scene::*>(field.number);
+}
+
+// Makes a scene from numbers by the names of its fields; None stands for an absent one. No scene is
+// made if another number is absent, or is no float of Python.
 struct SceneMaker {
     std::vector<py::str> names;  // interned: dictionaries find them by their address
 
@@ -47,13 +52,15 @@ struct SceneMaker {
         }
     }
 
-    Scene operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
-                     bool reached) const {
+    std::optional<Scene> operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
+                                    bool reached) const {
         SceneNumbers numbers;
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             PyObject* const given = PyDict_GetItemWithError(fields.ptr(), names[i].ptr());
             if (given == nullptr) throw py::key_error(scene_fields[i].name);
-            if (given != Py_None) numbers[i] = PyFloat_AsDouble(given);
+            const bool absent = given == Py_None && may_be_absent(scene_fields[i]);
+            if (!absent && !PyFloat_CheckExact(given)) return {};
+            if (!absent) numbers[i] = PyFloat_AS_DOUBLE(given);
         }
         const Scene scene = scene_of(numbers, impulse);
         validate(scene, reached ? most_energy_reached : most_energy);
@@ -108,9 +115,10 @@ void bind_scene(py::module_& m) {
                  return impulse;
              }),
              "jx"_a, "jz"_a, "dx"_a, "dz"_a);
-    bind_class<Scene>(m, "Scene")
-        .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
-        .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
+    bind_class<Scene>(m, "Scene").def_property_readonly("gyration2", [](const Scene& s) {
+        return s.body().gyration2;
+    });
+    m.def("scene_of", SceneMaker(), "numbers"_a, "impulse"_a, "reached"_a);
     bind_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.",
                            {"STRONGE", "POISSON", "NEWTON"});
     m.attr("FIELDS") =

@@ -168,14 +168,17 @@ class Scene(FieldsOnly, Listed):
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
         """Check the arguments, and keep them as the fields of this scene."""
-        for name, value in given.items():
-            if type(value) is float or name == "impulse" or (value is None and name in OPTIONAL):
-                continue
-            given[name] = number(name, value)
         impulse = given["impulse"]
         if impulse is not None:
             _require_one_blow(impulse)
-        given["core"] = _for_core(given, impulse, reached)  # refuses numbers out of range
+        blow = None if impulse is None else impulse.core
+        core = _core.scene_of(given, blow, reached)  # refuses numbers out of range
+        if core is None:  # there are numbers of other types than float
+            for name, value in given.items():
+                if name in SCENE_UNITS and (value is not None or name not in OPTIONAL):
+                    given[name] = number(name, value)
+            core = _core.scene_of(given, blow, reached)
+        given["core"] = core
         object.__setattr__(self, "__dict__", given)
 
     @classmethod
@@ -204,8 +207,7 @@ class Scene(FieldsOnly, Listed):
     @cached_property
     def core(self) -> _core.Scene:
         """The scene as the core's object, which pickles do not hold."""
-        numbers = {name: self.__dict__[name] for name in SCENE_UNITS}
-        return _for_core(numbers, self.impulse, reached=True)
+        return reached_scene(self.__dict__).core
 
     def replace(self, **changes: Any) -> Scene:
         """Return a new scene with some of the arguments changed.
@@ -272,10 +274,6 @@ def _require_one_blow(impulse: Any) -> None:
             f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
             "use outcome(scene, impulse)"
         )
-
-
-def _for_core(numbers: dict[str, Any], impulse: Impulse | None, reached: bool) -> _core.Scene:
-    return _core.Scene(numbers, None if impulse is None else impulse.core, reached)
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
