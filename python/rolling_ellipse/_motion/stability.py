@@ -31,14 +31,18 @@ def advice(motion: Trajectory) -> str | None:
     losses = motion._solution.losses()
     if losses is None:
         return None
-    settings, by = motion.settings, f"by t = {motion.t_end:g} s"
+    settings = motion.settings
     step = settings.step
-    finer = "smaller steps" if step else "smaller rtol and atol"
+    accepted = max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol)
     if settings.stabilization == "baumgarte" and step is not None:
         if settings.method == "auto":
             settings = replace(settings, method=motion.method)
         if (growth := _core.feedback_growth(settings.core)) > 1:
             return _too_stiff(settings, step, growth)
+    if not (losses.energy > accepted or losses.constraints > _MISSED or losses.projected > _MOVED):
+        return None
+    by = f"by t = {motion.t_end:g} s"
+    finer = "smaller steps" if step else "smaller rtol and atol"
     if losses.projected > _MOVED:
         return (
             f"a step has missed the constraints by {losses.projected:.2g} of the long semi-axis "
@@ -51,15 +55,13 @@ def advice(motion: Trajectory) -> str | None:
             f"{by} with stabilization {settings.stabilization!r}: use 'projection', "
             "which keeps them, or the model 'rolling', which has none to miss"
         )
-    if losses.energy > max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol):
-        better = "method 'exact', which takes none"
-        if motion.model == "multipliers":
-            better = "stabilization 'projection+energy'"
-        return (
-            f"the energy has changed by {losses.energy:.2g} of itself {by} with "
-            f"method {settings.method!r}: take {finer}, or {better}"
-        )
-    return None
+    better = "method 'exact', which takes none"
+    if motion.model == "multipliers":
+        better = "stabilization 'projection+energy'"
+    return (
+        f"the energy has changed by {losses.energy:.2g} of itself {by} with "
+        f"method {settings.method!r}: take {finer}, or {better}"
+    )
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:
