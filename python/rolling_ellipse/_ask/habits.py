@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from difflib import get_close_matches
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import ParamSpec, TypeVar
@@ -26,6 +25,8 @@ _Found = TypeVar("_Found")
 
 def meant(word: str, names: Iterable[str]) -> str:
     """Return the end of a message about an unknown name, with the names that may be meant."""
+    from difflib import get_close_matches  # for mistakes only: it takes a millisecond
+
     known = list(names)
     found = [name for name in MEANT.get(word, "").split() if name in known]
     found = found or get_close_matches(word, known, 1, 0.7)

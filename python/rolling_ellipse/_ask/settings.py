@@ -17,6 +17,7 @@ Method = Literal["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"]
 Stabilization = Literal["none", "baumgarte", "projection", "projection+energy", "ggl"]
 MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
+GIVEN: Any = "arrays"  # the method of a trajectory from arrays, which no setting is
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 

@@ -1,7 +1,6 @@
 """Scenes as text for physics engines: MJCF and SDF."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 from .check import positive
@@ -62,6 +61,8 @@ def gravity(scene: Any) -> tuple[float, float, float]:
 def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
+    from pathlib import Path  # a tenth of the package's import
+
     inertia = scene.mass * scene.gyration2
     return Path(__file__).with_name(template).read_text(encoding="utf-8").format(
         scene=scene, at=scene.initial_state, gravity=gravity(scene), width=max(scene.a, scene.b),

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._ask.check import FloatArray, finite
 from .._ask.scene import Scene, require_scene
-from .._ask.settings import DEFAULTS
+from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
 from ..geometry import support
 from .samples import of_contact, vector
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _Made = TypeVar("_Made", bound="Trajectory")
-GIVEN: Any = "arrays"  # the method of such a trajectory
 _NEAR = 5  # samples of a local polynomial
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
 _SAID = "Samples from arrays: nothing is proved of them."

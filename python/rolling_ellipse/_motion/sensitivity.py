@@ -14,9 +14,8 @@ from .._ask.check import FloatArray, choice, number, whole
 from .._ask.printing import brief, text_table
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
-from .._ask.settings import Settings
+from .._ask.settings import GIVEN, Settings
 from .._core import Mode
-from .from_arrays import GIVEN
 from .status import Status
 from .trajectory import Trajectory
 

@@ -15,11 +15,10 @@ from .._ask.check import FloatArray, array, choice, number, shown
 from .._ask.habits import MEANT, meant
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
-from .._ask.settings import METHODS, MODELS, Method, Model, Settings
+from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events
-from .from_arrays import GIVEN, between_samples
 from .quantities import MODE, QUANTITIES
 from .samples import (
     ContactSamples,
@@ -218,6 +217,8 @@ class Trajectory(FieldsOnly):
     @cached_property
     def _solution(self) -> _core.Solution:
         if self.method == GIVEN:
+            from .from_arrays import between_samples
+
             return between_samples(self)
         return solve(self.scene, self.settings, self.span, self.start)
 
