@@ -198,7 +198,12 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                             : prove(scene, from, chooses ? infinity : t_end);
     const Settings settings = chosen(asked, proof.end.validity);
     Solution found = solution(solve(scene, from, settings, t_end, checkpoint), settings, t_end);
-    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, found);
+    if (settings.model != Model::contact) {
+        judge_by_proof(from, proof, t_end, found);
+        const State& start = from.initial.state;
+        found.motion.rests =
+            start.mode == Mode::rest && first_continuation(scene, start).mode == Mode::rest;
+    }
     return found;
 }
 

@@ -207,10 +207,9 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     std::fill_n(codes.mutable_data(), codes.size(), -1);
     const auto end = [&](py::ssize_t i, const Checkpoint& checkpoint) {
         const double t = times.data()[i * each];
-        Scene scene{};
         Solution found;
         try {
-            scene = scene_in(scenes.data(i, 0), most_energy_reached);
+            const Scene scene = scene_in(scenes.data(i, 0), most_energy_reached);
             found = simulate(scene, settings, t, checkpoint);
         } catch (const std::invalid_argument&) {
             return;
@@ -226,9 +225,6 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
         for (const auto& field : state_fields) {
             *to = last.state.*field.number;
             to += n;
-        }
-        if (found.model != Model::contact && last.state.omega == 0) {
-            last.state.mode = first_continuation(scene, initial_state(scene).state).mode;
         }
         codes.mutable_at(0, i) = static_cast<int>(last.state.mode);
     };

@@ -141,7 +141,7 @@ InitialState start_after(const Scene& scene, const Event& event) {
 }
 
 Motion single(const Scene& scene, decltype(Segment::law) law) {
-    Motion motion{Units{}, scene, {}, {}};
+    Motion motion{Units{}, scene, {}, {}, false};
     motion.segments.push_back({0.0, std::move(law)});
     return motion;
 }
@@ -184,6 +184,13 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
                 evaluate(scene, itself(law), since.data(), since.size(), samples + i);
             },
             segment.law);
+        if constexpr (std::is_same_v<Sample, ContactSample>) {
+            if (motion_.rests) {
+                for (std::size_t j = 0; j < since.size(); ++j) {
+                    samples[i + j].state.mode = Mode::rest;
+                }
+            }
+        }
         const std::size_t last = i + since.size();
         if (units.are_si() && segment.turned.high == 0) i = last;
         for (; i < last; ++i) complete(samples[i], units, segment.turned);

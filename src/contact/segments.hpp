@@ -53,6 +53,7 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
+    bool rests = false;  // set if the only law is one of rolling, and the body is at rest
 };
 
 // The law of a segment, whether it is stored in the segment or behind a pointer (Apart).

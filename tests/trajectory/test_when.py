@@ -251,10 +251,11 @@ def test_a_motion_that_stopped_early() -> None:
 # ----------------------------------------------------------------------------------------------- at
 
 
-@pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce"])
+@pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce", "rest", "five"])
 def test_one_state_is_a_row_of_the_samples(name: str) -> None:
-    """The state has plain floats with the bits of `sol`."""
-    motion = simulate(getattr(rl.scenes, name), 3.0)
+    """The state has plain floats with the bits of `sol`, also in five coordinates."""
+    scene = Scene(2.0, 1.0) if name == "rest" else getattr(rl.scenes, name, rl.scenes.rolling)
+    motion = simulate(scene, 3.0, model="multipliers" if name == "five" else "auto")
     for t in (0.0, 1.234, 3.0):
         found, row = motion.at(t), motion.sol(t)
         for field in (

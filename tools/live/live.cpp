@@ -79,12 +79,10 @@ void add_samples(const Scene& scene, const Solution& solution, const double* ask
     std::vector<ContactSample> samples(n);
     Sampler(solution.motion, n)(times.data(), n, samples.data());
     const auto [into, along] = scene.ground_gravity();
-    const bool rests =
-        initial_state(scene).state.mode == Mode::rest;  // exact rolling calls it rolling
     for (const auto& [s, force] : samples) {
         const double moved = scene.mass * (s.x_dot * s.x_dot + s.z_dot * s.z_dot);
-        add(s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, force.normal, force.friction,
-            rests ? Mode::rest : s.mode, (moved + scene.inertia * s.omega * s.omega) / 2,
+        add(s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, force.normal, force.friction, s.mode,
+            (moved + scene.inertia * s.omega * s.omega) / 2,
             scene.mass * (into * s.z - along * s.x));
     }
 }

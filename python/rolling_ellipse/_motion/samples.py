@@ -211,8 +211,6 @@ def sample_at(motion: Trajectory, t: float) -> Sample:
     values = motion._solution.sample_at(scene.core, motion.settings.core, t)
     values["t"], values["turns"] = t, (values["theta"] - scene.theta) / (2 * math.pi)
     values["mode"] = _MODES[values["mode"]]
-    if motion.contact is None and scene.initial_state.mode is Mode.REST:
-        values["mode"] = Mode.REST
     found = trusted(Sample, values)
     values["energy"] = sum(energies(scene, found))
     return found
