@@ -1,3 +1,5 @@
+#include "rolling/slope/flow.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -20,11 +22,15 @@ RollingFlow validated_flow(const Body& body, double theta, double omega) {
     return rolling_flow(validated_start(body, theta, omega));
 }
 
+FlowSample level_sample(double t, const Body& body, double theta, double omega) {
+    const RollingFlow flow = validated_flow(body, theta, omega);
+    validate_time(t, longest_time(flow));
+    return sample(flow, t);
+}
+
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
-    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
-    validate_time(t, longest_time(flow));
-    const FlowSample now = sample(flow, t);
+    const FlowSample now = level_sample(t, body(a, b, gyration2, gravity), theta, omega);
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -96,6 +102,55 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     return out.tuple();
 }
 
+// A body on a slope and the flow of one of its starts, kept for the next times of the same motion.
+class SlopeMotion {
+  public:
+    FlowSample operator()(double t, const Body& body, double theta, double omega, double slope) {
+        // Reversed in time, the motion is that of the reversed start.
+        const double heading = t < 0 ? -1.0 : 1.0;
+        const std::array<double, 7> asked{body.a, body.b,          body.gravity, body.gyration2,
+                                          theta,  heading * omega, slope};
+        if (!flow_ || asked != asked_) {
+            validate(body);
+            validate_motion(body, theta, omega);
+            validate_slope(slope);
+            flow_ = slope_flow(body, slope, theta, heading * omega, 0.0);
+            asked_ = asked;
+        }
+        validate_time(t, std::numeric_limits<double>::max());
+        prepare(*flow_, std::abs(t));
+        validate_time(t, longest_time(*flow_));
+        FlowSample found = sample(*flow_, std::abs(t));
+        found.omega *= heading;
+        return found;
+    }
+
+  private:
+    std::array<double, 7> asked_{};
+    std::optional<SlopeFlow> flow_;
+};
+
+// t, a, b, theta, omega, gravity, gyration2, slope, each with n elements, or one.
+py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments, int workers) {
+    const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
+                          arguments, n);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        SlopeMotion motion;
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of[i];
+            const Body body{a, b, gyration2, gravity};
+            of.naming(i, [&, t = t, theta = theta, omega = omega, slope = slope] {
+                store(slope == 0 ? level_sample(t, body, theta, omega)
+                                 : motion(t, body, theta, omega, slope),
+                      found, i);
+            });
+        }
+    });
+    return out.tuple();
+}
+
 std::vector<std::string> flow_levels() {
     std::vector<std::string> names;
     for (const Kernel& each : kernels()) names.push_back(each.name);
@@ -111,6 +166,7 @@ void bind_flow(py::module_& m) {
     m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a, "workers"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a, "level"_a = "best");
+    m.def("slope_flow_array", slope_flow_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("flow_levels", flow_levels);
 }
 

@@ -135,17 +135,20 @@ void validate(const Impulse& impulse) {
     }
 }
 
+void validate_slope(double slope) {
+    constexpr double steepest = 1.5;
+    if (std::abs(slope) <= steepest) return;
+    const char* const hint = std::abs(slope) <= 90 ? " (degrees? times pi/180)" : "";
+    refuse("slope", std::string("an angle [rad] from -1.5 to 1.5") + hint, slope);
+}
+
 void validate(const Scene& scene, double most) {
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
     require_inertia("inertia", "moment of inertia [kg m^2]", scene.inertia, scene.body(),
                     "mass max(a, b)^2");
-    constexpr double steepest = 1.5;
-    if (!(std::abs(scene.slope) <= steepest)) {
-        const char* const hint = std::abs(scene.slope) <= 90 ? " (degrees? times pi/180)" : "";
-        refuse("slope", std::string("an angle [rad] from -1.5 to 1.5") + hint, scene.slope);
-    }
+    validate_slope(scene.slope);
     validate_friction(scene.friction);
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
         refuse("restitution", "between 0 and 1", scene.restitution);

@@ -236,6 +236,7 @@ void validate_length(std::string_view name, double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega, double most = most_energy);
+void validate_slope(double slope);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene, double most = most_energy);

@@ -19,6 +19,9 @@ LIMITS: dict[str, dict[str, tuple[float, float]]] = {
         "t": (-2.0, 9.0), "omega": (-4.0, 4.0), "gravity": (1.6, 9.8), "theta": (-3.0, 3.0), **BODY,
         "gyration2": (0.2, 2.0),
     },
+    "slope": {
+        "t": (-2.0, 9.0), "omega": (-4.0, 4.0), "slope": (-0.4, 0.4), "theta": (-3.0, 3.0), **BODY,
+    },
     "classify": {
         "omega": (-9.0, 9.0), "friction": (0.0, 1.0), "theta": (-3.0, 3.0), "gravity": (1.6, 9.8),
         **BODY, "gyration2": (0.2, 2.0),
@@ -33,7 +36,7 @@ LIMITS: dict[str, dict[str, tuple[float, float]]] = {
 }  # fmt: skip
 CALLS: dict[str, tuple[Callable[..., Any], str]] = {
     **{name: (getattr(geometry, name), "support") for name in geometry.__all__},
-    "flow": (flow, "flow"), "classify": (classify, "classify"),
+    "flow": (flow, "flow"), "flow on slopes": (flow, "slope"), "classify": (classify, "classify"),
     **{law: (lambda law=law, **given: impacts.collide(**given, law=law), "collide")
        for law in impacts.LAWS},
     "kinetic_speed": (impacts.kinetic_speed, "kinetic_speed"),

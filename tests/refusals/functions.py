@@ -61,7 +61,10 @@ REFUSALS: list[Row] = [
         a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
         gyration2=[*NOT_POSITIVE, 1e40, 3.6e-6, 4.4e6],
         theta=[*NOT_FINITE, [1.0, NAN]], omega=[*NOT_FINITE, [1.0, NAN]], workers=WORKERS,
+        slope=[*NOT_FINITE, 1.6, -30, "x", [0.1, NAN]],
     ),
+    *wrong(rl.flow, FLOW | {"slope": 0.1}, t=[*NOT_FINITE, 1e30], a=NOT_POSITIVE,
+           gravity=NOT_POSITIVE, gyration2=NOT_POSITIVE, omega=NOT_FINITE, workers=WORKERS),
     *wrong(
         rl.flow_jacobian, FLOW, wrt=[[], "x", 3, ["t", "t"], "gyration2"], t=[*NOT_FINITE, "x"],
         a=NOT_POSITIVE, workers=WORKERS,

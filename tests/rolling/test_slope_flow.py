@@ -14,6 +14,7 @@ import pytest
 import rolling_ellipse as rl
 from oracles.geometry import support
 from oracles.numbers import EPS
+from scipy.integrate import solve_ivp
 
 DIGITS = 20
 
@@ -280,3 +281,34 @@ def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> No
     assert np.all(np.abs(motion.omega**2 - scene.omega**2) <= fall + 8 * EPS * scene.omega**2)
     assert rl.certify(scene).validity is rl.Validity.VALID
     assert rl.simulate(scene, t).model == "contact"
+
+
+@pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
+def test_the_flow_on_a_slope(omega: float) -> None:
+    """It has the bits of `simulate`, and its past solves the equation of rolling. The local error
+    of the integrator is 1e-12, which three seconds magnify by less than a hundred."""
+    scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
+    motion, asked = rolled(scene, times), {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": omega}
+    for name, values in zip(
+        ("theta", "omega", "x"), rl.flow(times, **asked, slope=0.1), strict=True
+    ):
+        assert np.array_equal(values, getattr(motion, name))
+    past = solve_ivp(
+        rl.rolling_equation(scene), (0.0, -3.0), [0.2, omega, 0.0], "DOP853", rtol=1e-12, atol=1e-12
+    )
+    assert np.allclose(rl.flow(-3.0, **asked, slope=0.1), past.y[:, -1], rtol=0, atol=1e-10)
+    assert rl.flow(-2.0, **asked, slope=0) == rl.flow(-2.0, **asked)
+
+
+def test_the_flow_has_the_bits_of_single_times() -> None:
+    """Also between the end of the first piece and the mirror image of the start."""
+    rng = np.random.default_rng(5)
+    for _ in range(120):
+        a, b = np.exp(rng.uniform(-1, 1, 2)).tolist()
+        asked = {
+            "a": a, "b": b, "theta": rng.uniform(-3, 3), "slope": rng.uniform(-0.1, 0.1),
+            "omega": rng.choice([rng.uniform(-6, 6), rng.uniform(-0.02, 0.02)]),
+        }  # fmt: skip
+        times = np.concatenate([rng.uniform(-5, 40, 6), rng.uniform(-0.5, 1, 12)])
+        single = [rl.flow(t, **asked) for t in times.tolist()]
+        assert np.array_equal(rl.flow(times, **asked), np.transpose(single))

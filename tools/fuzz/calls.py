@@ -55,6 +55,7 @@ NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     "t": _time,
     "theta": scenes.angle,
     "omega": scenes.speed,
+    "slope": lambda d, of: of.values["slope"],
     "x_dot": scenes.velocity,
     "z_dot": scenes.velocity,
     "friction": scenes.friction,

@@ -27,6 +27,7 @@ def flow(
     omega: Any,
     gravity: Any = 9.81,
     gyration2: Any = None,
+    slope: Any = 0.0,
     workers: Any = 1,
 ) -> tuple[Any, Any, Any]:
     """Return the state of rolling at any time, exactly, without a check that rolling is valid.
@@ -50,6 +51,10 @@ def flow(
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
         (a^2 + b^2)/4.
+    slope : float or array_like
+        Angle of the ground [rad], downwards in x, at most 1.5 in size. On a slope power series
+        follow one swing, or the first half turns, as in `simulate`; times of one motion beside
+        each other share them.
     workers : int or executor
         Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
         or an executor, as of `simulate_many`, for many millions of elements. The bits are the same
@@ -72,6 +77,12 @@ def flow(
         If a number is out of its range (of an array it is named with its place in the common
         shape, ``a[3]``) or shapes do not broadcast.
     """
+    if type(slope) is not float or slope != 0:
+        on_slope: tuple[Any, Any, Any] = evaluate(
+            shared(workers, _core.slope_flow_array), t=t, a=a, b=b, theta=theta, omega=omega,
+            gravity=gravity, gyration2=gyration2, slope=slope,
+        )  # fmt: skip
+        return on_slope
     # Plain floats, as in most calls, need no conversion.
     if (
         type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float

@@ -30,9 +30,21 @@ bool climbs_for_ever(const SlopeFlow& flow) {
     return flow.climb && flow.climb->half_turns == most_half_turns && !flow.pieces.empty();
 }
 
+// Whether the last piece has the first turning point. After it the next piece begins at the
+// reversed start; the motion up to there mirrors the motion before.
+bool has_turned(const SlopeFlow& flow) {
+    return flow.turnings.size() == 1 &&
+           double(flow.turnings.front() - flow.pieces.back().from.time) > 0;
+}
+
+DoubleDouble time_of_reversed_start(const SlopeFlow& flow) {
+    return flow.turnings.front() * 2.0 - first_of_pieces(flow).time;
+}
+
 // Time at which the pieces end.
 double known_until(const SlopeFlow& flow) {
-    return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
+    if (flow.pieces.empty()) return 0.0;
+    return has_turned(flow) ? double(time_of_reversed_start(flow)) : flow.pieces.back().end();
 }
 
 // The place at which the series begin: the start, or the end of the sum of a climb.
@@ -86,12 +98,9 @@ SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
 // The begin of the next piece: the end of the last one. After a turning point it is the reversed
 // start; series continued beside the rim of a well would miss that place.
 SlopePlace next_place(const SlopeFlow& flow) {
-    const SlopePiece& last = flow.pieces.back();
-    const bool turned =
-        flow.turnings.size() == 1 && double(flow.turnings.front() - last.from.time) > 0;
-    if (!turned) return place_after(flow.body, flow.energy, last);
+    if (!has_turned(flow)) return place_after(flow.body, flow.energy, flow.pieces.back());
     SlopePlace place = first_of_pieces(flow);
-    place.time = flow.turnings.front() * 2.0 - place.time;
+    place.time = time_of_reversed_start(flow);
     place.omega = -place.omega;
     return place;
 }
