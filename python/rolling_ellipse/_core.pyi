@@ -173,6 +173,7 @@ def flow_scalar(
     omega: float,
     gravity: float,
     gyration2: float | None,
+    slope: float,
 ) -> tuple[float, float, float]: ...
 def flow_times(
     t: FloatArray,

@@ -28,12 +28,6 @@ FlowSample level_sample(double t, const Body& body, double theta, double omega) 
     return sample(flow, t);
 }
 
-py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
-                      std::optional<double> gyration2) {
-    const FlowSample now = level_sample(t, body(a, b, gyration2, gravity), theta, omega);
-    return py::make_tuple(now.theta, now.omega, now.x);
-}
-
 // theta, omega, x of one motion at many times.
 py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
                      std::optional<double> gyration2, int workers) {
@@ -130,6 +124,14 @@ class SlopeMotion {
     std::optional<SlopeFlow> flow_;
 };
 
+py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
+                      std::optional<double> gyration2, double slope) {
+    const Body of = body(a, b, gyration2, gravity);
+    const FlowSample now =
+        slope == 0 ? level_sample(t, of, theta, omega) : SlopeMotion()(t, of, theta, omega, slope);
+    return py::make_tuple(now.theta, now.omega, now.x);
+}
+
 // t, a, b, theta, omega, gravity, gyration2, slope, each with n elements, or one.
 py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments, int workers) {
     const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
@@ -162,7 +164,7 @@ std::vector<std::string> flow_levels() {
 void bind_flow(py::module_& m) {
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
-          "gyration2"_a);
+          "gyration2"_a, "slope"_a);
     m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a, "workers"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a, "level"_a = "best");

@@ -77,26 +77,27 @@ def flow(
         If a number is out of its range (of an array it is named with its place in the common
         shape, ``a[3]``) or shapes do not broadcast.
     """
+    # Plain floats, as in most calls, need no conversion.
+    if (
+        type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
+        and type(slope) is float
+        and (gyration2 is None or type(gyration2) is float)
+        and type(workers) is int
+        and workers == 1
+    ):
+        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2, slope)
     if type(slope) is not float or slope != 0:
         on_slope: tuple[Any, Any, Any] = evaluate(
             shared(workers, _core.slope_flow_array), t=t, a=a, b=b, theta=theta, omega=omega,
             gravity=gravity, gyration2=gyration2, slope=slope,
         )  # fmt: skip
         return on_slope
-    # Plain floats, as in most calls, need no conversion.
-    if (
-        type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
-        and (gyration2 is None or type(gyration2) is float)
-        and type(workers) is int
-        and workers == 1
-    ):
-        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2)
     threads = threads_of(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
         with suppress(TypeError):  # an int beyond doubles is refused by name below
             if type(t) in _SCALARS:
-                return _core.flow_scalar(t, *one, gyration2)
+                return _core.flow_scalar(t, *one, gyration2, 0.0)
             times = array("t", t)
             if threads is None:
                 k2 = uniform_disc(a, b) if gyration2 is None else gyration2
