@@ -162,6 +162,8 @@ def test_samples_from_arrays(tmp_path: Any) -> None:
     mine.save(tmp_path / "mine.npz")
     again = Trajectory.load(tmp_path / "mine.npz")
     assert again == mine and again.sol(0.123) == mine.sol(0.123)
+    one, row = mine.at(0.123), mine.sol(0.123)
+    assert all(value == getattr(row, name)[0] for name, value in vars(one).items())
     assert np.max(np.asarray(mine.plot_error().errors[0].get_ydata())) < 1e-6
     for show in (mine.plot_forces, mine.plot_phase, mine.plot, mine.animate):
         show()

@@ -12,7 +12,7 @@ from .._ask.check import FloatArray, finite
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
-from ..geometry import support
+from ..geometry import contact_angle, contact_distance, support, support_slope
 from .samples import of_contact, vector
 from .status import COMPLETED
 
@@ -96,6 +96,16 @@ class _Samples:
             "friction_force": scene.mass * (x_ddot - g * math.sin(scene.slope)),
         }  # fmt: skip
         return {name: values.copy() for name, values in found.items()} | {"mode": mode}
+
+    def sample_at(self, _scene: Any, _settings: Any, t: float) -> dict[str, Any]:
+        """Return the numbers of a sample at one time by name, as the core's Solution does."""
+        found = self.sample_contact(np.array([t]))
+        values = {name: column[0].item() for name, column in found.items()}
+        theta, axes = values["theta"], {"a": self.scene.a, "b": self.scene.b}
+        values["contact_x"] = values["x"] + support_slope(theta, **axes)
+        return values | {
+            "psi": contact_angle(theta, **axes), "r": contact_distance(theta, **axes)
+        }  # fmt: skip
 
     def passages(self, *_: Any) -> Any:
         raise ValueError("trajectory must be computed to know passages, got one from arrays")
