@@ -3,12 +3,12 @@
 import re
 from importlib.metadata import version as installed
 from pathlib import Path
-from shutil import copy, copytree, rmtree
+from runpy import run_path
+from shutil import copytree, rmtree
 
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
-LIVE = HERE / "live" / "index.html"  # a page of its own, which the page `explore` shows
 rmtree(HERE / "notebooks", ignore_errors=True)  # copies, which git ignores
 copytree(HERE.parent / "notebooks", HERE / "notebooks")
 
@@ -34,7 +34,6 @@ def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
 
 def setup(app: Sphinx) -> None:
     app.connect("source-read", lead_to_copies)
-    if LIVE.exists():
-        app.tags.add("live")
-        (Path(app.outdir) / "live").mkdir(parents=True, exist_ok=True)
-        copy(LIVE, Path(app.outdir) / "live")
+    live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows
+    live.mkdir(parents=True, exist_ok=True)
+    run_path(str(HERE / "live" / "make.py"))["write"](live / "index.html")

@@ -11,7 +11,6 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of docs/speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA
-    live       docs/live/index.html, by docs/live/make.py
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
 works; its figures are not for keeping.
@@ -125,13 +124,9 @@ def dae(quick: bool) -> None:
         write_part(HERE / "benchmark_dae.md", name, table())
 
 
-def live(quick: bool) -> None:
-    run(HERE / "live" / "make.py")
-
-
 STEPS: dict[str, Callable[[bool], None]] = {
     step.__name__: step
-    for step in (races, batches, engines, pictures, problems, notebooks, text, dae, live)
+    for step in (races, batches, engines, pictures, problems, notebooks, text, dae)
 }
 
 # ------------------------------------------------------------------------------ marked parts

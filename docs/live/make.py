@@ -17,8 +17,7 @@ from rolling_ellipse._player.page import LANGUAGES, document, escaped, with_play
 HERE = Path(__file__).resolve().parent
 
 
-def main() -> None:
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "index.html"
+def write(target: Path) -> None:
     target.write_text(page(explore(scenes.report, live=True)), encoding="utf-8")
 
 
@@ -101,4 +100,4 @@ def language(name: str) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    main()
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "index.html")
