@@ -107,7 +107,7 @@ Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, dou
     if (from.on_slope) {
         SlopeFlow flow = *from.on_slope;
         prepare(flow, t_end);
-        validate_time(t_end, longest_time(flow));
+        validate_time(t_end, longest_time(flow, t_end));
         return {single(scene, std::make_shared<const SlopeFlow>(std::move(flow))),
                 Ending::completed, t_end};
     }

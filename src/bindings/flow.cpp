@@ -96,39 +96,50 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     return out.tuple();
 }
 
-// A body on a slope and the flow of one of its starts, kept for the next times of the same motion.
-class SlopeMotion {
-  public:
-    FlowSample operator()(double t, const Body& body, double theta, double omega, double slope) {
-        // Reversed in time, the motion is that of the reversed start.
-        const double heading = t < 0 ? -1.0 : 1.0;
-        const std::array<double, 7> asked{body.a, body.b,          body.gravity, body.gyration2,
-                                          theta,  heading * omega, slope};
-        if (!flow_ || asked != asked_) {
-            validate(body);
-            validate_motion(body, theta, omega);
-            validate_slope(slope);
-            flow_ = slope_flow(body, slope, theta, heading * omega, 0.0);
-            asked_ = asked;
-        }
-        validate_time(t, std::numeric_limits<double>::max());
-        prepare(*flow_, std::abs(t));
-        validate_time(t, longest_time(*flow_));
-        FlowSample found = sample(*flow_, std::abs(t));
-        found.omega *= heading;
-        return found;
-    }
+// The arguments of a motion on a slope.
+using SlopeArguments = std::array<double, 8>;  // t, a, b, theta, omega, gravity, gyration2, slope
 
-  private:
-    std::array<double, 7> asked_{};
-    std::optional<SlopeFlow> flow_;
+// A motion on a slope in the direction of its times: reversed in time, it is that of the reversed
+// start.
+struct SlopeMotion {
+    double heading;
+    SlopeFlow flow;
 };
+
+SlopeMotion slope_motion(const SlopeArguments& of) {
+    const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of;
+    const Body body{a, b, gyration2, gravity};
+    validate(body);
+    validate_motion(body, theta, omega);
+    validate_slope(slope);
+    const double heading = t < 0 ? -1.0 : 1.0;
+    return {heading, slope_flow(body, slope, theta, heading * omega, 0.0, 0.0)};
+}
+
+void prepare(SlopeMotion& motion, double t) {
+    validate_time(t, std::numeric_limits<double>::max());
+    prepare(motion.flow, std::abs(t));
+    validate_time(t, longest_time(motion.flow, std::abs(t)));
+}
+
+bool is_same_motion(const SlopeArguments& x, const SlopeArguments& y) {
+    return std::equal(x.begin() + 1, x.end(), y.begin() + 1) && (x[0] < 0) == (y[0] < 0);
+}
+
+FlowSample slope_sample(const SlopeArguments& of) {
+    SlopeMotion motion = slope_motion(of);
+    prepare(motion, of[0]);
+    FlowSample found = sample(motion.flow, std::abs(of[0]));
+    found.omega *= motion.heading;
+    return found;
+}
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2, double slope) {
     const Body of = body(a, b, gyration2, gravity);
     const FlowSample now =
-        slope == 0 ? level_sample(t, of, theta, omega) : SlopeMotion()(t, of, theta, omega, slope);
+        slope == 0 ? level_sample(t, of, theta, omega)
+                   : slope_sample({t, a, b, theta, omega, gravity, of.gyration2, slope});
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -139,15 +150,33 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
     FlowArrays out(n);
     const FlowColumns found = out.columns();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        SlopeMotion motion;
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of[i];
-            const Body body{a, b, gyration2, gravity};
-            of.naming(i, [&, t = t, theta = theta, omega = omega, slope = slope] {
-                store(slope == 0 ? level_sample(t, body, theta, omega)
-                                 : motion(t, body, theta, omega, slope),
-                      found, i);
-            });
+        std::vector<double> times;
+        std::vector<FlowSample> samples;
+        for (py::ssize_t i = begin; i < end;) {
+            const SlopeArguments first = of[i];
+            const auto [t, a, b, theta, omega, gravity, gyration2, slope] = first;
+            if (slope == 0) {
+                const Body body{a, b, gyration2, gravity};
+                of.naming(i, [&, t = t, theta = theta, omega = omega] {
+                    store(level_sample(t, body, theta, omega), found, i);
+                });
+                ++i;
+                continue;
+            }
+            // Times of one motion side by side share it.
+            std::optional<SlopeMotion> motion;
+            of.naming(i, [&] { motion = slope_motion(first); });
+            times.clear();
+            py::ssize_t next = i;
+            for (; next < end && is_same_motion(of[next], first); ++next) {
+                of.naming(next, [&] { prepare(*motion, of[next][0]); });
+                times.push_back(std::abs(of[next][0]));
+            }
+            samples.resize(times.size());
+            sample(motion->flow, times.data(), times.size(), samples.data());
+            for (const FlowSample& each : samples) {
+                store({each.theta, motion->heading * each.omega, each.x}, found, i++);
+            }
         }
     });
     return out.tuple();

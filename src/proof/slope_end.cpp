@@ -290,6 +290,7 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     append(all, watch.met());
     if (all.broken || !flow.run || double(flow.run->from.time) > last) return all;
+    extend(*flow.run, infinity);
     append(all, law_in_run(flow, *flow.run, friction, most_half_turns));
     return all;
 }

@@ -93,12 +93,17 @@ def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
         )
         off = t - exact
         found = rolled(scene, [t])
+        flow = rl.flow(
+            t, a=scene.a, b=scene.b, theta=scene.theta, omega=scene.omega, slope=scene.slope,
+            gyration2=scene.gyration2,
+        )  # fmt: skip
         expected += speed * off
         allowed = 8 * EPS * (float(speed) * t + float(expected))
-        assert abs(float(found.theta[0] - expected)) < allowed
         # omega depends on the angle: theta'' times the rounding of the time
         bend = max(scene.a, scene.b) / min(scene.a, scene.b)
-        assert abs(float(found.omega[0] / speed - 1)) < 8 * EPS * bend * float(speed) * t
+        for theta, omega in ((found.theta[0], found.omega[0]), flow[:2]):
+            assert abs(float(theta - expected)) < allowed
+            assert abs(float(omega / speed - 1)) < 8 * EPS * bend * float(speed) * t
 
 
 @pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
@@ -143,8 +148,12 @@ def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
         end += math.copysign(1, omega) * speed * (t - time)
         path = energy.path(end) - energy.path(energy.start)
         found = rolled(scene, [t])
+        flow = rl.flow(t, a=1.0, b=0.5, slope=1e-3, theta=0.4, omega=omega)
         assert abs(found.theta[0] - end) < EPS + 4 * EPS * way
         assert abs(found.x[0] - path) < 4 * EPS * abs(path)
+        assert abs(flow[0] - end) < EPS + 4 * EPS * way
+        # from a tenth of a radian on it is the difference of two paths from the flat position
+        assert abs(flow[2] - path) < 4 * EPS * abs(path) + (EPS / 2 if way == 0.1 else 0)
 
 
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
@@ -283,10 +292,11 @@ def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> No
     assert rl.simulate(scene, t).model == "contact"
 
 
-@pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
+@pytest.mark.parametrize("omega", [0.4, 0.0, -2.0])
 def test_the_flow_on_a_slope(omega: float) -> None:
-    """It has the bits of `simulate`, and its past solves the equation of rolling. The local error
-    of the integrator is 1e-12, which three seconds magnify by less than a hundred."""
+    """It has the bits of `simulate` where the body swings, and its past solves the equation of
+    rolling. The local error of the integrator is 1e-12, which three seconds magnify by less than a
+    hundred."""
     scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
     motion, asked = rolled(scene, times), {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": omega}
     for name, values in zip(
@@ -298,6 +308,44 @@ def test_the_flow_on_a_slope(omega: float) -> None:
     )
     assert np.allclose(rl.flow(-3.0, **asked, slope=0.1), past.y[:, -1], rtol=0, atol=1e-10)
     assert rl.flow(-2.0, **asked, slope=0) == rl.flow(-2.0, **asked)
+
+
+def drawn_on_a_slope(rng: np.random.Generator) -> dict[str, float]:
+    """A body that runs down or climbs: round, thin or tall, on a gentle or steep slope."""
+    ratio = rng.choice([10 ** rng.uniform(-3, 0), 1 - 10 ** rng.uniform(-9, -1)])
+    a, b = rng.permutation([1.0, ratio])
+    slope = rng.choice([10 ** rng.uniform(-5, 0), rng.uniform(0.3, 1.49)]) * rng.choice([-1, 1])
+    speed = 10 ** rng.uniform(0.0, 1.5)
+    gyration2 = rng.choice([(a**2 + b**2) / 4, 10 ** rng.uniform(-3, 2)])
+    return {
+        "a": float(a), "b": float(b), "gyration2": float(gyration2), "slope": float(slope),
+        "theta": rng.uniform(-10, 10),
+        "omega": float(speed * np.sign(slope) * rng.choice([-1, 1], p=[0.2, 0.8])),
+    }  # fmt: skip
+
+
+def test_the_flow_of_a_run_needs_no_series() -> None:
+    """A single time of a run or climb is computed from its energy alone, one of `simulate` within
+    the first half turn by power series of the equation of motion: they agree within what two
+    roundings of the start change, and five of the state (found: 3.0 of 80 000)."""
+    rng = np.random.default_rng(0)
+    names, others = ("theta", "omega", "x"), 0
+    for _ in range(400):
+        asked, t = drawn_on_a_slope(rng), 10 ** rng.uniform(-3, 1)
+        inertia = asked.pop("gyration2")
+        scene = rl.Scene(**asked, inertia=inertia)
+        flow = rl.flow(t, **asked, gyration2=inertia)
+        series = rolled(scene, [t])
+        size = np.array([1 + abs(flow[0]) + abs(flow[1]) * t, abs(flow[1]), abs(flow[2]) + 1.0])
+        allowed = 5 * EPS * size
+        for sign in (1, -1):
+            near = {"theta": asked["theta"] * (1 + sign * EPS), "omega": asked["omega"] * (1 + EPS)}
+            moved = rl.flow(t, **(asked | near), gyration2=inertia)
+            allowed += 2 * np.abs(np.subtract(moved, flow))
+        found = np.array([float(getattr(series, name)[0]) for name in names])
+        assert np.all(np.abs(found - flow) <= allowed), (asked, inertia, t)
+        others += bool(np.any(found != flow))
+    assert others > 50  # two roads
 
 
 def test_the_flow_has_the_bits_of_single_times() -> None:

@@ -53,8 +53,8 @@ def flow(
         (a^2 + b^2)/4.
     slope : float or array_like
         Angle of the ground [rad], downwards in x, at most 1.5 in size. On a slope power series
-        follow one swing, or the first half turns, as in `simulate`; times of one motion beside
-        each other share them.
+        follow a swing; a run downhill and a climb are a quadrature of the energy integral over one
+        half turn. Times of one motion beside each other share them.
     workers : int or executor
         Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
         or an executor, as of `simulate_many`, for many millions of elements. The bits are the same

@@ -6,10 +6,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// Least number of half turns of a climb that is computed as a sum.
+// Least number of half turns of a climb that is computed as a sum, beside series and without them.
 constexpr double least_climb = 16;
-// Half turns computed by series before a SlopeRun takes over; its sum over fewer loses digits.
-constexpr double half_turns_before_a_run = 1;
+constexpr double least_climb_alone = 1;
 
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
     const double s = body.side * view.sin;
@@ -47,19 +46,32 @@ double known_until(const SlopeFlow& flow) {
     return has_turned(flow) ? double(time_of_reversed_start(flow)) : flow.pieces.back().end();
 }
 
+// Whether the body has moved so little that only a series about the start keeps the digits of the
+// way.
+bool is_short(const SlopeFlow& flow, double time) {
+    constexpr double short_way = 0.1;  // [rad]
+    return time * std::max(std::abs(flow.start.omega), flow.body.slowest) < short_way;
+}
+
+bool is_in_foot(const SlopeFlow& flow, double time) {
+    return !flow.foot.empty() && time < flow.foot.back().end() &&
+           (flow.quarters_by_series > 0 || is_short(flow, time));
+}
+
 // The place at which the series begin: the start, or the end of the sum of a climb.
 SlopePlace begin(SlopeFlow& flow) {
     const SlopePlace& start = flow.start;
     if (start.omega == 0) flow.turnings.push_back(start.time);
     if (start.omega >= 0) return start;
     const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start.omega);
-    if (n < least_climb) return start;
+    if (n < (flow.quarters_by_series > 0 ? least_climb : least_climb_alone)) return start;
     SlopePlace at = start;
-    while (start.quarters - at.quarters <= 2 * half_turns_before_a_run) {
+    while (start.quarters - at.quarters < flow.quarters_by_series) {
         flow.foot.push_back(piece_from(flow.body, at));
         at = place_after(flow.body, flow.energy, flow.foot.back());
     }
     flow.climb = slope_run(flow.body, start, flow.energy.start, n);
+    extend(*flow.climb, infinity);
     return place_after(*flow.climb, n);
 }
 
@@ -129,8 +141,8 @@ class SlopeReader {
         const double time = t / flow_.body.time;
         if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
         if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
+        if (is_in_foot(flow_, time)) return place_in_pieces(flow_.foot, {time, 0.0});
         if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
-            if (time < flow_.foot.back().end()) return place_in_pieces(flow_.foot, {time, 0.0});
             return read(climb_, *flow_.climb, time);
         }
         if (flow_.run && time > known_until(flow_)) return read(run_, *flow_.run, time);
@@ -150,9 +162,11 @@ class SlopeReader {
 
 }  // namespace
 
-SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x) {
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x,
+                     double quarters_by_series) {
     omega = zero_if_negligible(omega);
     SlopeFlow flow{};
+    flow.quarters_by_series = quarters_by_series;
     flow.theta = theta;
     flow.omega = omega;
     flow.x = x;
@@ -182,7 +196,7 @@ bool grow(SlopeFlow& flow) {
         if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
     }
     const auto& downhill = flow.downhill;
-    if (downhill && from.quarters - downhill->quarters > 2 * half_turns_before_a_run) {
+    if (downhill && from.quarters - downhill->quarters >= flow.quarters_by_series) {
         const Geometry there = geometry(flow.body, *downhill);
         const Tracked w = energy_at(flow.body, flow.energy, *downhill, there);
         flow.run = slope_run(flow.body, *downhill, w.value, most_half_turns);
@@ -196,8 +210,15 @@ bool grow(SlopeFlow& flow) {
 }
 
 void prepare(SlopeFlow& flow, double t) {
-    if (flow.pieces.empty() && !grow(flow)) return;
-    while (known_until(flow) <= t / flow.body.time && grow(flow)) continue;
+    const double until = t / flow.body.time;
+    if (flow.pieces.empty()) grow(flow);
+    while (known_until(flow) <= until && grow(flow)) continue;
+    const bool runs_at_once = flow.run && flow.pieces.empty();
+    if (flow.foot.empty() && (runs_at_once || flow.climb) && is_short(flow, until)) {
+        flow.foot.push_back(piece_from(flow.body, flow.start));
+    }
+    if (flow.run && !is_in_foot(flow, until))
+        extend(*flow.run, double(-flow.run->from.time + until));
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
@@ -223,7 +244,7 @@ void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSampl
     }
 }
 
-double longest_time(const SlopeFlow& prepared) {
+double longest_time(const SlopeFlow& prepared, double t) {
     constexpr double most = most_half_turns;
     const double unit = prepared.body.time;
     if (prepared.kind == MotionKind::uniform) {
@@ -236,8 +257,10 @@ double longest_time(const SlopeFlow& prepared) {
         return unit * most * double(prepared.turnings[1] - prepared.turnings[0]);
     }
     if (climbs_for_ever(prepared)) return unit * double(first_of_pieces(prepared).time);
-    if (!prepared.run) return infinity;
-    return unit * double(prepared.run->from.time + time_of(*prepared.run, most));
+    if (!prepared.run || !prepared.run->is_complete()) return infinity;
+    constexpr double far = 1e-3;
+    if (about(*prepared.run, t / unit) < far * most) return infinity;
+    return unit * double(prepared.run->from.time + RunTimes(*prepared.run)(most));
 }
 
 std::optional<double> period(const SlopeFlow& prepared) {

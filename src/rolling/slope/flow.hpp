@@ -5,9 +5,9 @@
 // * the motion after a turning point mirrors the motion before it, so that the series continue from
 //   the reversed start at twice the time of the first turning point;
 // * a body that rocks between two turning points repeats the series up to the second one;
-// * a climb of many half turns is one sum (`climb`) except for its first half turn (`foot`), and
-//   the series continue near its top;
-// * a body that runs downhill for good is one sum (`run`) after its first half turn.
+// * a climb of many half turns is one sum (`climb`) except for its begin (`foot`), and the series
+//   continue near its top;
+// * a body that runs downhill for good is one sum (`run`) after its begin.
 #pragma once
 
 #include <optional>
@@ -25,10 +25,13 @@ struct SlopeFlow {
     double x;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;  // acceleration of a circle
+    double acceleration;        // acceleration of a circle
+    double quarters_by_series;  // first quarter turns of a run or climb that series follow, too
     SlopePlace start;
     SlopeEnergy energy;
-    std::vector<SlopePiece> foot;  // first half turn of a climb, where the sum loses digits
+    // The begin of a climb, or of a run without pieces, where the sum loses the digits of a short
+    // way.
+    std::vector<SlopePiece> foot;
     std::optional<SlopeRun> climb;
     std::vector<SlopePiece> pieces;
     std::vector<DoubleDouble> turnings;  // times of the first two turning points
@@ -36,8 +39,11 @@ struct SlopeFlow {
     std::optional<SlopeRun> run;
 };
 
-// The flow of a body that rolls on a slope other than 0.
-SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
+// The flow of a body that rolls on a slope other than 0. The law of contact is proved on the series
+// of a run's first half turn; without them a single time is faster, and many are slower.
+inline constexpr double quarters_of_proof = 3;
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x,
+                     double quarters_by_series = quarters_of_proof);
 
 // Extend the pieces until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
@@ -50,8 +56,9 @@ FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
-// Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many.
-double longest_time(const SlopeFlow& prepared);
+// Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many, or if a
+// time t is far below it, which is faster to see.
+double longest_time(const SlopeFlow& prepared, double t = infinity);
 
 // Time of a full swing [s]; empty if the motion does not repeat, infinite at rest.
 std::optional<double> period(const SlopeFlow& prepared);

@@ -22,9 +22,10 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
                                : -body.pull * std::sin(over_lying) * std::cos(over_upright);
 }
 
-// Physics (18) with D h^2 = d0 + d1 sin^2 phi, u = h^2 and p = h h' = c2 sin phi cos phi:
-//     omega' u (d0 + d1 sin^2 phi) = u h (g_along u - g_into p) - L^2 S^2 p omega^2
-//     u' = 2 p omega,   p' = q omega,   q' = -4 p omega
+// With D h^2 = I = d0 + d1 sin^2 phi, u = h^2, p = h h' = c2 sin phi cos phi, lambda = omega/h and
+// S = d1/c2 physics (18) becomes, without a quotient but by I,
+//     I lambda' = g_along u - g_into p - S p omega lambda,   omega = h lambda,   h' = p lambda
+//     u' = 2 p omega,   I' = S u',   p' = q omega,   q' = -4 p omega
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
 // the caller computes with all its digits (`drive`); the later coefficients do not cancel. Gravity
 // and omega are in the unit of time of the series.
@@ -34,56 +35,52 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
     auto& [angle, w, path, h] = motion;
     // Each name stands for a pair of series. Two pairs on a line are multiplied: first by first,
     // second by second.
+    TwoSeries h_p, l_l;           // (h, p) by (lambda, lambda): omega and the rate of h
     TwoSeries p_q, w_w;           // (p, q) by (omega, omega): the rates of u and p
-    TwoSeries u_u, inertia_h;     // (u, u) by (D h^2, h)
-    TwoSeries w_h;                // (omega, h) by itself
-    TwoSeries p_uh, load_drive;   // (p, u h) by (load, drive): the terms of omega and of gravity
-    TwoSeries mass_h, turning_w;  // (u D h^2, h) by (omega', omega); h omega is the path's rate
-    const double centrifugal = -body.long_axis2 * body.short_axis2;
+    TwoSeries h_pw, w_l;          // (h, p omega) by (omega, lambda): the rates of path and I
+    LongSeries inertia, turning;  // I by lambda'
     const double sin2 = square(sin);
-    const double u0 = body.short_axis2 + body.c2 * sin2;
-    const double h0 = std::sqrt(u0);
-    const double over_2h0 = 0.5 / h0;
-    const double inertia0 = body.d0 + body.d1 * sin2;
-    const double inertia_per_u = body.d1 / body.c2;
-    const double over_mass = 1 / (u0 * inertia0);
+    double u = body.short_axis2 + body.c2 * sin2;
+    double height = std::sqrt(u);
+    double p = body.c2 * sin * cos;
+    double q = body.c2 * (cos - sin) * (cos + sin);
+    double lambda = omega / height;
+    const double per_u = body.gyration2 + body.long_axis2 + body.short_axis2;
+    inertia[0] = body.d0 + body.d1 * sin2;
+    const double over_inertia = 1 / inertia[0];
     angle[0] = path[0] = 0.0;
-    w[0] = omega;
-    double u = u0;
-    p_q[0] = pair(body.c2 * sin * cos, body.c2 * (cos - sin) * (cos + sin));
 
     for (int k = 0; k <= long_order; ++k) {
+        h[k] = height;
+        h_p[k] = pair(height, p);
+        l_l[k] = pair(lambda, lambda);
         const Pair known_turns = inner(p_q, w_w, k);
-        const Pair known_masses = inner(u_u, inertia_h, k);
-        const Pair known_squares = self_product(w_h, k, 1);
-        const Pair known_forces = inner(p_uh, load_drive, k);
-        const Pair known_rates = inner(mass_h, turning_w, k);
-
-        h[k] = k == 0 ? h0 : (u - known_squares[1]) * over_2h0;
-        w_h[k] = pair(w[k], h[k]);
-        u_u[k] = pair(u, u);
-        inertia_h[k] = pair(k == 0 ? inertia0 : inertia_per_u * u, h[k]);
-        const Pair masses = known_masses + outer(u_u, inertia_h, k);
-        const double w2 = k == 0 ? square(omega) : known_squares[0] + 2 * omega * w[k];
-        const double p = p_q[k][0];
-        p_uh[k] = pair(p, masses[1]);
-        if (k > 0) drive = gravity.along * u - gravity.into * p;
-        load_drive[k] = pair(centrifugal * w2, drive);
-        const Pair forces = known_forces + outer(p_uh, load_drive, k);
-        mass_h[k] = pair(masses[0], h[k]);
-        double rest = forces[0] + forces[1];
-        if (k > 0) rest -= known_rates[0] + masses[0] * turning_w[0][0];
-        turning_w[k] = pair(rest * over_mass, w[k]);
+        const Pair known_rates = inner(h_pw, w_l, k);
+        double rest =
+            k == 0 ? drive : gravity.along * u - gravity.into * p - inner(inertia, turning, k);
+        if (k > 0) {
+            inertia[k] = per_u * u;
+            rest -= inertia[k] * turning[0];
+        }
+        const Pair w_rate = inner(h_p, l_l, k) + outer(h_p, l_l, k);
+        w[k] = k == 0 ? omega : w_rate[0];
         if (k == long_order) break;
 
+        p_q[k] = pair(p, q);
         w_w[k] = pair(w[k], w[k]);
-        const Pair turns = (known_turns + outer(p_q, w_w, k)) * pair(over_next[k], over_next[k]);
-        u = 2 * turns[0];
-        p_q[k + 1] = pair(turns[1], -4 * turns[0]);
-        const double rolled = k == 0 ? h0 * omega : known_rates[1] + (h0 * w[k] + h[k] * omega);
-        angle[k + 1] = w[k] * over_next[k];
-        path[k + 1] = rolled * over_next[k];
-        w[k + 1] = turning_w[k][0] * over_next[k];
+        const Pair turns = known_turns + outer(p_q, w_w, k);
+        h_pw[k] = pair(height, turns[0]);
+        w_l[k] = pair(w[k], lambda);
+        const Pair rates = known_rates + outer(h_pw, w_l, k);
+        turning[k] = (rest - per_u * rates[1]) * over_inertia;
+        const double over = over_next[k];
+        angle[k + 1] = w[k] * over;
+        path[k + 1] = rates[0] * over;
+        lambda = turning[k] * over;
+        height = w_rate[1] * over;
+        u = 2 * (turns[0] * over);
+        q = -2 * u;
+        p = turns[1] * over;
     }
     return motion;
 }

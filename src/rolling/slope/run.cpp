@@ -3,82 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/lanes.hpp"
+#include "rolling/slope/part.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
-constexpr double least_levels = 4;      // W/w from which sums over half turns are used
+constexpr double least_levels = 0.25;   // W/w from which sums over half turns are used
 constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
+constexpr double few = 4;               // half turns that cost less than the formula
+constexpr std::size_t most_begins = 1 + std::size_t(asymptotic_from + few);
+constexpr std::size_t usual_panels = 12;
+constexpr std::size_t usual_parts = 16;
 
-// sqrt(w) R(W/w) of physics (60).
-double remainder(double level, double gain) {
-    const double ratio = gain / level;
-    const double r2 = square(ratio);
-    const double series =
-        1.0 / 24 + r2 * (-1.0 / 384 +
-                         r2 * (1.0 / 1024 + r2 * (-143.0 / 163840 + r2 * (0.00140508015951 -
-                                                                          r2 * 0.00354755719503))));
-    return ratio / std::sqrt(level) * series;
+// sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
+Pack remainder(Pack ratio, Pack over_root) {
+    return ratio * over_root *
+           horner(ratio * ratio, -0.00354755719503, 0.00140508015951, -143.0 / 163840, 1.0 / 1024,
+                  -1.0 / 384, 1.0 / 24);
 }
 
-// Sums the terms (W + j w)^(-1/2), W = level, w = gain, up to the level of `asymptotic_from`.
-FirstRates first_rates(double level, double gain) {
-    FirstRates first{};
-    while (level < asymptotic_from * gain) {
-        first.sum += 1 / std::sqrt(level);
-        level += gain;
-        first.count += 1;
-    }
-    first.level = level;
-    first.root = std::sqrt(level);
-    first.remainder = remainder(level, gain);
-    return first;
+// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1 by the Euler-Maclaurin formula, W = level.
+Pack sum_of_rates(Pack level, double gain, double n) {
+    const Pack end = level + n * gain;
+    const Pack a = sqrt(level);
+    const Pack b = sqrt(end);
+    const Pack over = 1 / ((level * end) * (a + b));
+    const Pack over_roots = a * b * (a + b) * over;  // 1/(a b)
+    const Pack over_a = b * over_roots;
+    const Pack over_b = a * over_roots;
+    const Pack sum = 2 * n * (level * end * over);
+    const Pack ends = 0.5 * n * gain * (a * b * over);
+    return sum + (ends + (remainder(gain * (over_a * over_a), over_a) -
+                          remainder(gain * (over_b * over_b), over_b)));
 }
 
-// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1, W = level, w = gain.
-double sum_of_rates(double level, const FirstRates& first, double gain, double n) {
-    constexpr double few = 4;
-    const double others = n - first.count;
-    if (others < few) {
-        double sum = 0.0;
-        for (; n > 0; n -= 1, level += gain) sum += 1 / std::sqrt(level);
-        return sum;
-    }
-    const double end = std::fma(others, gain, first.level);
-    const double a = first.root;
-    const double b = std::sqrt(end);
-    const double ends = others * gain / (2 * a * b * (a + b));
-    return first.sum + (2 * others / (a + b) + (ends + (first.remainder - remainder(end, gain))));
-}
-
-// Widest part of a panel in v. Singularities are pi/2 or more away, five times half of that width.
-constexpr double widest_part = 0.6;
-
-// The angle from the centre of a panel at its coordinate v, and the derivative by v.
-struct Offset {
-    double angle;
-    double rate;
-};
-
-Offset offset_at(const RunPanel& panel, double v) {
-    const double tan = panel.grade * std::sinh(v);
-    return {panel.scale * std::atan(tan),
-            panel.scale * std::sqrt(square(tan) + square(panel.grade)) / (1 + square(tan))};
-}
-
-// Append the nodes of a rule over an interval of v.
-void add_nodes(const SlopeRun& run, const RunPanel& panel, double first, double last,
-               const GaussRule& rule, RunNodes& nodes) {
-    const double half = (last - first) / 2;
-    for (int i = 0; i < rule.size; ++i) {
-        const auto [node, weight] = node_of(rule, i);
-        const auto [offset, rate] = offset_at(panel, first + half * (1 + node));
-        const double angle = panel.angle + offset;
-        const Geometry at = geometry(run.body, panel.quarters, angle);
-        const double root = std::sqrt(0.5 * inertia_about_contact(run.body.gyration2, at));
-        nodes.weight.push_back(weight * half * rate * root);
-        nodes.level.push_back(level(run, panel.quarters, angle, at));
-    }
-}
+// Widest part of a panel in v. Singularities are pi/2 or more away, so that the polynomial of a
+// part falls by 6.4 from term to term.
+constexpr double widest_part = 1.0;
 
 // Centre of two panels: a flat position, or the place of the least W beside a tip.
 struct Centre {
@@ -88,33 +50,59 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Append the panel from low to high, in a gap between two centres.
-void add_panel(SlopeRun& run, const Centre& centre, double gap, double low, double high) {
+// Append the panel from low to high.
+void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     if (!(low < high)) return;
-    const double scale = gap / half_pi;
-    const double grade = std::tanh(centre.grade_angle / scale);
+    const double grade = std::tanh(centre.grade_angle);
     const auto coordinate = [&](double at) {
-        return std::asinh(std::tan((at - centre.at()) / scale) / grade);
+        return std::asinh(std::tan(at - centre.at()) / grade);
     };
-    RunPanel panel{centre.quarters, centre.angle, scale, grade, coordinate(low), coordinate(high)};
+    const double s = std::sin(centre.angle);
+    const double c = std::cos(centre.angle);
+    const bool tip = is_odd(centre.quarters);
+    run.panels.push_back({centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, grade,
+                          coordinate(low), coordinate(high)});
+}
+
+// Append the next part. Its nodes are computed side by side.
+void add_part(SlopeRun& run) {
+    const RunPanel& panel = run.panels[run.next_panel];
     const double width = panel.last - panel.first;
-    const double whole = std::asinh(1 / grade);
-    const auto mapped = [&](double v) { return (2 * v - panel.first - panel.last) / width; };
-    const int least = nodes_needed(pi / width, {mapped(0.0), mapped(whole), mapped(-whole)});
-    panel.begin = run.nodes.weight.size();
-    add_nodes(run, panel, panel.first, panel.last, gauss_rule(least + least / 4), run.nodes);
-    panel.end = run.nodes.weight.size();
-    for (std::size_t i = panel.begin; i < panel.end; ++i) {
-        run.mass += run.nodes.weight[i];
-        run.half_turn += run.nodes.weight[i] / std::sqrt(run.nodes.level[i]);
+    const int parts = std::max(1, static_cast<int>(std::ceil(width / widest_part)));
+    RunPart& part = run.parts.emplace_back();
+    part.panel = panel;
+    part.half = 0.5 * width / parts;
+    part.middle = panel.first + part.half * (2 * run.next_part + 1);
+    if (++run.next_part == parts) {
+        run.next_part = 0;
+        ++run.next_panel;
     }
-    panel.part = run.part_nodes.weight.size() / part_order;
-    panel.parts = static_cast<int>(std::ceil(width / widest_part));
-    for (int i = 0; i < panel.parts; ++i) {
-        add_nodes(run, panel, panel.first + width * i / panel.parts,
-                  panel.first + width * (i + 1) / panel.parts, part_rule(), run.part_nodes);
+    const SlopeBody& body = run.body;
+    const PartRule& rule = part_rule();
+    const double sin2_from = square(run.at.sin);
+    PartArray advance, fallen;
+    for (int i = 0; i < part_order; i += lanes) {
+        const Pack v = part.middle + part.half * load(&rule.places[i]);
+        const Pack tan = copysign(panel.grade * hyperbolic(abs(v)).sinh, v);
+        const Pack tan2 = tan * tan;
+        const Pack sin = (panel.sin + panel.cos * tan) / sqrt(1 + tan2);
+        const Pack sin2 = sin * sin;
+        const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
+        const Pack rate = part.half * sqrt(tan2 + square(panel.grade)) / (1 + tan2);
+        store(h * rate, &advance[i]);
+        store(rate / h * sqrt(0.5 * (body.d0 + body.d1 * sin2)), &part.mass[i]);
+        store(body.c2 * (sin2_from - sin2) / (run.at.h + h), &fallen[i]);
     }
-    run.panels.push_back(panel);
+    const PartArray path = product(rule.integrals, advance);
+    const double along = run.heading * body.gravity.along;
+    for (int i = 0; i < part_order; ++i) {
+        part.level[i] =
+            run.energy + (along * (run.path_ahead + path[i]) + body.gravity.into * fallen[i]);
+    }
+    part.lasts = integral(node_times(run, part, 0.0));
+    run.path_ahead += integral(advance);
+    run.mass += integral(part.mass);
+    run.known += part.lasts;
 }
 
 }  // namespace
@@ -133,12 +121,14 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     SlopeRun run{};
     run.body = body;
     run.from = from;
-    run.turns = 2 * std::floor(from.quarters / 2);
     run.heading = std::copysign(1.0, from.omega);
+    run.turns = run.heading * 2 * std::floor(run.heading * from.quarters / 2);
     run.half_turns = half_turns;
     run.energy = energy;
     run.path = path_at(body, from.quarters - run.turns, double(from.angle));
     run.at = geometry(body, from);
+    run.panels.reserve(usual_panels);
+    run.parts.reserve(usual_parts);
 
     // Uphill W falls by the gain in each half turn. In a half turn it is least at the unstable
     // equilibrium, or at the tip if there is none.
@@ -149,47 +139,106 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     const double least = std::max(energy - lost + body.gravity.into * fall(body, run.at, top).value,
                                   least_levels * body.gain);
     const double flat = std::asinh(std::sqrt(body.d0 / body.d1));
-    const double beside_hill =
-        curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
+    // The singularities of the flat position may be nearer to the hill than its own.
+    const double to_flat = half_pi - std::abs(hill);
+    const double beside_hill = std::min(
+        curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0, to_flat / 2);
 
-    const double here = (from.quarters - run.turns) * half_pi + double(from.angle);
-    const double low = run.heading > 0 ? here : here - pi;
-    const double high = run.heading > 0 ? here + pi : here;
+    const double here = run.heading * ((from.quarters - run.turns) * half_pi + double(from.angle));
     const auto centre = [&](int quarters) {
         return quarters % 2 == 0 ? Centre{double(quarters), 0.0, flat}
-                                 : Centre{double(quarters), hill, beside_hill};
+                                 : Centre{double(quarters), run.heading * hill, beside_hill};
     };
-    for (int i = -4; i < 5; ++i) {
+    const auto add_between = [&](const Centre& left, const Centre& right) {
+        const double split = left.at() + (right.at() - left.at()) / 2;
+        add_panel(run, left, std::max(here, left.at()), std::min(here + pi, split));
+        add_panel(run, right, std::max(here, split), std::min(here + pi, right.at()));
+    };
+    constexpr double widest_gap = 2.0;  // an angle further from its centre is mapped too far away
+    for (int i = -3; i < 5; ++i) {
         const Centre left = centre(i);
         const Centre right = centre(i + 1);
-        const double gap = right.at() - left.at();
-        const double split = left.at() + gap / 2;
-        add_panel(run, left, gap, std::max(low, left.at()), std::min(high, split));
-        add_panel(run, right, gap, std::max(low, split), std::min(high, right.at()));
-    }
-    if (run.heading > 0) {
-        for (const double level : run.nodes.level) {
-            run.first.push_back(first_rates(level, body.gain));
+        if (right.at() - left.at() <= widest_gap) {
+            add_between(left, right);
+        } else {
+            const QuarterView at = quarter_view({left.at() + (right.at() - left.at()) / 2, 0.0});
+            const Centre middle{at.quarters, double(at.rest), 1.0};
+            add_between(left, middle);
+            add_between(middle, right);
         }
     }
     return run;
 }
 
-DoubleDouble time_of(const SlopeRun& run, double half_turns) {
-    const double gain = run.body.gain;
-    const double lowest = run.heading < 0 ? (half_turns - 1) * gain : 0.0;
-    const auto& [weight, levels] = run.nodes;
-    DoubleDouble sum{};
-    for (std::size_t i = 0; i < weight.size(); ++i) {
-        const double level = levels[i] - lowest;
-        const FirstRates& first = run.heading < 0 ? first_rates(level, gain) : run.first[i];
-        sum = sum + two_product(weight[i], sum_of_rates(level, first, gain, half_turns));
+void extend(SlopeRun& run, double since) {
+    while (!run.is_complete() && !(run.known > since)) add_part(run);
+}
+
+PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns) {
+    const double gained = run.heading * half_turns * run.body.gain;
+    PartArray times;
+    for (int i = 0; i < part_order; i += lanes) {
+        store(load(&part.mass[i]) / sqrt(load(&part.level[i]) + gained), &times[i]);
+    }
+    return times;
+}
+
+double about(const SlopeRun& run, double since) {
+    const double speed = run.mass / run.known;  // a mean of sqrt(W)
+    const double change = run.heading * run.body.gain * since / (4 * run.mass);
+    return std::max(std::floor(since / run.mass * (speed + change)), 0.0);
+}
+
+RunTimes::RunTimes(const SlopeRun& run) : run_(run) {
+    begins_.reserve(most_begins);
+    begins_.push_back({});
+    for (const RunPart& part : run.parts) {
+        lowest_ = std::min(lowest_, *std::min_element(part.level.begin(), part.level.end()));
+    }
+}
+
+// The terms with the least W, those of the first half turns downhill and of the last ones uphill,
+// are added one by one until the formula is accurate.
+DoubleDouble RunTimes::operator()(double half_turns) {
+    const double gain = run_.body.gain;
+    const double fallen = run_.heading < 0 ? half_turns - 1 : 0.0;
+    const double missing = asymptotic_from - (lowest_ / gain - fallen);
+    double first = std::clamp(std::ceil(missing), 0.0, half_turns);
+    if (half_turns - first < few) first = half_turns;
+    if (run_.heading < 0) begins_.resize(1);
+    while (begins_.size() <= first) {
+        const double j = double(begins_.size() - 1);
+        DoubleDouble sum = begins_.back();
+        for (const RunPart& part : run_.parts) {
+            sum = sum + integral(node_times(run_, part, run_.heading < 0 ? fallen - j : j));
+        }
+        begins_.push_back(sum);
+    }
+    DoubleDouble sum = begins_[static_cast<std::size_t>(first)];
+    if (first == half_turns) return sum;
+    const PartArray& weights = part_rule().weights;
+    PackPair sums{};
+    for (const RunPart& part : run_.parts) {
+        for (int i = 0; i < part_order; i += lanes) {
+            const Pack from = load(&part.level[i]) + (first - fallen) * gain;
+            const PackPair time = two_product(load(&weights[i]) * load(&part.mass[i]),
+                                              sum_of_rates(from, gain, half_turns - first));
+            const PackPair added = two_sum(sums.high, time.high);
+            sums = {added.high, sums.low + (added.low + time.low)};
+        }
+    }
+    for (int i = 0; i < lanes; ++i) {
+        sum = sum + DoubleDouble{lane_of(sums.high, i), lane_of(sums.low, i)};
     }
     return sum;
 }
 
 double level(const SlopeRun& run, double quarters, double angle, const Geometry& here) {
-    return run.energy + (run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) +
+    return level(run, path_at(run.body, quarters, angle) - run.path, here);
+}
+
+double level(const SlopeRun& run, double path, const Geometry& here) {
+    return run.energy + (run.body.gravity.along * path +
                          run.body.gravity.into * fall(run.body, run.at, here).value);
 }
 
@@ -199,22 +248,24 @@ double omega_after(const SlopeRun& run, double half_turns, double level, const G
 }
 
 SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
-    const double angle = panel.angle + offset_at(panel, v).angle;
-    const Geometry at = geometry(run.body, panel.quarters, angle);
+    const double beyond = std::atan(panel.grade * std::sinh(v));
+    const double angle = run.heading * (panel.angle + beyond);
+    const double quarters = run.heading * panel.quarters;
+    const Geometry at = geometry(run.body, quarters, angle);
     const double turned = run.heading * 2 * half_turns;
     SlopePlace place{};
-    place.quarters = run.turns + panel.quarters + turned;
+    place.quarters = run.turns + quarters + turned;
     place.angle = {angle, 0.0};
-    place.omega = omega_after(run, half_turns, level(run, panel.quarters, angle, at), at);
-    place.path = run.from.path + (path_at(run.body, panel.quarters, angle) - run.path) +
-                 two_product(turned, run.body.quarter_path);
+    const double path = path_at(run.body, quarters, angle) - run.path;
+    place.omega = omega_after(run, half_turns, level(run, path, at), at);
+    place.path = run.from.path + path + two_product(turned, run.body.quarter_path);
     return place;
 }
 
 SlopePlace place_after(const SlopeRun& run, double half_turns) {
     const double turned = run.heading * 2 * half_turns;
     SlopePlace place = run.from;
-    place.time = place.time + time_of(run, half_turns);
+    place.time = place.time + RunTimes(run)(half_turns);
     place.quarters += turned;
     place.path = place.path + two_product(turned, run.body.quarter_path);
     place.omega = omega_after(run, half_turns, run.energy, run.at);

@@ -6,6 +6,9 @@
 // The sum is a difference of Hurwitz zeta functions, computed by the Euler-Maclaurin formula. The
 // integrand has complex singularities beside the flat position, where D = 0, and beside the place
 // of the least W; panels are graded towards both as in physics (31).
+//
+// Angles and paths ahead are counted in the direction of the motion: a climb is a motion to growing
+// angles whose W falls by w.
 #pragma once
 
 #include <array>
@@ -17,62 +20,57 @@
 
 namespace rolling_ellipse {
 
-// Nodes of the Gauss rule of a part of a panel: the integrand is the polynomial through them.
-inline constexpr int part_order = 16;
-inline const GaussRule& part_rule() { return gauss_rule(part_order); }
+// Nodes of the Gauss rule of a part: a function on the part is the polynomial through them.
+inline constexpr int part_order = 20;
 using PartArray = std::array<double, part_order>;  // numbers at the nodes of a part
 
-// Nodes of Gauss rules: weight times sqrt(D/2), and W in the first half turn.
-struct RunNodes {
-    std::vector<double> weight;
-    std::vector<double> level;
-};
-
-// The first terms of the sum of (W + j w)^(-1/2), and the level W + j w at which the
-// Euler-Maclaurin formula takes over.
-struct FirstRates {
-    double count;  // number of terms
-    double sum;
-    double level;
-    double root;       // square root of the level
-    double remainder;  // remainder of the formula at the level
-};
-
-// The coordinate v of a panel: tan((phi - centre)/scale) = grade sinh(v), first <= v <= last. The
-// integral over the whole panel has one Gauss rule, an integral over a part of it the finer rules
-// of its parts.
+// The coordinate v of a panel: tan(phi - centre) = grade sinh(v), first <= v <= last. The centre is
+// a flat position or the place of the least W beside a tip.
 struct RunPanel {
-    double quarters;  // quarter turns of the flat position or tip at or beside the centre
-    double angle;     // angle of the centre from there: beyond those quarter turns [rad]
-    double scale;
+    double quarters;  // of the flat position or tip
+    double angle;     // angle of the centre from there
+    double sin;       // sine and cosine of the centre's angle from a flat position, both perhaps
+    double cos;       // with the other sign
     double grade;
     double first;
     double last;
-    std::size_t begin = 0;  // index of the panel's first node in `SlopeRun::nodes`
-    std::size_t end = 0;
-    std::size_t part = 0;  // index of the panel's first part
-    int parts = 0;
+};
+
+// A part of a panel.
+struct RunPart {
+    RunPanel panel;
+    double middle;    // v at the middle of the part
+    double half;      // half of its width in v
+    PartArray mass;   // derivative of the integral of sqrt(D/2) at the nodes, by the place -1 ... 1
+    PartArray level;  // W in the first half turn
+    double lasts;     // time of the part in the first half turn
 };
 
 struct SlopeRun {
     SlopeBody body;
     SlopePlace from;
-    double turns;    // whole half turns before `from`, in quarters
-    double heading;  // +1 downhill, -1 uphill
-    double path;     // path at `from`, from the flat position at `turns`
-    Geometry at;     // geometry at `from`
-    double energy;   // W at `from`
-    std::vector<RunPanel> panels;
-    RunNodes nodes;
-    RunNodes part_nodes;
-    std::vector<FirstRates> first;  // first terms of each node, downhill only
-    double mass;                    // sum of all weights, int sqrt(D/2) dphi
-    double half_turn;               // time of the first half turn
-    double half_turns;              // largest number of half turns of the run
+    double turns;                  // whole half turns before `from`, in quarters
+    double heading;                // +1 downhill, -1 uphill
+    double path;                   // path at `from`, from the flat position at `turns`
+    Geometry at;                   // geometry at `from`
+    double energy;                 // W at `from`
+    double half_turns;             // largest number of half turns of the run
+    std::vector<RunPanel> panels;  // of one half turn from `from`, in the direction of the motion
+    std::vector<RunPart> parts;    // parts of the panels, as many as `extend` was asked for
+    double path_ahead;             // path from `from` to the end of the last part
+    double known;                  // time in the first half turn up to there
+    double mass;                   // int sqrt(D/2) dphi up to there
+    std::size_t next_panel;        // panel and part in it that come next
+    int next_part;
+
+    bool is_complete() const { return next_panel == panels.size(); }
 };
 
 // The run from a place: uphill for as many half turns as `may_run` allows, downhill for any number.
 SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
+
+// Adds parts until the first half turn is known up to a time since `from`, or is complete.
+void extend(SlopeRun& run, double since);
 
 // Largest number of half turns: beyond it the phase is lost in the rounding of their number.
 inline constexpr double most_half_turns = 1e15;
@@ -81,11 +79,27 @@ inline constexpr double most_half_turns = 1e15;
 // the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
 
-// Time of n half turns.
-DoubleDouble time_of(const SlopeRun& run, double half_turns);
+// Derivatives of the time by the place at the nodes of a part, after n half turns.
+PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns);
 
-// W at a place in the first half turn.
+// About the number of half turns in a time since `from`, as if W grew evenly with their number.
+double about(const SlopeRun& run, double since);
+
+// Times of n half turns of a complete run. The first terms of a sum are kept for later sums.
+class RunTimes {
+  public:
+    explicit RunTimes(const SlopeRun& run);
+    DoubleDouble operator()(double half_turns);
+
+  private:
+    const SlopeRun& run_;
+    double lowest_ = infinity;          // least W of the first half turn
+    std::vector<DoubleDouble> begins_;  // of the first half turns downhill, the last ones uphill
+};
+
+// W at a place in the first half turn, and after a path.
 double level(const SlopeRun& run, double quarters, double angle, const Geometry& here);
+double level(const SlopeRun& run, double path, const Geometry& here);
 
 // The angular velocity at a place n half turns after the first half turn has W = level there.
 double omega_after(const SlopeRun& run, double half_turns, double level, const Geometry& here);
@@ -93,11 +107,11 @@ double omega_after(const SlopeRun& run, double half_turns, double level, const G
 // The place at v in a panel during the half turn after the first n.
 SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns);
 
-// The place after n half turns.
+// The place after n half turns of a complete run.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
 
-// Reads places at times after `from`. Integrals over the current half turn are kept for the next
-// times in it; the bits of an answer do not depend on earlier calls.
+// Reads places at times after `from`, which `extend` has reached. Integrals over the current half
+// turn are kept for the next times in it; the bits of an answer do not depend on earlier calls.
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);
@@ -106,19 +120,16 @@ class RunReader {
   private:
     void move_to(DoubleDouble since);
     void set_half_turn(double half_turns);
-    double node_time(const RunNodes& nodes, std::size_t i) const;
-    PartArray node_times(std::size_t part) const;
-    double part_time(std::size_t part);
     SlopePlace place_at(double rest);
 
     const SlopeRun& run_;
+    RunTimes times_;
     double half_turns_ = 0.0;  // half turns before the current one
     DoubleDouble begin_;       // time from `from` to the begin of the current half turn
     double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
-    std::vector<double> panel_times_;
-    std::vector<double> part_times_;  // times of the parts; negative if not known yet
-    std::size_t part_ = 0;            // the part whose Legendre coefficients are kept
-    PartArray coefficients_{};
+    std::vector<double> part_times_;
+    std::size_t part_;  // the part whose Legendre coefficients are kept
+    PartArray rates_;   // coefficients of the derivative of the time by the place
 };
 
 }  // namespace rolling_ellipse
