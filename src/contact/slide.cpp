@@ -115,8 +115,7 @@ class SlideIntegration {
         // circles, whose series never lose their digits. h omega and pressure bound the reach, too:
         // in a nearly round body they vary more, in shares of themselves, than angle and speed do.
         const double most = 1 + 15 * from.time.high / unit;
-        reach_ = std::min(
-            {reach(angle), reach(omega), reach(series.rolled), reach(series.pressure), most});
+        reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = x_dot[0] = 0.0;
         SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <type_traits>
+#include <utility>
 
 #include "numerics/numbers.hpp"
 
@@ -79,10 +81,14 @@ using LongSeries = std::array<double, long_order + 1>;
 // Two series whose products are computed at the same time.
 using TwoSeries = std::array<Pair, long_order + 1>;
 
-// The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor.
+// The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor. The
+// terms with the newest coefficients are added last: the others need not wait for them.
 template <class Coefficients>
-inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
-    return terms(p, q, k, 1, k - 1);
+[[gnu::always_inline]] inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
+    using Number = std::decay_t<decltype(p[0])>;
+    if (k < 2) return Number{};
+    if (k == 2) return Number(p[1] * q[1]);
+    return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
 }
 
 // The terms p_0 q_k + p_k q_0 of the coefficient k of a product; p_0 q_0 for k = 0.
@@ -98,25 +104,41 @@ inline constexpr auto over_next = [] {
     return found;
 }();
 
-// The radius at which the last terms of a series are a twentieth of an ulp of its size; the terms
-// left out are smaller by another fifth. Half an ulp would be too much, since it may have the same
-// sign in one step after another. Four terms count, as symmetry may hide three, each scaled to the
-// end of a series that falls by a fifth from term to term. Each step of the fixed-point iteration
-// divides the error of the logarithm by eight.
-inline double reach(const LongSeries& series) {
+// Calls a function with 0 ... long_order as constants of the compiler.
+template <class Function, int... numbers>
+[[gnu::always_inline]] inline void for_each_order(const Function& call,
+                                                  std::integer_sequence<int, numbers...>) {
+    (call(std::integral_constant<int, numbers>{}), ...);
+}
+template <class Function>
+[[gnu::always_inline]] inline void for_each_order(const Function& call) {
+    for_each_order(call, std::make_integer_sequence<int, long_order + 1>{});
+}
+
+// The radius at which the last terms of all these series are a twentieth of an ulp of their size;
+// the terms left out are smaller by another fifth. Half an ulp would be too much, since it may have
+// the same sign in one step after another. Four terms count, as symmetry may hide three, each
+// scaled to the end of a series that falls by a fifth from term to term. Each step of the
+// fixed-point iteration divides the error of the logarithm by eight.
+inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;
-    const double last[] = {std::abs(series[long_order]), fall * std::abs(series[long_order - 1]),
-                           square(fall) * std::abs(series[long_order - 2]),
-                           fall * square(fall) * std::abs(series[long_order - 3])};
     double r = 0.3;
     for (int i = 0; i < 3; ++i) {
-        const double size = std::max(
-            {std::abs(series[0]), std::abs(series[1]) * r, std::abs(series[2]) * square(r)});
         const double over = 1 / r;
-        const double ends = last[0] + (last[1] + (last[2] + last[3] * over) * over) * over;
-        if (!(ends > 0)) return infinity;
-        r = std::exp(std::log(rest * size / ends) * (1.0 / long_order));
+        double least = infinity;
+        for (const LongSeries* each : all) {
+            const LongSeries& series = *each;
+            const double size = std::max(
+                {std::abs(series[0]), std::abs(series[1]) * r, std::abs(series[2]) * square(r)});
+            double ends = square(fall) * fall * std::abs(series[long_order - 3]);
+            ends = square(fall) * std::abs(series[long_order - 2]) + ends * over;
+            ends = fall * std::abs(series[long_order - 1]) + ends * over;
+            ends = std::abs(series[long_order]) + ends * over;
+            if (ends > 0) least = std::min(least, size / ends);
+        }
+        if (std::isinf(least)) return infinity;
+        r = std::exp(std::log(rest * least) * (1.0 / long_order));
     }
     return r;
 }

@@ -5,17 +5,28 @@
 
 #include "numerics/bisect.hpp"
 
+// The compiler makes a second version of a function for wide vectors, with the same bits, where the
+// loader can choose it.
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+#define ROLLING_ELLIPSE_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define ROLLING_ELLIPSE_WIDE
+#endif
+
 namespace rolling_ellipse {
 namespace {
 
+using Quad = double __attribute__((vector_size(4 * sizeof(double))));
+
 // h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
 // difference of its two terms would be a rounding; a slope with equilibria uses the product of
-// physics (62).
+// physics (62) there.
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
-    if (!body.equilibria) {
-        const double h2 = body.short_axis2 + body.c2 * square(s);
-        return body.gravity.along * h2 - body.gravity.into * body.c2 * s * c;
-    }
+    constexpr double far = 0.1;  // share of the terms from which their difference is accurate
+    const double along = body.gravity.along * (body.short_axis2 + body.c2 * square(s));
+    const double into = body.gravity.into * body.c2 * s * c;
+    const double drive = along - into;
+    if (!body.equilibria || std::abs(drive) > far * std::abs(into)) return drive;
     const double over_lying = double(at.angle + -body.equilibria->lying);
     const double over_upright = double(at.angle + -body.equilibria->upright);
     return is_odd(at.quarters) ? body.pull * std::sin(over_upright) * std::cos(over_lying)
@@ -29,16 +40,14 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
 // the caller computes with all its digits (`drive`); the later coefficients do not cancel. Gravity
 // and omega are in the unit of time of the series.
-SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, double sin,
-                         double cos, double omega, double drive) {
+ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity,
+                                              double sin, double cos, double omega, double drive) {
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
-    // Each name stands for a pair of series. Two pairs on a line are multiplied: first by first,
-    // second by second.
-    TwoSeries h_p, l_l;           // (h, p) by (lambda, lambda): omega and the rate of h
-    TwoSeries p_q, w_w;           // (p, q) by (omega, omega): the rates of u and p
-    TwoSeries h_pw, w_l;          // (h, p omega) by (omega, lambda): the rates of path and I
-    LongSeries inertia, turning;  // I by lambda'
+    // Factors of products side by side, coefficient by coefficient: (h, p, p, q) by (lambda,
+    // lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda, lambda').
+    using Factors = std::array<Quad, long_order + 1>;
+    Factors left, right, late_left, late_right;
     const double sin2 = square(sin);
     double u = body.short_axis2 + body.c2 * sin2;
     double height = std::sqrt(u);
@@ -46,42 +55,55 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
     double q = body.c2 * (cos - sin) * (cos + sin);
     double lambda = omega / height;
     const double per_u = body.gyration2 + body.long_axis2 + body.short_axis2;
-    inertia[0] = body.d0 + body.d1 * sin2;
-    const double over_inertia = 1 / inertia[0];
+    const double inertia0 = body.d0 + body.d1 * sin2;
+    const double over_inertia = 1 / inertia0;
+    const double h0 = height;
+    const double p0 = p;
+    const double q0 = q;
+    const double lambda0 = lambda;
+    double p_omega0 = 0;
+    double turning0 = 0;
     angle[0] = path[0] = 0.0;
 
-    for (int k = 0; k <= long_order; ++k) {
+    const auto step = [&](auto number) __attribute__((always_inline)) {
+        constexpr int k = decltype(number)::value;
+        const Quad known = inner(left, right, k);
+        const Quad late = inner(late_left, late_right, k);
+        // The terms of a product with the coefficients 0 and k of its factors.
+        const auto ends = [](double first, double second_k, double first_k, double second) {
+            return k == 0 ? first * second_k : first * second_k + first_k * second;
+        };
         h[k] = height;
-        h_p[k] = pair(height, p);
-        l_l[k] = pair(lambda, lambda);
-        const Pair known_turns = inner(p_q, w_w, k);
-        const Pair known_rates = inner(h_pw, w_l, k);
-        double rest =
-            k == 0 ? drive : gravity.along * u - gravity.into * p - inner(inertia, turning, k);
-        if (k > 0) {
-            inertia[k] = per_u * u;
-            rest -= inertia[k] * turning[0];
-        }
-        const Pair w_rate = inner(h_p, l_l, k) + outer(h_p, l_l, k);
-        w[k] = k == 0 ? omega : w_rate[0];
-        if (k == long_order) break;
+        w[k] = k == 0 ? omega : known[0] + ends(h0, lambda, height, lambda0);
+        const double height_rate = known[1] + ends(p0, lambda, p, lambda0);
+        if (k == long_order) return;
 
-        p_q[k] = pair(p, q);
-        w_w[k] = pair(w[k], w[k]);
-        const Pair turns = known_turns + outer(p_q, w_w, k);
-        h_pw[k] = pair(height, turns[0]);
-        w_l[k] = pair(w[k], lambda);
-        const Pair rates = known_rates + outer(h_pw, w_l, k);
-        turning[k] = (rest - per_u * rates[1]) * over_inertia;
+        const double p_omega = known[2] + ends(p0, w[k], p, omega);
+        const double q_omega = known[3] + ends(q0, w[k], q, omega);
+        const double path_rate = late[0] + ends(h0, w[k], height, omega);
+        const double inertia = k == 0 ? inertia0 : per_u * u;
+        if (k == 0) p_omega0 = p_omega;
+        const double loss = late[1] + ends(p_omega0, lambda, p_omega, lambda0);
+        const double pull =
+            k == 0 ? drive
+                   : (gravity.along * u - gravity.into * p) - (late[2] + inertia * turning0);
+        const double turning = (pull - per_u * loss) * over_inertia;
+        if (k == 0) turning0 = turning;
+        left[k] = Quad{height, p, p, q};
+        right[k] = Quad{lambda, lambda, w[k], w[k]};
+        late_left[k] = Quad{height, p_omega, inertia, 0};
+        late_right[k] = Quad{w[k], lambda, turning, 0};
+
         const double over = over_next[k];
         angle[k + 1] = w[k] * over;
-        path[k + 1] = rates[0] * over;
-        lambda = turning[k] * over;
-        height = w_rate[1] * over;
-        u = 2 * (turns[0] * over);
+        path[k + 1] = path_rate * over;
+        lambda = turning * over;
+        height = height_rate * over;
+        u = 2 * (p_omega * over);
         q = -2 * u;
-        p = turns[1] * over;
-    }
+        p = q_omega * over;
+    };
+    for_each_order(step);
     return motion;
 }
 
@@ -185,7 +207,7 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     const double cos = tip ? -s : c;
     const double drive = unit2 * gravity_drive(body, from, sin, cos);
     piece.series = slope_series(body, gravity, sin, cos, from.omega * piece.unit, drive);
-    piece.lasts = piece.unit * std::min(reach(piece.series.omega), reach(piece.series.path));
+    piece.lasts = piece.unit * reach({&piece.series.omega, &piece.series.path});
     return piece;
 }
 
