@@ -43,7 +43,10 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
 ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity,
                                               double sin, double cos, double omega, double drive) {
     SlopeSeries motion;
-    auto& [angle, w, path, h] = motion;
+    LongSeries& angle = motion.angle;
+    LongSeries& w = motion.omega;
+    LongSeries& path = motion.path;
+    LongSeries& h = motion.height;
     // Factors of products side by side, coefficient by coefficient: (h, p, p, q) by (lambda,
     // lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda, lambda').
     using Factors = std::array<Quad, long_order + 1>;
