@@ -10,8 +10,6 @@ import os as _os
 from importlib import import_module as _import_module
 from typing import Any as _Any
 
-from ._show import methods as _methods  # noqa: F401  # binds the methods of a motion
-
 
 def _listed() -> dict[str, str]:
     """Return the public names in the stub beside this file, each with its module."""

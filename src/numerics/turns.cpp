@@ -55,8 +55,8 @@ struct Part {
 };
 
 // Adds the turning points in some intervals; false if a polynomial misses the quantity.
-bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
-               std::vector<double>& times) {
+bool add_turns_in(const Measure& measure, double size, std::vector<Part> parts,
+                  std::vector<double>& times) {
     constexpr double roundings = 1000;  // roundings allowed: the inverse basis has a norm of 300
     constexpr int deepest = 16;
     std::size_t halvings = 64 * parts.size();  // most halvings, which do not help against noise
@@ -121,7 +121,7 @@ bool add_turns(const Measure& measure, double length, std::vector<double>& times
         for (std::size_t k = i; k + 1 < ends.size() && k < i + together; ++k) {
             parts.push_back({ends[k], ends[k + 1]});
         }
-        all_met &= add_turns(measure, size, std::move(parts), times);
+        all_met &= add_turns_in(measure, size, std::move(parts), times);
     }
     sort_once(times);
     return all_met;

@@ -15,7 +15,7 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr int degree = long_order - 2;
+constexpr int law_degree = long_order - 2;
 
 // Error of a law's polynomial, relative to the sum of the sizes of its terms. The series of the
 // motion end where their last terms are a rounding; the second derivative of the terms left out is
@@ -28,7 +28,7 @@ constexpr double rounding = 1e-12;
 struct LawWatch::Law {
     double side;
     double size;  // sum of the sizes of the terms of the law
-    std::array<double, degree + 1> coefficients;
+    std::array<double, law_degree + 1> coefficients;
 
     Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
         : side(to_side), size(law_size({body.gravity.into, body.gravity.along}, friction)) {
@@ -36,7 +36,7 @@ struct LawWatch::Law {
         const double needed = std::isinf(friction) ? 0.0 : 1.0;
         const double z = piece.lasts / piece.unit;
         double power = 1 / square(piece.unit);
-        for (int k = 0; k <= degree; ++k) {
+        for (int k = 0; k <= law_degree; ++k) {
             const double twice = (k + 2) * (k + 1) * power;
             double n = twice * piece.series.height[k + 2];
             double f = twice * piece.series.path[k + 2];
@@ -56,12 +56,13 @@ struct LawWatch::Law {
     // path allow; the law of a nearly round body is so much smaller than these that it needs
     // shorter pieces.
     bool is_resolved() const {
-        return !(std::abs(coefficients[degree - 1]) + std::abs(coefficients[degree]) > tolerance());
+        return !(std::abs(coefficients[law_degree - 1]) + std::abs(coefficients[law_degree]) >
+                 tolerance());
     }
 
     bool is_positive() const {
         double least = coefficients[0];
-        for (int k = 1; k <= degree; ++k) least -= std::abs(coefficients[k]);
+        for (int k = 1; k <= law_degree; ++k) least -= std::abs(coefficients[k]);
         return least > tolerance();
     }
 
@@ -69,8 +70,9 @@ struct LawWatch::Law {
     std::vector<double> divisions() const {
         std::vector<double> places{0.0, 1.0};
         for (const double level : {tolerance(), -tolerance()}) {
-            Polynomial<degree> shifted;
-            for (int k = 0; k <= degree; ++k) shifted.coefficients[k] = tracked(coefficients[k]);
+            Polynomial<law_degree> shifted;
+            for (int k = 0; k <= law_degree; ++k)
+                shifted.coefficients[k] = tracked(coefficients[k]);
             shifted.coefficients[0] = shifted.coefficients[0] - tracked(level);
             const std::vector<double> found = roots_on_unit_interval(bernstein(shifted));
             places.insert(places.end(), found.begin(), found.end());

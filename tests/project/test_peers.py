@@ -151,3 +151,12 @@ def test_the_judge_sees_a_small_error() -> None:
     assert 0 < max(map(abs, off)) < 1e-14
     moved = [float(v[0] - own) for v, own in zip(exact([T + 1e-3]), exact_end(T), strict=True)]
     assert moved[0] == pytest.approx(1e-3 * exact_end(T)[1], rel=1e-2)
+
+
+def test_a_race_downhill_ends_after_its_half_turns() -> None:
+    """There the half turns become shorter and shorter."""
+    scene = bench_peers.SCENES["S"]
+    first, end = (bench_peers.end_of(scene, n) for n in (1.37, 10.37))
+    theta = simulate(scene, [first]).theta[0]
+    assert theta == pytest.approx(scene.theta + 1.37 * math.pi, rel=1e-14)
+    assert end < 10.37 / 1.37 * first

@@ -310,7 +310,7 @@ def test_the_flow_on_a_slope(omega: float) -> None:
     assert rl.flow(-2.0, **asked, slope=0) == rl.flow(-2.0, **asked)
 
 
-def drawn_on_a_slope(rng: np.random.Generator) -> dict[str, float]:
+def drawn_on_a_slope(rng: np.random.Generator) -> dict[str, Any]:
     """A body that runs down or climbs: round, thin or tall, on a gentle or steep slope."""
     ratio = rng.choice([10 ** rng.uniform(-3, 0), 1 - 10 ** rng.uniform(-9, -1)])
     a, b = rng.permutation([1.0, ratio])

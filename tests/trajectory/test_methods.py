@@ -17,7 +17,7 @@ import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Trajectory
 from rolling_ellipse._motion import trajectory
-from rolling_ellipse._show.methods import METHODS
+from rolling_ellipse._motion.methods import METHODS
 
 NAMES = [name for names in METHODS.values() for name in names]
 

@@ -19,6 +19,7 @@ from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events
+from .methods import bind_methods
 from .quantities import MODE, QUANTITIES
 from .samples import (
     ContactSamples,
@@ -361,7 +362,7 @@ class Trajectory(FieldsOnly):
         constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
         return reached_scene(self.scene.__getstate__() | constrained | state)
 
-    # -- methods of other modules, bound by `_show.methods` ----------------------------------------
+    # -- methods of other modules, bound by `methods` ---------------------------------------------
 
     if TYPE_CHECKING:
         when, sensitivity = passages.when, derivatives.sensitivity
@@ -477,6 +478,7 @@ find_late(
 for _each in (*QUANTITIES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence
+bind_methods(Trajectory)
 
 
 def solve(scene: Scene, settings: Settings, t_end: float, start: Pair | None) -> _core.Solution:

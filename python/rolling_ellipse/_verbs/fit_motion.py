@@ -37,6 +37,7 @@ _STAGES = (1.0,), (0.15, 0.3, 0.5, 0.7, 1.0)  # shares of the film that are fitt
 _IMPOSSIBLE = 1e9  # residual of a scene that cannot be
 _LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
 _FAINT = 25.0  # rise of chi2 from which on a rival does not count
+_UNEVEN = 0.125  # share of a range over which residuals are not linear
 _FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
 _FIRST = 8  # frames from which the start is guessed
 _RIVALS = 3  # solutions with a coefficient held that are let go
@@ -331,7 +332,7 @@ class _Search:
         errors = np.sqrt(np.diag(covariance))
         errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
         for k, error in enumerate(errors.tolist()):
-            if self.high[k] - self.low[k] < error < math.inf:
+            if _UNEVEN * (self.high[k] - self.low[k]) < error < math.inf:
                 errors[k] = self.steps_down(best, k)
         wide = errors.copy()
         for k, sign in itertools.product(range(len(errors)), (-1, 1)):

@@ -125,7 +125,7 @@ def arguments_of(scene: Scene) -> dict[str, Any]:
     start = scene.initial_state
     return {
         "a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega,
-        "gravity": scene.gravity, "gyration2": scene.gyration2,
+        "gravity": scene.gravity, "gyration2": scene.gyration2, "slope": float(scene.slope),
     }  # fmt: skip
 
 

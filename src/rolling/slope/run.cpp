@@ -28,14 +28,12 @@ Pack sum_of_rates(Pack level, double gain, double n) {
     const Pack end = level + n * gain;
     const Pack a = sqrt(level);
     const Pack b = sqrt(end);
-    const Pack over = 1 / ((level * end) * (a + b));
-    const Pack over_roots = a * b * (a + b) * over;  // 1/(a b)
-    const Pack over_a = b * over_roots;
-    const Pack over_b = a * over_roots;
-    const Pack sum = 2 * n * (level * end * over);
-    const Pack ends = 0.5 * n * gain * (a * b * over);
-    return sum + (ends + (remainder(gain * (over_a * over_a), over_a) -
-                          remainder(gain * (over_b * over_b), over_b)));
+    const Pack over_a = 1 / a;
+    const Pack over_b = 1 / b;
+    const Pack over_sum = 1 / (a + b);
+    const Pack ends = 0.5 * n * gain * (over_a * over_b * over_sum);
+    return 2 * n * over_sum + (ends + (remainder(gain * (over_a * over_a), over_a) -
+                                       remainder(gain * (over_b * over_b), over_b)));
 }
 
 // Widest part of a panel in v. Singularities are pi/2 or more away, so that the polynomial of a

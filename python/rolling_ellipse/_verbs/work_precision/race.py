@@ -63,8 +63,8 @@ class Contender:
 
 def _prepared_flow(scene: Scene, t_end: float, _: float) -> Any:
     start = scene.initial_state
-    if scene.slope or start.mode.name not in _HELD:
-        raise ValueError("flow must be given a scene that rolls on level ground")
+    if start.mode.name not in _HELD:
+        raise ValueError("flow must be given a scene that rolls")
     arguments = arguments_of(scene)
 
     def sample(times: Any) -> tuple[Any, Any, Any]:
@@ -121,7 +121,8 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
     if scene.slope or rolls:
-        return ("contact" if scene.slope else "flow", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
+        first = ("contact", "flow") if scene.slope else ("flow",)
+        return (*first, "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
     return ("contact", "exact")  # "exact" shows that a model without slip has no answer
 
 

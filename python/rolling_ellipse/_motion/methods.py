@@ -5,8 +5,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from .._motion.trajectory import Trajectory
-
 _PACKAGE = __name__.partition(".")[0]
 
 #: Names of methods by module; the functions have the same names.
@@ -29,17 +27,23 @@ _OF_THE_CLASS = ("load", "from_arrays")
 class _Later:
     """A method that is imported when first asked for, and then replaces this object."""
 
-    def __init__(self, module: str, name: str) -> None:
-        self._module, self._name = f"{_PACKAGE}.{module}", name
+    def __init__(self, module: str) -> None:
+        self._module = f"{_PACKAGE}.{module}"
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._owner, self._name = owner, name
 
     def __get__(self, instance: object | None, owner: type) -> Any:
         method = getattr(import_module(self._module), self._name)
         if self._name in _OF_THE_CLASS:
             method = classmethod(method)
-        setattr(Trajectory, self._name, method)
+        setattr(self._owner, self._name, method)
         return method.__get__(instance, owner)
 
 
-for _module, _names in METHODS.items():
-    for _name in _names:
-        setattr(Trajectory, _name, _Later(_module, _name))
+def bind_methods(owner: type) -> None:
+    """Give a class the methods of other modules."""
+    for module, names in METHODS.items():
+        for name in names:
+            setattr(owner, name, later := _Later(module))
+            later.__set_name__(owner, name)
