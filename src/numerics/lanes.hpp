@@ -3,6 +3,9 @@
 // level, as rolling/level/lanes_avx2.cpp. All names are in an anonymous namespace, so that no
 // function of a wide level can be linked into code for machines without it.
 //
+// Every function that takes or returns a Pack is inlined: a call would pass it in other registers
+// in the wide version of a function (numerics/wide.hpp).
+//
 // Operations and their order are the same at every level. Only two_product uses a fused
 // multiply-add; its result is exact with and without.
 #pragma once
@@ -15,7 +18,8 @@
 #include <immintrin.h>
 #endif
 
-#if defined(__AVX512F__)
+#if defined(ROLLING_ELLIPSE_LANES)  // chosen for a file
+#elif defined(__AVX512F__)
 #define ROLLING_ELLIPSE_LANES 8
 #elif defined(__AVX2__)
 #define ROLLING_ELLIPSE_LANES 4
@@ -37,29 +41,31 @@ using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, P
 
 // A number in all lanes; a Pack stays as it is.
 template <class T, class Number>
-inline T filled(Number value) {
+[[gnu::always_inline]] inline T filled(Number value) {
     return value - T{};
 }
 
-inline Pack pack(double value) { return filled<Pack>(value); }
+[[gnu::always_inline]] inline Pack pack(double value) { return filled<Pack>(value); }
 
-inline Pack load(const double* from) {
+[[gnu::always_inline]] inline Pack load(const double* from) {
     Pack loaded;
     __builtin_memcpy(&loaded, from, sizeof loaded);
     return loaded;
 }
 
-inline void store(Pack values, double* to) { __builtin_memcpy(to, &values, sizeof values); }
+[[gnu::always_inline]] inline void store(Pack values, double* to) {
+    __builtin_memcpy(to, &values, sizeof values);
+}
 
 template <class T>
-inline Bits<T> bits(T x) {
+[[gnu::always_inline]] inline Bits<T> bits(T x) {
     Bits<T> found;
     __builtin_memcpy(&found, &x, sizeof x);
     return found;
 }
 
 template <class T>
-inline T number(Bits<T> of) {
+[[gnu::always_inline]] inline T number(Bits<T> of) {
     T found;
     __builtin_memcpy(&found, &of, sizeof of);
     return found;
@@ -68,15 +74,15 @@ inline T number(Bits<T> of) {
 // Number of lanes of a type, 1 for double; lane_of and set_lane read and write one lane.
 template <class T>
 inline constexpr int lanes_of = sizeof(T) / sizeof(double);
-inline double lane_of(double x, int) { return x; }
-inline double lane_of(Pack x, int lane) { return x[lane]; }
-inline void set_lane(double& x, int, double value) { x = value; }
-inline void set_lane(Pack& x, int lane, double value) {
+[[gnu::always_inline]] inline double lane_of(double x, int) { return x; }
+[[gnu::always_inline]] inline double lane_of(Pack x, int lane) { return x[lane]; }
+[[gnu::always_inline]] inline void set_lane(double& x, int, double value) { x = value; }
+[[gnu::always_inline]] inline void set_lane(Pack& x, int lane, double value) {
     __builtin_memcpy(reinterpret_cast<char*>(&x) + lane * sizeof value, &value, sizeof value);
 }
 
-inline bool any(bool mask) { return mask; }
-inline bool any(Mask<Pack> mask) {
+[[gnu::always_inline]] inline bool any(bool mask) { return mask; }
+[[gnu::always_inline]] inline bool any(Mask<Pack> mask) {
 #if defined(__AVX512F__)
     return _mm512_movepi64_mask((__m512i)mask) != 0;
 #elif defined(__AVX2__)
@@ -88,12 +94,12 @@ inline bool any(Mask<Pack> mask) {
 #endif
 }
 
-inline bool negated(bool mask) { return !mask; }
-inline Mask<Pack> negated(Mask<Pack> mask) { return ~mask; }
+[[gnu::always_inline]] inline bool negated(bool mask) { return !mask; }
+[[gnu::always_inline]] inline Mask<Pack> negated(Mask<Pack> mask) { return ~mask; }
 
 // The largest of the lanes.
 template <class T>
-inline double largest(T x) {
+[[gnu::always_inline]] inline double largest(T x) {
     double found = lane_of(x, 0);
     for (int i = 1; i < lanes_of<T>; ++i) found = lane_of(x, i) > found ? lane_of(x, i) : found;
     return found;
@@ -101,7 +107,7 @@ inline double largest(T x) {
 
 // from[index] lane by lane: each lane takes its value from the element with its own index.
 template <class T>
-inline T element(const T* from, T index) {
+[[gnu::always_inline]] inline T element(const T* from, T index) {
     T found{};
     for (int i = 0; i < lanes_of<T>; ++i) {
         set_lane(found, i, lane_of(from[static_cast<int>(lane_of(index, i))], i));
@@ -109,14 +115,18 @@ inline T element(const T* from, T index) {
     return found;
 }
 
-inline double sqrt(double x) { return __builtin_sqrt(x); }
-inline Pack sqrt(Pack x) {
+[[gnu::always_inline]] inline double sqrt(double x) { return __builtin_sqrt(x); }
+[[gnu::always_inline]] inline Pack sqrt(Pack x) {
 #if defined(__AVX512F__)
     return (Pack)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
 #elif defined(__AVX2__)
     return (Pack)_mm256_sqrt_pd((__m256d)x);
-#elif defined(__SSE2__)
+#elif defined(__SSE2__) && ROLLING_ELLIPSE_LANES == 2
     return (Pack)_mm_sqrt_pd((__m128d)x);
+#elif defined(__SSE2__) && ROLLING_ELLIPSE_LANES == 4
+    const __m128d low = _mm_sqrt_pd(_mm_setr_pd(x[0], x[1]));
+    const __m128d high = _mm_sqrt_pd(_mm_setr_pd(x[2], x[3]));
+    return Pack{low[0], low[1], high[0], high[1]};
 #else
     for (int i = 0; i < lanes; ++i) x[i] = __builtin_sqrt(x[i]);
     return x;
@@ -124,56 +134,56 @@ inline Pack sqrt(Pack x) {
 }
 
 template <class T>
-inline T abs(T x) {
+[[gnu::always_inline]] inline T abs(T x) {
     return number<T>(bits(x) & 0x7fffffffffffffffULL);
 }
 
 template <class T>
-inline T copysign(T size, T sign) {
+[[gnu::always_inline]] inline T copysign(T size, T sign) {
     constexpr unsigned long long sign_bit = 0x8000000000000000ULL;
     return number<T>((bits(size) & ~sign_bit) | (bits(sign) & sign_bit));
 }
 
 template <class T>
-inline T max(T x, T y) {
+[[gnu::always_inline]] inline T max(T x, T y) {
     return x > y ? x : y;
 }
 template <class T>
-inline T min(T x, T y) {
+[[gnu::always_inline]] inline T min(T x, T y) {
     return x < y ? x : y;
 }
 
 // The nearest whole number, if |x| < 2^51; rounded_down and rounded_up: the next below and above.
 template <class T>
-inline T nearest(T x) {
+[[gnu::always_inline]] inline T nearest(T x) {
     return (x + to_integer) - to_integer;
 }
 template <class T>
-inline T rounded_down(T x) {
+[[gnu::always_inline]] inline T rounded_down(T x) {
     const T n = nearest(x);
     return n > x ? n - 1 : n;
 }
 template <class T>
-inline T rounded_up(T x) {
+[[gnu::always_inline]] inline T rounded_up(T x) {
     const T n = nearest(x);
     return n < x ? n + 1 : n;
 }
 
 // Whether a whole number is odd.
 template <class T>
-inline Mask<T> is_odd(T n) {
+[[gnu::always_inline]] inline Mask<T> is_odd(T n) {
     return nearest(0.5 * n) != 0.5 * n;
 }
 
 // 2^n for a whole number |n| <= 1022.
 template <class T>
-inline T power_of_two(T n) {
+[[gnu::always_inline]] inline T power_of_two(T n) {
     return number<T>((bits<T>(n + to_integer) << 52) + (1023ULL << 52));
 }
 
 // A polynomial by Horner's scheme; the coefficients are in the order of falling powers.
 template <class T, class... Doubles>
-inline T horner(T x, double highest, Doubles... lower) {
+[[gnu::always_inline]] inline T horner(T x, double highest, Doubles... lower) {
     T sum = filled<T>(highest);
     ((sum = sum * x + lower), ...);
     return sum;
@@ -191,7 +201,7 @@ struct Hyperbolic {
 };
 
 template <class T>
-inline Hyperbolic<T> hyperbolic(T v) {
+[[gnu::always_inline]] inline Hyperbolic<T> hyperbolic(T v) {
     const T n = nearest<T>(v * 1.44269504088896340736);
     const T r = (v - n * ln2_high) - n * ln2_low;
     const T x = r * r;
@@ -214,7 +224,7 @@ inline Hyperbolic<T> hyperbolic(T v) {
 // The natural logarithm of a normal positive number 2^n m, m between sqrt(1/2) and sqrt(2), by the
 // series of 2 artanh((m - 1)/(m + 1)).
 template <class T>
-inline T log(T x) {
+[[gnu::always_inline]] inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
     constexpr unsigned long long one = 0x3ff0000000000000ULL;
     const Bits<T> exponent = (bits(x) - root_half + one) >> 52;  // biased exponent, n + 1023
@@ -230,7 +240,7 @@ inline T log(T x) {
 // The inverse of sinh for 0 <= x < 1e150: e^asinh(x) = 1 + gain; the rounding of this sum is
 // corrected.
 template <class T>
-inline T asinh(T x) {
+[[gnu::always_inline]] inline T asinh(T x) {
     const T gain = x + x * x / (1 + sqrt(1 + x * x));
     const T one_more = 1 + gain;
     return log(one_more) + (gain - (one_more - 1)) / one_more;
@@ -239,7 +249,7 @@ inline T asinh(T x) {
 // The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A polynomial of least
 // error (2e-19) serves up to 22.5 degrees; above, it takes the distance from 45 degrees.
 template <class T>
-inline T octant_angle(T sin, T cos) {
+[[gnu::always_inline]] inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
     const T y = (upper ? sin - cos : sin) / (upper ? sin + cos : cos);
     const T z = y * y;
@@ -253,7 +263,7 @@ inline T octant_angle(T sin, T cos) {
 
 // The angle of the point (cos, sin), between -pi and pi.
 template <class T>
-inline T angle_of(T sin, T cos) {
+[[gnu::always_inline]] inline T angle_of(T sin, T cos) {
     const T s = abs(sin);
     const T c = abs(cos);
     const T near_axis = octant_angle(min(s, c), max(s, c));
@@ -266,14 +276,14 @@ using rolling_ellipse::two_product;
 
 #if !defined(__FMA__)
 // A number as a sum of two numbers of 26 bits.
-inline PackPair halves(Pack x) {
+[[gnu::always_inline]] inline PackPair halves(Pack x) {
     const Pack shifted = 134217729.0 * x;  // 2^27 + 1
     const Pack high = shifted - (shifted - x);
     return {high, x - high};
 }
 #endif
 
-inline PackPair two_product(Pack x, Pack y) {
+[[gnu::always_inline]] inline PackPair two_product(Pack x, Pack y) {
     const Pack product = x * y;
 #if defined(__AVX512F__)
     return {product, (Pack)_mm512_fmsub_pd((__m512d)x, (__m512d)y, (__m512d)product)};

@@ -3,7 +3,9 @@
 
 #include <array>
 
+#define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, two elsewhere
 #include "numerics/lanes.hpp"
+#include "numerics/wide.hpp"
 #include "rolling/slope/run.hpp"
 
 namespace rolling_ellipse {

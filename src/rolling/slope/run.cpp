@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/lanes.hpp"
 #include "rolling/slope/part.hpp"
 
 namespace rolling_ellipse {
@@ -63,7 +62,7 @@ void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
 }
 
 // Append the next part. Its nodes are computed side by side.
-void add_part(SlopeRun& run) {
+ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     const RunPanel& panel = run.panels[run.next_panel];
     const double width = panel.last - panel.first;
     const int parts = std::max(1, static_cast<int>(std::ceil(width / widest_part)));
@@ -172,7 +171,8 @@ void extend(SlopeRun& run, double since) {
     while (!run.is_complete() && !(run.known > since)) add_part(run);
 }
 
-PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns) {
+ROLLING_ELLIPSE_WIDE PartArray node_times(const SlopeRun& run, const RunPart& part,
+                                          double half_turns) {
     const double gained = run.heading * half_turns * run.body.gain;
     PartArray times;
     for (int i = 0; i < part_order; i += lanes) {
@@ -208,7 +208,8 @@ DoubleDouble RunTimes::operator()(double half_turns) {
         const double j = double(begins_.size() - 1);
         DoubleDouble sum = begins_.back();
         for (const RunPart& part : run_.parts) {
-            sum = sum + integral(node_times(run_, part, run_.heading < 0 ? fallen - j : j));
+            const double after = run_.heading < 0 ? fallen - j : j;
+            sum = sum + (after == 0 ? part.lasts : integral(node_times(run_, part, after)));
         }
         begins_.push_back(sum);
     }
