@@ -46,14 +46,15 @@ struct TwoParts {
 };
 using DoubleDouble = TwoParts<double>;
 
+// Inlined always, as packs of numbers are passed in other registers where wider ones are used.
 template <class T>
-inline TwoParts<T> quick_two_sum(T large, T small) {
+[[gnu::always_inline]] inline TwoParts<T> quick_two_sum(T large, T small) {
     const T sum = large + small;
     return {sum, small - (sum - large)};
 }
 
 template <class T>
-inline TwoParts<T> two_sum(T x, T y) {
+[[gnu::always_inline]] inline TwoParts<T> two_sum(T x, T y) {
     const T sum = x + y;
     const T y_part = sum - x;
     return {sum, (x - (sum - y_part)) + (y - y_part)};
@@ -67,7 +68,7 @@ inline DoubleDouble two_product(double x, double y) {
 inline DoubleDouble operator-(const DoubleDouble& x) { return {-x.high, -x.low}; }
 
 template <class T>
-inline TwoParts<T> operator+(const TwoParts<T>& x, T y) {
+[[gnu::always_inline]] inline TwoParts<T> operator+(const TwoParts<T>& x, T y) {
     const TwoParts<T> sum = two_sum(x.high, y);
     return quick_two_sum(sum.high, sum.low + x.low);
 }

@@ -16,14 +16,14 @@ constexpr std::size_t usual_panels = 12;
 constexpr std::size_t usual_parts = 16;
 
 // sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
-Pack remainder(Pack ratio, Pack over_root) {
+[[gnu::always_inline]] inline Pack remainder(Pack ratio, Pack over_root) {
     return ratio * over_root *
            horner(ratio * ratio, -0.00354755719503, 0.00140508015951, -143.0 / 163840, 1.0 / 1024,
                   -1.0 / 384, 1.0 / 24);
 }
 
 // The sum of (W + j w)^(-1/2) over j = 0 ... n - 1 by the Euler-Maclaurin formula, W = level.
-Pack sum_of_rates(Pack level, double gain, double n) {
+[[gnu::always_inline]] inline Pack sum_of_rates(Pack level, double gain, double n) {
     const Pack end = level + n * gain;
     const Pack a = sqrt(level);
     const Pack b = sqrt(end);
