@@ -21,6 +21,7 @@ import numpy as np
 import peers
 from common import machine
 from rolling_ellipse import Scene, WorkPrecision, flow, period, work_precision
+from rolling_ellipse._verbs.flow import arguments_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
@@ -38,7 +39,6 @@ METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
 COLUMNS = ("theta", "omega", "x")
-ARGUMENTS = ("a", "b", "theta", "omega", "gravity", "slope")
 WIDTH = 11  # width of a column in characters
 
 
@@ -77,7 +77,7 @@ def end_of(scene: Scene, half_turns: float) -> float:
     low, high = 0.0, 1e3
     for _ in range(60):
         middle = (low + high) / 2
-        theta, _, _ = flow(middle, **{name: getattr(scene, name) for name in ARGUMENTS})
+        theta, _, _ = flow(middle, **arguments_of(scene))
         low, high = (middle, high) if theta < scene.theta + half_turns * math.pi else (low, middle)
     return high
 

@@ -167,10 +167,11 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
             std::optional<SlopeMotion> motion;
             of.naming(i, [&] { motion = slope_motion(first); });
             times.clear();
-            py::ssize_t next = i;
-            for (; next < end && is_same_motion(of[next], first); ++next) {
-                of.naming(next, [&] { prepare(*motion, of[next][0]); });
-                times.push_back(std::abs(of[next][0]));
+            for (py::ssize_t next = i; next < end; ++next) {
+                const SlopeArguments here = of[next];
+                if (!is_same_motion(here, first)) break;
+                of.naming(next, [&] { prepare(*motion, here[0]); });
+                times.push_back(std::abs(here[0]));
             }
             samples.resize(times.size());
             sample(motion->flow, times.data(), times.size(), samples.data());

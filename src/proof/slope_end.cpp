@@ -71,8 +71,9 @@ struct LawWatch::Law {
         std::vector<double> places{0.0, 1.0};
         for (const double level : {tolerance(), -tolerance()}) {
             Polynomial<law_degree> shifted;
-            for (int k = 0; k <= law_degree; ++k)
+            for (int k = 0; k <= law_degree; ++k) {
                 shifted.coefficients[k] = tracked(coefficients[k]);
+            }
             shifted.coefficients[0] = shifted.coefficients[0] - tracked(level);
             const std::vector<double> found = roots_on_unit_interval(bernstein(shifted));
             places.insert(places.end(), found.begin(), found.end());

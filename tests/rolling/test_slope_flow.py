@@ -292,9 +292,10 @@ def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> No
     assert rl.simulate(scene, t).model == "contact"
 
 
-@pytest.mark.parametrize("omega", [0.4, 0.0, -2.0])
+@pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
 def test_the_flow_on_a_slope(omega: float) -> None:
-    """It has the bits of `simulate` where the body swings, and its past solves the equation of
+    """It has the bits of `simulate`, but for a run, which begins without series: there it is within
+    four units of the last place of the largest number, 32 EPS. Its past solves the equation of
     rolling. The local error of the integrator is 1e-12, which three seconds magnify by less than a
     hundred."""
     scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
@@ -302,7 +303,7 @@ def test_the_flow_on_a_slope(omega: float) -> None:
     for name, values in zip(
         ("theta", "omega", "x"), rl.flow(times, **asked, slope=0.1), strict=True
     ):
-        assert np.array_equal(values, getattr(motion, name))
+        assert np.allclose(values, getattr(motion, name), rtol=0, atol=0 if omega < 3 else 32 * EPS)
     past = solve_ivp(
         rl.rolling_equation(scene), (0.0, -3.0), [0.2, omega, 0.0], "DOP853", rtol=1e-12, atol=1e-12
     )

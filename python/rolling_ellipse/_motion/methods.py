@@ -27,17 +27,14 @@ _OF_THE_CLASS = ("load", "from_arrays")
 class _Later:
     """A method that is imported when first asked for, and then replaces this object."""
 
-    def __init__(self, module: str) -> None:
-        self._module = f"{_PACKAGE}.{module}"
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._owner, self._name = owner, name
+    def __init__(self, of: type, module: str, name: str) -> None:
+        self._of, self._module, self._name = of, f"{_PACKAGE}.{module}", name
 
     def __get__(self, instance: object | None, owner: type) -> Any:
         method = getattr(import_module(self._module), self._name)
         if self._name in _OF_THE_CLASS:
             method = classmethod(method)
-        setattr(self._owner, self._name, method)
+        setattr(self._of, self._name, method)
         return method.__get__(instance, owner)
 
 
@@ -45,5 +42,4 @@ def bind_methods(owner: type) -> None:
     """Give a class the methods of other modules."""
     for module, names in METHODS.items():
         for name in names:
-            setattr(owner, name, later := _Later(module))
-            later.__set_name__(owner, name)
+            setattr(owner, name, _Later(owner, module, name))

@@ -217,8 +217,9 @@ void prepare(SlopeFlow& flow, double t) {
     if (flow.foot.empty() && (runs_at_once || flow.climb) && is_short(flow, until)) {
         flow.foot.push_back(piece_from(flow.body, flow.start));
     }
-    if (flow.run && !is_in_foot(flow, until))
+    if (flow.run && !is_in_foot(flow, until)) {
         extend(*flow.run, double(-flow.run->from.time + until));
+    }
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {

@@ -39,9 +39,11 @@ struct SlopeFlow {
     std::optional<SlopeRun> run;
 };
 
-// The flow of a body that rolls on a slope other than 0. The law of contact is proved on the series
-// of a run's first half turn; without them a single time is faster, and many are slower.
+// Quarter turns of a run or climb on whose series the law of contact is proved.
 inline constexpr double quarters_of_proof = 3;
+
+// The flow of a body that rolls on a slope other than 0. Without series of a run's first quarter
+// turns a single time of it is faster, and many are slower.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x,
                      double quarters_by_series = quarters_of_proof);
 

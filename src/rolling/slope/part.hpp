@@ -23,8 +23,9 @@ struct PartRule {
 // The Legendre polynomials P_0 ... P_part_order at x.
 inline std::array<double, part_order + 1> legendre_polynomials(double x) {
     std::array<double, part_order + 1> p{1.0, x};
-    for (int k = 1; k < part_order; ++k)
+    for (int k = 1; k < part_order; ++k) {
         p[k + 1] = ((2 * k + 1) * x * p[k] - k * p[k - 1]) / (k + 1);
+    }
     return p;
 }
 

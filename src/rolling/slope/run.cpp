@@ -67,7 +67,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     const double width = panel.last - panel.first;
     const int parts = std::max(1, static_cast<int>(std::ceil(width / widest_part)));
     RunPart& part = run.parts.emplace_back();
-    part.panel = panel;
+    part.panel = run.next_panel;
     part.half = 0.5 * width / parts;
     part.middle = panel.first + part.half * (2 * run.next_part + 1);
     if (++run.next_part == parts) {

@@ -38,9 +38,9 @@ struct RunPanel {
 
 // A part of a panel.
 struct RunPart {
-    RunPanel panel;
-    double middle;    // v at the middle of the part
-    double half;      // half of its width in v
+    std::size_t panel;  // its index
+    double middle;      // v at the middle of the part
+    double half;        // half of its width in v
     PartArray mass;   // derivative of the integral of sqrt(D/2) at the nodes, by the place -1 ... 1
     PartArray level;  // W in the first half turn
     double lasts;     // time of the part in the first half turn

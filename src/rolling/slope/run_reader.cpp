@@ -85,7 +85,8 @@ SlopePlace RunReader::place_at(double rest) {
         part_ = i;
     }
     const double x = place_in_part(rates_, std::clamp(rest, 0.0, part_times_[i]));
-    return place_on(run_, part.panel, part.middle + part.half * x, half_turns_);
+    const RunPanel& panel = run_.panels[part.panel];
+    return place_on(run_, panel, part.middle + part.half * x, half_turns_);
 }
 
 }  // namespace rolling_ellipse
