@@ -46,14 +46,13 @@ def calls() -> dict[str, Case]:
             last = f"simulate, {kind}, its events"
             found[last] = Case(lambda s=scene, t=end: simulate(s, [t]).events)
         one, many = np.array([end]), np.linspace(0.0, end, 1000)
-        solution = _core.simulate(core, settings, end)
-        sample = solution.sample_rolling if scene is ROLLING else solution.sample_contact
+        solution, _ = _core.simulate(core, settings, one)
         found |= {
             f"simulate, {kind}, 1 sample": Case(partial(simulate, scene, [end])),
             f"simulate, {kind}, 1000 samples": Case(partial(simulate, scene, many)),
-            f"simulate, {kind}, the core": Case(partial(_core.simulate, core, settings, end)),
-            f"1 sample, {kind}, the core": Case(partial(sample, one)),
-            f"1000 samples, {kind}, the core": Case(partial(sample, many)),
+            f"simulate, {kind}, the core": Case(partial(_core.simulate, core, settings, one)),
+            f"1 sample, {kind}, the core": Case(partial(solution.samples, one)),
+            f"1000 samples, {kind}, the core": Case(partial(solution.samples, many)),
         }
     return found
 

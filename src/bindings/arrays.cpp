@@ -141,6 +141,13 @@ py::array read_only(py::array array) {
     return array;
 }
 
+Array vector(py::ssize_t n) {
+    const auto& numpy = py::detail::npy_api::get();
+    PyObject* const type = py::dtype::of<double>().release().ptr();
+    return py::reinterpret_steal<Array>(numpy.PyArray_NewFromDescr_(
+        numpy.PyArray_Type_, type, 1, &n, nullptr, nullptr, 0, nullptr));
+}
+
 Array matrix(py::ssize_t rows, py::ssize_t columns) {
     return Array(std::vector<py::ssize_t>{rows, columns});
 }

@@ -72,6 +72,8 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body);
 // Makes an array read-only. `flags.writeable` of NumPy would take as long as all else.
 py::array read_only(py::array array);
 
+// A new array of n numbers, in half the time that pybind11 takes to make one.
+Array vector(py::ssize_t n);
 Array matrix(py::ssize_t rows, py::ssize_t columns);
 void store(Array& matrix, py::ssize_t row, const double* values);
 

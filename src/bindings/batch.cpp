@@ -80,9 +80,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     }
     found.ending = static_cast<int>(solution.ending);
     found.segments = solution.motion.segments.size();
-    if (found.segments) {
-        found.samples = std::upper_bound(times, times + n, solution.followed_until) - times;
-    }
+    found.samples = reached(solution, times, n);
     if (solution.model == Model::contact) {
         found.contact = sampled<ContactSample>(solution, times, found.samples, checkpoint);
     } else if (solution.model == Model::multipliers) {

@@ -12,6 +12,7 @@
 #include "bindings/arrays.hpp"
 #include "contact/segments.hpp"
 #include "geometry/constraints.hpp"
+#include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -99,9 +100,12 @@ py::tuple event_columns();
 Array event_rows(const std::vector<Event>& events);
 Event event_of(const EventRow& row);
 
+// The number of times, which ascend, that a solution reaches.
+py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n);
+
 // theta, omega, x of n samples.
 struct FlowArrays {
-    explicit FlowArrays(py::ssize_t n) : theta(n), omega(n), x(n) {}
+    explicit FlowArrays(py::ssize_t n) : theta(vector(n)), omega(vector(n)), x(vector(n)) {}
 
     FlowColumns columns() { return {theta.mutable_data(), omega.mutable_data(), x.mutable_data()}; }
     py::tuple tuple() const { return py::make_tuple(theta, omega, x); }

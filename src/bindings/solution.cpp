@@ -35,7 +35,6 @@ bool are_sample_times(const Array& t) {
 template <class Sample, class Take>
 void take_samples(const Solution& solution, const Array& t, const Take& take) {
     const py::ssize_t n = t.size();
-    require_length("t", t, n);
     const double* const times = t.data();
     const Sampler sampler(solution.motion, n);
     std::vector<Sample> samples(std::min<std::size_t>(n, chunk));
@@ -47,23 +46,21 @@ void take_samples(const Solution& solution, const Array& t, const Take& take) {
 }
 
 // theta, omega, x at each time.
-py::tuple sample_rolling(const Solution& solution, const Array& t) {
-    const py::ssize_t n = t.size();
-    require_length("t", t, n);
-    FlowArrays out(n);
+py::tuple rolling_samples(const Solution& solution, const Array& t) {
+    FlowArrays out(t.size());
     const FlowColumns found = out.columns();
     const double* const times = t.data();
-    const Sampler sampler(solution.motion, n);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+    const Sampler sampler(solution.motion, t.size());
+    run_interruptible(t.size(), 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);
         sampler(times + begin, end - begin, found.from(begin));
     });
-    for (Array* const array : {&out.theta, &out.omega, &out.x}) read_only(*array);
-    return out.tuple();
+    return py::make_tuple(read_only(t), read_only(out.theta), read_only(out.omega),
+                          read_only(out.x));
 }
 
 // q and q_dot, (n, 5), at each time.
-py::tuple sample_coordinates(const Solution& solution, const Array& t) {
+py::tuple coordinate_samples(const Solution& solution, const Array& t) {
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
     const auto take = [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
@@ -73,26 +70,50 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
         }
     };
     take_samples<CoordinateState>(solution, t, take);
-    return py::make_tuple(read_only(q), read_only(q_dot));
+    return py::make_tuple(read_only(t), read_only(q), read_only(q_dot));
 }
 
-// State and force at each time, an array by name for each of their numbers.
-py::dict sample_contact(const Solution& solution, const Array& t) {
-    py::dict found;
+// The numbers of state and force at each time, and the mode.
+py::tuple contact_samples(const Solution& solution, const Array& t) {
+    constexpr std::size_t numbers = std::size(state_fields) + std::size(force_fields);
+    py::tuple found(numbers + 2);
     py::array_t<std::int8_t> mode(t.size());
-    ContactColumns columns{{}, mode.mutable_data()};
-    const auto add = [&](const auto& field) {
-        Array column(t.size());
-        columns.numbers.push_back(column.mutable_data());
-        found[field.name] = read_only(column);
-    };
-    for_each(add, state_fields, force_fields);
+    ContactColumns columns{std::vector<double*>(numbers), mode.mutable_data()};
+    found[0] = read_only(t);
+    for (std::size_t i = 0; i < numbers; ++i) {
+        Array column = vector(t.size());
+        columns.numbers[i] = column.mutable_data();
+        found[i + 1] = read_only(column);
+    }
     take_samples<ContactSample>(
         solution, t, [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
             columns.store(samples, begin, end);
         });
-    found["mode"] = read_only(mode);
+    found[numbers + 1] = read_only(mode);
     return found;
+}
+
+// Read-only arrays of the samples at times, the times before them: of rolling theta, omega, x; of
+// the multiplier model q, q_dot; of contact the numbers of states and forces, and modes.
+py::tuple samples(const Solution& solution, const double* times, py::ssize_t n) {
+    Array t = vector(n);
+    std::copy_n(times, n, t.mutable_data());
+    if (solution.model == Model::contact) return contact_samples(solution, t);
+    if (solution.model == Model::multipliers) return coordinate_samples(solution, t);
+    return rolling_samples(solution, t);
+}
+
+// A solution up to the last of the times, and its samples at all times that it reaches.
+template <class Simulate>
+py::tuple solved(const Array& t, const Simulate& simulate) {
+    require_length("t", t, std::max<py::ssize_t>(t.size(), 1));
+    const double* const times = t.data();
+    Solution solution = [&] {
+        const GilRelease release;
+        return simulate(times[t.size() - 1]);
+    }();
+    const py::tuple found = samples(solution, times, reached(solution, times, t.size()));
+    return py::make_tuple(std::move(solution), found);
 }
 
 // The numbers of a sample at one time, by the names of the arrays of a motion, and its mode.
@@ -196,6 +217,11 @@ Array event_rows(const std::vector<Event>& events) {
     return table;
 }
 
+py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n) {
+    if (solution.motion.segments.empty()) return 0;
+    return std::upper_bound(times, times + n, solution.followed_until) - times;
+}
+
 Event event_of(const EventRow& row) {
     Event event{row[0], static_cast<EventKind>(row[1]), {}, {}};
     const double* from = row.data() + 2;
@@ -255,25 +281,33 @@ void bind_solution(py::module_& m) {
         .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)
         .def("zeros", zeros_of, "function"_a, "direction"_a)
         .def("sample_at", sample_at, "scene"_a, "settings"_a, "t"_a)
-        .def("sample_rolling", sample_rolling, "t"_a)
-        .def("sample_coordinates", sample_coordinates, "t"_a)
-        .def("sample_contact", sample_contact, "t"_a);
+        .def(
+            "samples",
+            [](const Solution& s, const Array& t) {
+                require_length("t", t, t.size());
+                return samples(s, t.data(), t.size());
+            },
+            "t"_a);
     m.attr("STATS") = names_of(stats_of(0, {}));
     m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
     m.def("are_sample_times", are_sample_times, "t"_a);
     m.def(
         "simulate",
-        [](const Scene& scene, const Settings& settings, double t_end) {
-            return simulate(scene, settings, t_end, SignalWatch());
+        [](const Scene& scene, const Settings& settings, const Array& t) {
+            return solved(
+                t, [&](double t_end) { return simulate(scene, settings, t_end, SignalWatch()); });
         },
-        py::call_guard<GilRelease>(), "scene"_a, "settings"_a, "t_end"_a);
+        "scene"_a, "settings"_a, "t"_a);
     m.def(
         "simulate_coordinates",
         [](const Scene& scene, const Array& q, const Array& q_dot, const Settings& settings,
-           double t_end) {
-            return simulate(scene, single_state(q, q_dot), settings, t_end, SignalWatch());
+           const Array& t) {
+            const CoordinateState start = single_state(q, q_dot);
+            return solved(t, [&](double t_end) {
+                return simulate(scene, start, settings, t_end, SignalWatch());
+            });
         },
-        py::call_guard<GilRelease>(), "scene"_a, "q"_a, "q_dot"_a, "settings"_a, "t_end"_a);
+        "scene"_a, "q"_a, "q_dot"_a, "settings"_a, "t"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

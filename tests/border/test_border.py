@@ -76,8 +76,8 @@ LOOPS: dict[str, Callable[[], Any]] = {
         )
         for workers in (1, 2)
     },
-    "samples of rolling": lambda: TIMES.sample_rolling(MANY / 1e3),
-    "samples of contact": lambda: SLIDES.sample_contact(MANY / 1e3),
+    "samples of rolling": lambda: TIMES.samples(MANY / 1e3),
+    "samples of contact": lambda: SLIDES.samples(MANY / 1e3),
     "steps of a fixed size": lambda: simulate(
         scenes.rolling, [1e4], model="rolling", method="rk4", step=1e-5, **LONG
     ),

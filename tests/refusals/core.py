@@ -32,7 +32,9 @@ REFUSALS: list[Row] = [
     ("normal_force", lambda _: _core.contact_detail(SCENE, CONTACT)),
     ("q_dot", lambda _: _core.multiplier_detail(SCENE, SETTINGS, FIVES, FIVES[:1])),
     ("q", lambda _: _core.multiplier_detail(SCENE, SETTINGS, FIVES[:, :4], FIVES[:, :4])),
-    ("q", lambda _: _core.simulate_coordinates(SCENE, FIVES, FIVES, SETTINGS, 1.0)),
+    ("q", lambda _: _core.simulate_coordinates(SCENE, FIVES, FIVES, SETTINGS, TWO)),
+    ("t", lambda _: _core.simulate(SCENE, SETTINGS, FIVES)),
+    ("t", lambda _: _core.simulate(SCENE, SETTINGS, TWO[:0])),
     ("q_dot", lambda _: _core.project(SCENE, FIVES[:1], FIVES)),
     ("q_dot", lambda _: _core.constraints(FIVES, TWO, 2.0, 1.0)),
     ("q", lambda _: _core.constraint_system(FIVES[0], FIVES, 2.0, 1.0)),
@@ -42,10 +44,10 @@ REFUSALS: list[Row] = [
     ("t", lambda _: _core.flow_times(FIVES, 2.0, 1.0, 0.1, 1.0, 9.81, None, 1)),
     ("gyration2", lambda _: _core.classify_array(2, numbered(7, 6), 1)),
     ("restitution", lambda _: _core.collide_arrays(2, numbered(9, 8), _core.Restitution.STRONGE)),
-    ("t", lambda _: TIMES.sample_rolling(FIVES)),
+    ("t", lambda _: TIMES.samples(FIVES)),
     *(("t", lambda _, sample=sample, t=t: sample(np.array([0.0, t])))
-      for sample in (TIMES.sample_rolling, SLIDES.sample_contact,
-                     COORDINATES._solution.sample_coordinates)
+      for sample in (TIMES.samples, SLIDES.samples,
+                     COORDINATES._solution.samples)
       for t in (-1e-9, 1.0 + 1e-9, NAN, INF)),
     ("scenes", lambda _: _core.first_refused(np.ones((2, 2)), False)),
     ("level", lambda _: _core.flow_array(1, SEVEN, 1, "x")),

@@ -29,7 +29,8 @@ _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # largest number of characters of a value in a message
-_FEW = 64  # numbers of a list that is looked at in one go
+_FEW = 64  # numbers of a list that is looked at in one go: a longer one costs no more otherwise
+_FLOATS = {float}
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
 _PIECE = 2**17  # numbers converted at a time, in 10 ms at most: Ctrl-C acts in between
 _SLICED = (list, tuple, range)
@@ -117,7 +118,8 @@ def array(name: str, value: Any) -> FloatArray:
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
     """Return ``value`` as a float64 array, or None if it does not consist of numbers."""
-    if type(value) is float or (type(value) is list and _are_few_floats(value)):
+    kind = type(value)
+    if kind is float or (kind is list and len(value) <= _FEW and {*map(type, value)} == _FLOATS):
         return np.array(value)
     if type(value) is np.ndarray and value.dtype is _DOUBLE:
         found = value
@@ -130,11 +132,6 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
     if found.ndim > _MOST_AXES:
         raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
     return found
-
-
-def _are_few_floats(values: list[Any]) -> bool:
-    """Whether a list is as plain as most are; a long one costs no more by `_converted`."""
-    return len(values) <= _FEW and {*map(type, values)} == {float}
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:

@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
+_new, _set = object.__new__, object.__setattr__  # found here, an attribute is found faster
 
 
 class cached_property(Generic[_Value]):
@@ -54,8 +55,8 @@ class FieldsOnly:
 
 def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
     """Make an object of a dataclass from valid values, three times as fast as with checks."""
-    made = object.__new__(kind)
-    object.__setattr__(made, "__dict__", values)
+    made: _Owner = _new(kind)
+    _set(made, "__dict__", values)
     return made
 
 

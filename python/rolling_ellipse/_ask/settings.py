@@ -49,10 +49,15 @@ class Settings(FieldsOnly):
 
 def settings(*given: Any) -> Settings:
     """Return Settings of values in the order of the fields; equal values are checked once."""
-    if all(map(is_, given, _GIVEN_BY_DEFAULT)):
-        return DEFAULTS
+    for known, made in (_BY_DEFAULT, _last[0]):
+        if all(map(is_, given, known)):
+            return made
     plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
-    return _kept(*given) if plain else _checked(*given)
+    if not plain:
+        return _checked(*given)
+    made = _kept(*given)
+    _last[0] = given, made
+    return made
 
 
 def _checked(*given: Any) -> Settings:
@@ -90,5 +95,6 @@ _CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # the check for each type o
 _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
-_GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)
+_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES), DEFAULTS
+_last = [_BY_DEFAULT]  # values of the last call with other plain ones, and their Settings
 _PLAIN = (float, int, str, type(None))  # types of immutable values, which `_kept` may hold

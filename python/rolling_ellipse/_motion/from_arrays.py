@@ -13,7 +13,7 @@ from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
 from ..geometry import contact_angle, contact_distance, support, support_slope
-from .samples import of_contact, vector
+from .samples import ContactSamples, fields_of, vector
 from .status import COMPLETED
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene:
     held = [vector(name, values, times.size) for name, values in tracks.items()]
     samples = _Samples(require_scene(scene), times, np.stack(held, axis=1))
     return kind(
-        **of_contact(samples.sample_contact(times) | {"t": times}), scene=scene, model="contact",
+        **fields_of(samples.samples(times)), scene=scene, model="contact",
         method=GIVEN, status=COMPLETED, message=COMPLETED.value, reason=_SAID, settings=DEFAULTS,
         valid_until=math.inf, t_end=float(times[-1]), span=float(times[-1]), kept_events=(),
     )  # fmt: skip
@@ -75,8 +75,9 @@ class _Samples:
     t: FloatArray
     tracks: FloatArray
 
-    def sample_contact(self, times: FloatArray) -> dict[str, Any]:
-        scene, times, near = self.scene, np.maximum(times, self.t[0]), min(_NEAR, self.t.size)
+    def samples(self, t: FloatArray) -> tuple[FloatArray, ...]:
+        """Return the samples at times as arrays, as the core's Solution does."""
+        scene, times, near = self.scene, np.maximum(t, self.t[0]), min(_NEAR, self.t.size)
         nearest = np.searchsorted((self.t[1:] + self.t[:-1]) / 2, times)
         first = np.clip(nearest - near // 2, 0, self.t.size - near)
         places = first[:, None] + np.arange(near)
@@ -90,17 +91,16 @@ class _Samples:
         slides = np.abs(x_dot - h * omega) > _SMALL * math.sqrt(g * length)
         mode = np.where(slides, Mode.SLIDING, Mode.ROLLING).astype(np.int8)
         mode[z - h > _SMALL * length] = Mode.FLIGHT
-        found = {
-            "x": x, "z": z, "theta": theta, "x_dot": x_dot, "z_dot": z_dot, "omega": omega,
-            "normal_force": scene.mass * (z_ddot + g * math.cos(scene.slope)),
-            "friction_force": scene.mass * (x_ddot - g * math.sin(scene.slope)),
-        }  # fmt: skip
-        return {name: values.copy() for name, values in found.items()} | {"mode": mode}
+        normal_force = scene.mass * (z_ddot + g * math.cos(scene.slope))
+        friction_force = scene.mass * (x_ddot - g * math.sin(scene.slope))
+        columns = theta, omega, x, z, x_dot, z_dot, normal_force, friction_force
+        return t, *(values.copy() for values in columns), mode
 
     def sample_at(self, _scene: Any, _settings: Any, t: float) -> dict[str, Any]:
         """Return the numbers of a sample at one time by name, as the core's Solution does."""
-        found = self.sample_contact(np.array([t]))
-        values = {name: column[0].item() for name, column in found.items()}
+        names = "t", "theta", "omega", "x", *ContactSamples._fields
+        columns = zip(names, self.samples(np.array([t])), strict=True)
+        values = {name: column[0].item() for name, column in columns}
         theta, axes = values["theta"], {"a": self.scene.a, "b": self.scene.b}
         values["contact_x"] = values["x"] + support_slope(theta, **axes)
         return values | {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -35,9 +34,8 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
+_OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
 _MODES = {mode.value: mode for mode in Mode}
-_known_of_all = itemgetter("t", "theta", "omega", "x")
-_beside = itemgetter(*ContactSamples._fields)
 
 
 def frozen(values: _Values) -> _Values:
@@ -54,45 +52,30 @@ def even_times(begin: float, end: float, count: int) -> FloatArray:
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return a solution's samples at times as fields of a Trajectory, in any order of times."""
     if _core.are_sample_times(times):
-        return ascending(solution, times)
+        return fields_of(solution.samples(times))
     order = np.argsort(times, kind="stable")
-    found: dict[str, Any] = taken(ascending(solution, times[order]), np.argsort(order))
+    places = np.argsort(order)
+    return fields_of(tuple([frozen(each[places]) for each in solution.samples(times[order])]))
+
+
+def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
+    """Return samples as fields of a Trajectory.
+
+    They are t, theta, omega, x of rolling, then the fields of ContactSamples of contact, or t, q,
+    q_dot of the multiplier model.
+    """
+    if len(samples) == _OF_COORDINATES:
+        return _of_coordinates(*samples)
+    t, theta, omega, x, *contact = samples
+    found = {"t": t, "theta": theta, "omega": omega, "x": x}
+    if contact:
+        found["contact"] = ContactSamples._make(contact)
     return found
 
 
-def taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
-    """Return samples at some places: of an array, or of all arrays in dicts and tuples."""
-    if isinstance(values, dict):
-        return {name: taken(part, places) for name, part in values.items()}
-    if isinstance(values, tuple):
-        parts = [taken(part, places) for part in values]
-        return ContactSamples._make(parts) if isinstance(values, ContactSamples) else tuple(parts)
-    return None if values is None else frozen(values[places])
-
-
-def ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return a solution's samples at increasing times as fields of a Trajectory."""
-    t = frozen(times.copy())
-    if solution.model == "rolling":
-        theta, omega, x = solution.sample_rolling(times)
-        return {"t": t, "theta": theta, "omega": omega, "x": x}
-    if solution.model == "contact":
-        return of_contact(solution.sample_contact(times) | {"t": t})
-    return of_coordinates(t, *solution.sample_coordinates(times))
-
-
-def of_contact(columns: dict[str, Any]) -> dict[str, Any]:
-    """Return a contact motion's samples, by name in `columns`, as fields of a Trajectory."""
-    t, theta, omega, x = _known_of_all(columns)
-    contact = ContactSamples._make(_beside(columns))
-    return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
-
-
-def of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
-    """Return samples in the five coordinates, and their rates, as fields of a Trajectory."""
-    theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
-    held = {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
-    return {"t": t, **held, "coordinates": (q, q_dot)}
+def _of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
+    theta, omega, x = (frozen(each.copy()) for each in (q[:, 2], q_dot[:, 2], q[:, 0]))
+    return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
 
 
 def details(of: Trajectory) -> dict[str, FloatArray]:

@@ -25,10 +25,10 @@ from .samples import (
     ContactSamples,
     Pair,
     Sample,
-    ascending,
     contact_samples,
     coordinate_pair,
     details,
+    fields_of,
     frozen,
     sample_at,
     sampled,
@@ -36,7 +36,7 @@ from .samples import (
     touch,
     vector,
 )
-from .status import COMPLETED, STATUSES, Status
+from .status import STATUSES, Status
 
 if TYPE_CHECKING:
     import os
@@ -205,15 +205,12 @@ class Trajectory(FieldsOnly):
 
         A start (q, q_dot) in coordinates replaces the start of the scene.
         """
-        span = float(times[-1])
-        solution = solve(scene, settings, span, start)
-        if STATUSES[solution.ending] is not COMPLETED:
-            reached = solution.followed_until if solution.stats["segments"] else -math.inf
-            times = times[times <= reached]
-        given = start if start is None else coordinate_pair("start", start, (COORDINATES,))
-        found = ascending(solution, times)
-        found |= {"scene": scene, "settings": settings, "span": span, "start": given}
-        return trusted(cls, found | {"_solution": solution})
+        solution, samples = solve(scene, settings, times, start)
+        found = fields_of(samples)
+        found["scene"], found["settings"], found["span"] = scene, settings, float(times[-1])
+        found["start"] = start and coordinate_pair("start", start, (COORDINATES,))
+        found["_solution"], found["status"] = solution, STATUSES[solution.ending]
+        return trusted(cls, found)
 
     @cached_property
     def _solution(self) -> _core.Solution:
@@ -221,7 +218,7 @@ class Trajectory(FieldsOnly):
             from .from_arrays import between_samples
 
             return between_samples(self)
-        return solve(self.scene, self.settings, self.span, self.start)
+        return solve(self.scene, self.settings, np.array([self.span]), self.start)[0]
 
     # -- what follows from the samples ----------------------------------------------------------
 
@@ -481,9 +478,11 @@ for _each in (*QUANTITIES, MODE):
 bind_methods(Trajectory)
 
 
-def solve(scene: Scene, settings: Settings, t_end: float, start: Pair | None) -> _core.Solution:
-    """Solve a scene, and return the core's solution, which has the motion at any time to t_end."""
+def solve(
+    scene: Scene, settings: Settings, times: FloatArray, start: Pair | None
+) -> tuple[_core.Solution, tuple[FloatArray, ...]]:
+    """Return the core's solution up to the last time, and its samples at all that are reached."""
     if start is None:
-        return _core.simulate(scene.core, settings.core, t_end)
+        return _core.simulate(scene.core, settings.core, times)
     q, q_dot = (np.atleast_2d(values) for values in start)
-    return _core.simulate_coordinates(scene.core, q, q_dot, settings.core, t_end)
+    return _core.simulate_coordinates(scene.core, q, q_dot, settings.core, times)

@@ -10,12 +10,13 @@ import math
 import warnings
 from contextlib import suppress
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .._ask.check import FloatArray
-from .._motion.samples import even_times, taken
+from .._motion.samples import ContactSamples, even_times, frozen
 from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .ground import flat_angle
@@ -175,7 +176,15 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
     if is_at_hand(motion):
         return motion.sol(times)
     nearest = np.argmin(np.abs(np.subtract.outer(times, motion.t)), axis=1)
-    return replace(motion, **taken({name: getattr(motion, name) for name in _SAMPLES}, nearest))
+    return replace(motion, **{name: _taken(getattr(motion, name), nearest) for name in _SAMPLES})
+
+
+def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
+    """Return samples at some places: of an array, or of each array in a tuple."""
+    if isinstance(values, tuple):
+        parts = [_taken(part, places) for part in values]
+        return ContactSamples._make(parts) if isinstance(values, ContactSamples) else tuple(parts)
+    return None if values is None else frozen(values[places])
 
 
 def is_at_hand(motion: Trajectory) -> bool:

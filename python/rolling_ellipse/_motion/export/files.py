@@ -182,7 +182,9 @@ def _require_consistent(trajectory: Trajectory) -> None:
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
-    solve(trajectory.scene, asked, 0.0, trajectory.start)  # raises if the core cannot solve it
+    solve(
+        trajectory.scene, asked, np.zeros(1), trajectory.start
+    )  # raises if the core cannot solve it
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:

@@ -25,7 +25,7 @@ from ..._motion.events import events as made_events
 from ..._motion.export.strict import require_array
 from ..._motion.export.tables import attributes
 from ..._motion.quantities import MODE, QUANTITIES, TIME
-from ..._motion.samples import frozen, of_contact, of_coordinates
+from ..._motion.samples import fields_of, frozen
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
 from .asked import BLOW, NAMES, Chunk, name_of, scenes_of
@@ -141,13 +141,9 @@ def _samples(model: str, tables: Tables, here: slice, times: FloatArray) -> dict
     size = here.stop - here.start
     t = times if size == times.size else frozen(times[:size].copy())
     if model == "multipliers":
-        q, q_dot = (frozen(tables[name][here].copy()) for name in ("q", "q_dot"))
-        return of_coordinates(t, q, q_dot)
-    found: dict[str, Any] = {"t": t}
-    found.update(zip(_COLUMNS[model], frozen(tables[model][:, here].copy()), strict=True))
-    if model == "contact":
-        return of_contact(found | {"mode": frozen(tables["mode"][here].copy())})
-    return found
+        return fields_of((t, *(frozen(tables[name][here].copy()) for name in ("q", "q_dot"))))
+    modes = [frozen(tables["mode"][here].copy())] if model == "contact" else []
+    return fields_of((t, *frozen(tables[model][:, here].copy()), *modes))
 
 
 def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> None:
