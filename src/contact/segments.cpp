@@ -175,8 +175,10 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         const Segment& segment = *(later - 1);
         const double end = later == segments.end() ? infinity : later->begin;
         since.clear();
-        for (std::size_t j = i; j < n && time(j) >= segment.begin && time(j) < end; ++j) {
-            since.push_back(time(j) - segment.begin);
+        for (std::size_t j = i; j < n; ++j) {
+            const double t = time(j);
+            if (!(t >= segment.begin && t < end)) break;
+            since.push_back(t - segment.begin);
         }
         const Scene& scene = segment.axes_exchanged ? exchanged : motion_.scene;
         std::visit(

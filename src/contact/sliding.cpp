@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "numerics/wide.hpp"
 #include "proof/law.hpp"
 #include "rolling/stepped/equation.hpp"
 
@@ -86,9 +87,12 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 }
 
 // The derivatives of u = h^2, p = h h' and q = p' by the angle are 2 p, q and -4 p.
-SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock) {
-    const auto [sin, cos, omega, slip_velocity, x_velocity] = centre;
-    const auto [a, b] = body.axes;
+ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre,
+                                              SlideClock clock) {
+    const double sin = centre.sin;
+    const double cos = centre.cos;
+    const double a = body.axes.a;
+    const double b = body.axes.b;
     const double c2 = (a - b) * (a + b);
     const double k2 = body.gyration2;
     const double nu = body.normal_share;
@@ -96,95 +100,117 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
-    auto& [motion, slip, rolled, pressure, response, u, work] = slide;
-    auto& [angle, w, x_dot, path, time] = motion;
-    // Each name stands for a pair of series. Two pairs on a line are multiplied: first by first,
-    // second by second.
-    TwoSeries p_q, spread;   // (p, q) by (angle', angle')
-    TwoSeries w_u;           // (omega, u) by itself
-    TwoSeries h_bend, h_w2;  // (h, (a b - u)(a b + u)) by (h, omega^2)
-    TwoSeries p_u, lever_h;  // (p, u) by (L, h)
-    TwoSeries u_h, v_v;      // (u, h) by (V, V)
-    TwoSeries c_w;           // (C, omega) by (L, h), which is lever_h
-    TwoSeries loads, gains;  // (u V, h V) by (omega', impulse')
-    TwoSeries rate_c, w_h;   // (dt/dtau, C) by (omega, h)
-    LongSeries h, rate, impulse, pull;
-    w[0] = omega;
-    angle[0] = path[0] = time[0] = impulse[0] = work[0] = 0.0;
-    p_q[0] = pair(c2 * sin * cos, c2 * ((cos - sin) * (cos + sin)));
-    const double u0 = square(a * sin) + square(b * cos);
-    u[0] = u0;
+    LongSeries& angle = slide.motion.angle;
+    LongSeries& w = slide.motion.omega;
+    LongSeries& x_dot = slide.motion.x_dot;
+    LongSeries& path = slide.motion.path;
+    LongSeries& time = slide.motion.time;
+    LongSeries& slip = slide.slip;
+    LongSeries& rolled = slide.rolled;
+    LongSeries& u = slide.height2;
+    LongSeries& work = slide.work;
+    // Factors of products side by side, coefficient by coefficient.
+    using Factors = std::array<Quad, long_order + 1>;
+    Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) by (angle', angle', h, omega^2)
+    Factors lever, by_lever;   // (p, u, u, h) by (L, h, V, V)
+    Factors force, by_force;   // (L, h, u V, h V) by (C, omega, omega', impulse')
+    Factors clocks, by_clock;  // (dt/dtau, C, dt/dtau, impulse') by (omega, h, x_dot, h omega)
+    Factors squared;           // (omega, u) by itself
     // (a b - u)(a b + u) by factors: nothing cancels for thin bodies, nor for circles.
+    const double u0 = square(a * sin) + square(b * cos);
     const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
     const double h0 = std::sqrt(u0);
     const double over_2h0 = 0.5 / h0;
     const double per_clock = 1 / (k2 * u0 * u0);
-    Pair over_loads{};
+    double over_turning = 0.0;
+    double over_pulling = 0.0;
+    double p = c2 * sin * cos;
+    double q = c2 * ((cos - sin) * (cos + sin));
+    double impulse = 0.0;
+    u[0] = u0;
+    w[0] = centre.omega;
+    angle[0] = path[0] = time[0] = work[0] = 0.0;
 
-    for (int k = 0; k <= long_order; ++k) {
-        const Pair known_spread = inner(p_q, spread, k);
-        const Pair known_squares = self_product(w_u, k, 1);
-        const Pair known_bends = inner(h_bend, h_w2, k);
-        const Pair known_weights = inner(p_u, lever_h, k);
-        const Pair known_loads = inner(u_h, v_v, k);
-        const Pair known_torques = inner(lever_h, c_w, k);
+    const auto step = [&](auto number) __attribute__((always_inline)) {
+        constexpr int k = decltype(number)::value;
+        const Quad curves = inner(curve, by_curve, k);
+        const Quad levers = inner(lever, by_lever, k);
+        const Quad forces = inner(force, by_force, k);
+        const Quad clocked = inner(clocks, by_clock, k);
+        const Quad squares = self_product(squared, k, 1);
+        // The coefficient k of a product from its inner terms and the last coefficients of both.
+        const auto product = [](const Quad& known, const Factors& first, const Factors& second,
+                                int lane, double first_k, double second_k) {
+            const double ends =
+                k == 0 ? first_k * second_k : first[0][lane] * second_k + first_k * second[0][lane];
+            return known[lane] + ends;
+        };
+        const double h = k == 0 ? h0 : (u[k] - curves[2]) * over_2h0;
+        const double l = nu * p + phi * u[k];
+        const double omega2 = k == 0 ? w[0] * w[0] : squares[0] + 2 * (squared[0][0] * w[k]);
+        const double bend = k == 0 ? bend0 : -(squares[1] + 2 * (squared[0][1] * u[k]));
+        const double weight = product(levers, lever, by_lever, 1, u[k], h);
+        const double v = nu * k2 * u[k] + product(levers, lever, by_lever, 0, p, l);
+        const double c =
+            body.gravity.into * weight + product(curves, curve, by_curve, 3, bend, omega2);
+        const double load = product(levers, lever, by_lever, 2, u[k], v);
+        const double pull_load = product(levers, lever, by_lever, 3, h, v);
+        const double torque = product(forces, force, by_force, 0, l, c);
+        slide.response[k] = v;
+        slide.pressure[k] = c;
+        rolled[k] = product(forces, force, by_force, 1, h, w[k]);
 
-        h[k] = k == 0 ? h0 : (u[k] - known_bends[0]) * over_2h0;
-        const double p = p_q[k][0];
-        const double lever = nu * p + phi * u[k];
-        w_u[k] = pair(w[k], u[k]);
-        const Pair squares = k == 0 ? w_u[0] * w_u[0] : known_squares + 2 * (w_u[0] * w_u[k]);
-        h_bend[k] = pair(h[k], k == 0 ? bend0 : -squares[1]);
-        h_w2[k] = pair(h[k], squares[0]);
-        p_u[k] = pair(p, u[k]);
-        lever_h[k] = pair(lever, h[k]);
-        u_h[k] = pair(u[k], h[k]);
-
-        const Pair bends = known_bends + outer(h_bend, h_w2, k);
-        const Pair weights = known_weights + outer(p_u, lever_h, k);
-        response[k] = nu * k2 * u[k] + weights[0];
-        v_v[k] = pair(response[k], response[k]);
-        pressure[k] = body.gravity.into * weights[1] + bends[1];
-        c_w[k] = pair(pressure[k], w[k]);
-        const Pair torques = known_torques + outer(lever_h, c_w, k);
-        rolled[k] = torques[1];
-        loads[k] = known_loads + outer(u_h, v_v, k);
-
-        Pair gain = pair(-torques[0], phi * k2 * pressure[k]);
+        double turning = -torque;
+        double pulling = phi * k2 * c;
+        double rate = 0.0;
+        double spread = w[k];
         if (slowed) {
-            rate[k] = per_clock * loads[k][0];
-            rate_c[k] = pair(rate[k], pressure[k]);
-            w_h[k] = pair(w[k], h[k]);
-            const Pair slow = inner(rate_c, w_h, k) + outer(rate_c, w_h, k);
-            gain = pair(per_clock * gain[0], per_clock * phi * k2 * slow[1]);
-            spread[k] = pair(slow[0], slow[0]);
+            rate = per_clock * load;
+            turning = per_clock * turning;
+            pulling = per_clock * phi * k2 * product(clocked, clocks, by_clock, 1, c, h);
+            spread = product(clocked, clocks, by_clock, 0, rate, w[k]);
         } else {
-            if (k == 0) over_loads = pair(1 / loads[0][0], 1 / loads[0][1]);
-            if (k > 0) gain = gain - inner(loads, gains, k) - loads[k] * gains[0];
-            gain = gain * over_loads;
-            gains[k] = gain;
-            spread[k] = pair(w[k], w[k]);
+            if (k == 0) {
+                over_turning = 1 / load;
+                over_pulling = 1 / pull_load;
+            } else {
+                turning = turning - forces[2] - load * by_force[0][2];
+                pulling = pulling - forces[3] - pull_load * by_force[0][3];
+            }
+            turning *= over_turning;
+            pulling *= over_pulling;
         }
-        pull[k] = gain[1];
-        x_dot[k] = k == 0 ? x_velocity : impulse[k] + body.gravity.along * time[k];
-        slip[k] = k == 0 ? slip_velocity : x_dot[k] - rolled[k];
-        if (k == long_order) break;
-        const Pair turns =
-            (known_spread + outer(p_q, spread, k)) * pair(over_next[k], over_next[k]);
-        u[k + 1] = 2 * turns[0];
-        p_q[k + 1] = pair(turns[1], -4 * turns[0]);
-        angle[k + 1] = spread[k][0] * over_next[k];
-        w[k + 1] = gain[0] * over_next[k];
-        impulse[k + 1] = gain[1] * over_next[k];
-        work[k + 1] = -(inner(pull, rolled, k) + outer(pull, rolled, k)) * over_next[k];
-        if (slowed) {
-            path[k + 1] = (inner(rate, x_dot, k) + outer(rate, x_dot, k)) * over_next[k];
-            time[k + 1] = rate[k] * over_next[k];
-        } else {
-            path[k + 1] = x_dot[k] * over_next[k];
-            time[k + 1] = k == 0 ? 1.0 : 0.0;
-        }
-    }
+        x_dot[k] = k == 0 ? centre.x_dot : impulse + body.gravity.along * time[k];
+        slip[k] = k == 0 ? centre.slip : x_dot[k] - rolled[k];
+        if (k == long_order) return;
+
+        const double over = over_next[k];
+        const double p_rate = product(curves, curve, by_curve, 1, q, spread) * over;
+        const double half_u_rate = product(curves, curve, by_curve, 0, p, spread) * over;
+        const double power = product(clocked, clocks, by_clock, 3, pulling, rolled[k]);
+        const double path_rate =
+            slowed ? product(clocked, clocks, by_clock, 2, rate, x_dot[k]) : x_dot[k];
+        curve[k] = Quad{p, q, h, bend};
+        by_curve[k] = Quad{spread, spread, h, omega2};
+        lever[k] = Quad{p, u[k], u[k], h};
+        by_lever[k] = Quad{l, h, v, v};
+        force[k] = Quad{l, h, load, pull_load};
+        by_force[k] = Quad{c, w[k], turning, pulling};
+        clocks[k] = Quad{rate, c, rate, pulling};
+        by_clock[k] = Quad{w[k], h, x_dot[k], rolled[k]};
+        squared[k] = Quad{w[k], u[k], 0, 0};
+
+        p = p_rate;
+        q = -4 * half_u_rate;
+        impulse = pulling * over;
+        u[k + 1] = 2 * half_u_rate;
+        angle[k + 1] = spread * over;
+        w[k + 1] = turning * over;
+        work[k + 1] = -power * over;
+        path[k + 1] = path_rate * over;
+        time[k + 1] = slowed ? rate * over : k == 0 ? 1.0 : 0.0;
+    };
+    for_each_order(step);
     return slide;
 }
 

@@ -83,7 +83,7 @@ inline constexpr int lanes_of = sizeof(T) / sizeof(double);
 
 [[gnu::always_inline]] inline bool any(bool mask) { return mask; }
 [[gnu::always_inline]] inline bool any(Mask<Pack> mask) {
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && ROLLING_ELLIPSE_LANES == 8
     return _mm512_movepi64_mask((__m512i)mask) != 0;
 #elif defined(__AVX2__)
     return _mm256_movemask_pd((__m256d)mask) != 0;
@@ -117,19 +117,17 @@ template <class T>
 
 [[gnu::always_inline]] inline double sqrt(double x) { return __builtin_sqrt(x); }
 [[gnu::always_inline]] inline Pack sqrt(Pack x) {
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && ROLLING_ELLIPSE_LANES == 8
     return (Pack)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
 #elif defined(__AVX2__)
     return (Pack)_mm256_sqrt_pd((__m256d)x);
 #elif defined(__SSE2__) && ROLLING_ELLIPSE_LANES == 2
     return (Pack)_mm_sqrt_pd((__m128d)x);
-#elif defined(__SSE2__) && ROLLING_ELLIPSE_LANES == 4
-    const __m128d low = _mm_sqrt_pd(_mm_setr_pd(x[0], x[1]));
-    const __m128d high = _mm_sqrt_pd(_mm_setr_pd(x[2], x[3]));
-    return Pack{low[0], low[1], high[0], high[1]};
 #else
-    for (int i = 0; i < lanes; ++i) x[i] = __builtin_sqrt(x[i]);
-    return x;
+    double each[lanes];
+    store(x, each);
+    for (double& number : each) number = __builtin_sqrt(number);
+    return load(each);
 #endif
 }
 
@@ -285,7 +283,7 @@ using rolling_ellipse::two_product;
 
 [[gnu::always_inline]] inline PackPair two_product(Pack x, Pack y) {
     const Pack product = x * y;
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && ROLLING_ELLIPSE_LANES == 8
     return {product, (Pack)_mm512_fmsub_pd((__m512d)x, (__m512d)y, (__m512d)product)};
 #elif defined(__FMA__)
     return {product, (Pack)_mm256_fmsub_pd((__m256d)x, (__m256d)y, (__m256d)product)};

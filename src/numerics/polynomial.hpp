@@ -32,6 +32,8 @@ inline Tracked operator*(Tracked x, Tracked y) {
     return {x.value * y.value, x.magnitude * y.magnitude};
 }
 
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
 enum class Sign { positive, negative, undecided };
 
 // Bound of the rounding error of a number: coefficients of degree 10 pass some 60 additions and
@@ -121,12 +123,16 @@ Bernstein<N> bernstein(const Polynomial<N>& p) {
         }
         return rows;
     }();
+    // Values and magnitudes are multiplied side by side.
+    std::array<Pair, N + 1> powers;
+    for (int j = 0; j <= N; ++j) {
+        powers[j] = Pair{p.coefficients[j].value, p.coefficients[j].magnitude};
+    }
     Bernstein<N> result;
     for (int i = 0; i <= N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            result.coefficients[i] =
-                result.coefficients[i] + tracked(matrix[i][j]) * p.coefficients[j];
-        }
+        Pair sum{};
+        for (int j = 0; j <= i; ++j) sum += matrix[i][j] * powers[j];
+        result.coefficients[i] = {sum[0], sum[1]};
     }
     return result;
 }

@@ -67,19 +67,14 @@ double derivative(const std::array<double, Size>& series, double z) {
     return sum;
 }
 
-// Two doubles in one register where the processor has one; the bits are the same as for single
-// doubles.
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-
-inline Pair pair(double first, double second) { return Pair{first, second}; }
+// Four numbers in one register where the processor has one that wide (numerics/wide.hpp); the bits
+// are the same as for single doubles.
+using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 
 // Order of power series that solve an arc in a few pieces. Higher orders have a larger radius at
 // nearly proportional cost, and each piece has a fixed cost.
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
-
-// Two series whose products are computed at the same time.
-using TwoSeries = std::array<Pair, long_order + 1>;
 
 // The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor. The
 // terms with the newest coefficients are added last: the others need not wait for them.
@@ -89,12 +84,6 @@ template <class Coefficients>
     if (k < 2) return Number{};
     if (k == 2) return Number(p[1] * q[1]);
     return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
-}
-
-// The terms p_0 q_k + p_k q_0 of the coefficient k of a product; p_0 q_0 for k = 0.
-template <class Coefficients>
-inline auto outer(const Coefficients& p, const Coefficients& q, int k) {
-    return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
 }
 
 // The factors 1/(k + 1) that integrate the coefficient k of a rate.
