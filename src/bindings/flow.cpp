@@ -113,7 +113,7 @@ SlopeMotion slope_motion(const SlopeArguments& of) {
     validate_motion(body, theta, omega);
     validate_slope(slope);
     const double heading = t < 0 ? -1.0 : 1.0;
-    return {heading, slope_flow(body, slope, theta, heading * omega, 0.0, 0.0)};
+    return {heading, slope_flow(body, slope, theta, heading * omega, 0.0)};
 }
 
 void prepare(SlopeMotion& motion, double t) {

@@ -33,6 +33,7 @@ class LawWatch {
     LawMeetings met() const;
 
   private:
+    struct Forces;
     struct Law;
 
     // A stretch of time on which the margin is within rounding of 0.

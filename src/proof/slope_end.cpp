@@ -1,10 +1,11 @@
-// The end of rolling on a slope: the law of the contact along the motion, as polynomials of time.
+// The end of rolling on a slope: the law of the contact along the motion.
 //
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
-// that the first place at which the law is broken is the first root of a polynomial. Half turns
-// need not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics
-// (58), so that the law holds for an interval of W. A law that holds in two half turns holds in all
-// between them.
+// that the first place at which the law is broken is the first root of a polynomial. In a half turn
+// of a run or climb polynomials on its parts may prove faster that the law holds. Half turns need
+// not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), so
+// that the law holds for an interval of W. A law that holds in two half turns holds in all between
+// them.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -24,16 +25,17 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The margin of the law for friction to one side, a polynomial of the share 0 <= x <= 1 of a piece.
-struct LawWatch::Law {
-    double side;
+// The friction that N allows and the friction F, polynomials of the share 0 <= x <= 1 of a piece.
+// Infinite friction leaves the law N > 0.
+struct LawWatch::Forces {
+    std::array<double, law_degree + 1> allowed;
+    std::array<double, law_degree + 1> needed;
     double size;  // sum of the sizes of the terms of the law
-    std::array<double, law_degree + 1> coefficients;
 
-    Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
-        : side(to_side), size(law_size({body.gravity.into, body.gravity.along}, friction)) {
-        const double normal = std::isinf(friction) ? 1.0 : friction;
-        const double needed = std::isinf(friction) ? 0.0 : 1.0;
+    Forces(const SlopeBody& body, const SlopePiece& piece, double friction)
+        : size(law_size({body.gravity.into, body.gravity.along}, friction)) {
+        const double by_normal = std::isinf(friction) ? 1.0 : friction;
+        const double by_friction = std::isinf(friction) ? 0.0 : 1.0;
         const double z = piece.lasts / piece.unit;
         double power = 1 / square(piece.unit);
         for (int k = 0; k <= law_degree; ++k) {
@@ -44,9 +46,35 @@ struct LawWatch::Law {
                 n += body.gravity.into;
                 f -= body.gravity.along;
             }
-            coefficients[k] = normal * n - side * needed * f;
-            size += std::abs(normal * n) + std::abs(needed * f);
+            allowed[k] = by_normal * n;
+            needed[k] = by_friction * f;
+            size += std::abs(allowed[k]) + std::abs(needed[k]);
             power *= z;
+        }
+    }
+
+    // Whether the law holds to both sides, seen by the sizes of its terms.
+    bool hold() const {
+        double others = std::abs(needed[0]);
+        double ends = 0.0;
+        for (int k = 1; k <= law_degree; ++k) {
+            ends = std::abs(allowed[k]) + std::abs(needed[k]);
+            others += ends;
+        }
+        ends += std::abs(allowed[law_degree - 1]) + std::abs(needed[law_degree - 1]);
+        return allowed[0] - others > rounding * size && ends <= rounding * size;
+    }
+};
+
+// The margin of the law for friction to one side, a polynomial of the share of a piece.
+struct LawWatch::Law {
+    double side;
+    double size;  // sum of the sizes of the terms of the law
+    std::array<double, law_degree + 1> coefficients;
+
+    Law(const Forces& forces, double to_side) : side(to_side), size(forces.size) {
+        for (int k = 0; k <= law_degree; ++k) {
+            coefficients[k] = forces.allowed[k] - side * forces.needed[k];
         }
     }
 
@@ -144,14 +172,17 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
 
 bool LawWatch::examine(const SlopePiece& piece) {
     if (std::isinf(piece.lasts)) return false;
-    const int count = std::isinf(friction_) ? 1 : 2;  // infinite friction leaves the law N > 0
-    std::optional<Law> laws[2];
-    for (int i = 0; i < count; ++i) {
-        laws[i].emplace(flow_.body, piece, friction_, i == 0 ? 1.0 : -1.0);
-        if (!laws[i]->is_resolved()) return examine_parts(piece);
-    }
-    for (int i = 0; i < count; ++i) {
-        if (near_[i].open || !laws[i]->is_positive()) examine(piece, *laws[i], near_[i]);
+    const Forces forces(flow_.body, piece, friction_);
+    if (near_[0].open || near_[1].open || !forces.hold()) {
+        const int count = std::isinf(friction_) ? 1 : 2;
+        std::optional<Law> laws[2];
+        for (int i = 0; i < count; ++i) {
+            laws[i].emplace(forces, i == 0 ? 1.0 : -1.0);
+            if (!laws[i]->is_resolved()) return examine_parts(piece);
+        }
+        for (int i = 0; i < count; ++i) {
+            if (near_[i].open || !laws[i]->is_positive()) examine(piece, *laws[i], near_[i]);
+        }
     }
     at_start_ = false;
     return met_.broken.has_value();
@@ -181,8 +212,36 @@ LawMeetings LawWatch::met() const {
 
 namespace {
 
-// The meetings with the law in one half turn from a place of the motion, by series.
-LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const SlopePlace& from) {
+// Whether the law provably holds on a part with the given forces: its margin at each node is larger
+// than what it may change up to the nearest node, as |P_k'| <= k (k + 1)/2 on -1 ... 1.
+bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, double friction) {
+    constexpr double to_a_node = 0.077;  // largest distance of a place from the nearest node
+    static_assert(part_order == 20);
+    const PartArray normal = legendre_coefficients(forces.normal);
+    const PartArray tangential = legendre_coefficients(forces.friction);
+    double size = law_size({gravity.into, gravity.along}, friction);
+    double change = 0.0;
+    double ends = 0.0;  // the last two terms
+    double least = infinity;
+    for (int k = 0; k < part_order; ++k) {
+        const double term = law_size({normal[k], tangential[k]}, friction);
+        size += term;
+        change += 0.5 * k * (k + 1) * term;
+        if (k >= part_order - 2) ends += term;
+        least = std::min(least, law_margin({forces.normal[k], forces.friction[k]}, friction));
+    }
+    return ends <= rounding * size && least - to_a_node * change > rounding * size;
+}
+
+// The meetings with the law in the half turn after the first n of a run, as far as its parts go: by
+// the parts, where they prove that it holds, or by series.
+LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double friction,
+                             double half_turns) {
+    const bool holds = std::all_of(run.parts.begin(), run.parts.end(), [&](const RunPart& part) {
+        return holds_on_part(node_forces(run, part, half_turns), run.body.gravity, friction);
+    });
+    if (holds) return {};
+    const SlopePlace from = half_turns == 0 ? run.from : place_after(run, half_turns);
     const SlopeEnergy energy = energy_of(flow.body, from);
     SlopePlace place = from;
     place.path = {};
@@ -199,50 +258,51 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const Slope
     return watch.met();
 }
 
-// First guess of the half turn of a run in which the law is broken, from sampled angles, denser
-// near the flat position of a thin body. The forces at an angle are linear in W, hence in the
-// number of half turns.
+// First guess of the half turn of a complete run in which the law is broken, from the nodes of its
+// parts. The forces at a node are linear in W, hence in the number of half turns.
 double broken_about(const SlopeRun& run, double friction) {
-    constexpr int samples = 64;
-    const SlopeBody& body = run.body;
-    const double later = std::max(1.0, std::min(run.energy / body.gain, run.half_turns - 1));
+    const double later = std::max(1.0, std::min(run.energy / run.body.gain, run.half_turns - 1));
     double least = infinity;
-    for (int i = 0; i < samples; ++i) {
-        const double u = pi * (i + 0.5) / samples - half_pi;
-        SlopePlace place{};
-        place.angle = {std::atan2(body.short_axis * std::sin(u), body.long_axis * std::cos(u)),
-                       0.0};
-        const Geometry here = geometry(body, place);
-        const double w = level(run, 0.0, place.angle.high, here);
-        const auto force_after = [&](double half_turns) {
-            place.omega = omega_after(run, half_turns, w, here);
-            return contact_force(body, place);
-        };
-        const ContactForce first = force_after(0.0);
-        const ContactForce last = force_after(later);
-        for (const double side : {1.0, -1.0}) {
-            const double margin = law_margin(first, friction, side);
-            const double lost = margin - law_margin(last, friction, side);
-            if (lost > 0) least = std::min(least, margin / lost * later);
+    for (const RunPart& part : run.parts) {
+        const PartForces first = node_forces(run, part, 0.0);
+        const PartForces last = node_forces(run, part, later);
+        for (int i = 0; i < part_order; ++i) {
+            for (const double side : {1.0, -1.0}) {
+                const double margin =
+                    law_margin({first.normal[i], first.friction[i]}, friction, side);
+                const double lost =
+                    margin - law_margin({last.normal[i], last.friction[i]}, friction, side);
+                if (lost > 0) least = std::min(least, margin / lost * later);
+            }
         }
     }
     return least;
 }
 
-// The meetings in the first of the half turns 1 ... most of a run in which the law is broken; it is
-// broken in all later ones, too. The search takes growing steps from the guess, then halves.
-LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double most) {
-    LawMeetings met{};
+void append(LawMeetings& all, const LawMeetings& later) {
+    if (!all.touched) all.touched = later.touched;
+    all.broken = later.broken;
+}
+
+// The meetings in the first half turn of a run in which the law is broken; it is broken in all
+// later ones, too. The search takes growing steps from a guess, then halves. A run that is known up
+// to some time only, in its first half turn, is followed that far.
+LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction) {
+    LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
+    const double most = run.half_turns - 1;
+    if (met.broken || !run.is_complete() || most < 1) return met;
+    LawMeetings later{};
     double holds = 0.0;
     double broken = most + 1;
     double next = std::clamp(std::ceil(broken_about(run, friction)), 1.0, most);
     for (double step = 1.0; broken - holds > 1; step *= 2) {
-        const LawMeetings here = law_in_half_turn(flow, friction, place_after(run, next));
-        if (here.broken || broken > most) met = here;
+        const LawMeetings here = law_in_half_turn(flow, run, friction, next);
+        if (here.broken || broken > most) later = here;
         (here.broken ? broken : holds) = next;
         next = here.broken ? broken - step : std::min(holds + step, most);
         if (!(holds < next && next < broken)) next = std::floor(0.5 * (holds + broken));
     }
+    append(met, later);
     return met;
 }
 
@@ -260,11 +320,6 @@ LawMeetings law_of_constant_forces(const SlopeFlow& flow, double friction, const
     return margin == Sign::negative ? LawMeetings{{}, start} : LawMeetings{start, {}};
 }
 
-void append(LawMeetings& all, const LawMeetings& later) {
-    if (!all.touched) all.touched = later.touched;
-    all.broken = later.broken;
-}
-
 }  // namespace
 
 LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
@@ -276,12 +331,8 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     if (flow.pieces.empty()) grow(flow);
     LawMeetings all{};
-    if (flow.climb) {
-        append(all, law_in_half_turn(flow, friction, flow.start));
-        if (all.broken) return all;
-        append(all, law_in_run(flow, *flow.climb, friction, flow.climb->half_turns - 1));
-        if (all.broken) return all;
-    }
+    if (flow.climb) append(all, law_in_run(flow, *flow.climb, friction));
+    if (all.broken) return all;
     LawWatch watch(flow, friction);
     const double last = until / flow.body.time;
     for (std::size_t i = 0; i < flow.pieces.size() || grow(flow); ++i) {
@@ -293,8 +344,8 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     append(all, watch.met());
     if (all.broken || !flow.run || double(flow.run->from.time) > last) return all;
-    extend(*flow.run, infinity);
-    append(all, law_in_run(flow, *flow.run, friction, most_half_turns));
+    extend(*flow.run, last - double(flow.run->from.time));
+    append(all, law_in_run(flow, *flow.run, friction));
     return all;
 }
 

@@ -61,11 +61,11 @@ def simulate(
         with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time, without steps; neither tolerances nor the
-        span matter. On a slope power series in time at rounding level follow one swing, or the
-        first half turns; a swing repeats itself, and many half turns downhill or uphill are one
-        sum, a difference of Hurwitz zeta functions [8]_. The other methods integrate the equation
-        of motion: "dop853" and "dopri5" are explicit Runge-Kutta
-        pairs of order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
+        span matter. On a slope power series in time follow one swing, which repeats itself; a run
+        downhill and a climb are a quadrature of the energy integral over one half turn, and many
+        half turns are one sum, a difference of Hurwitz zeta functions [8]_. The other methods
+        integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of
+        order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
         Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
         error does not grow, with rounding errors that only walk at random [2]_ [3]_; "radau" is
         Radau IIA of order 5 [4]_. "auto" is "exact".
@@ -148,7 +148,8 @@ def simulate(
         rest_speed,
     )  # fmt: skip
     trajectory = Trajectory.computed(scene, how, sample_times(t))
-    report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=4)
+    if trajectory.status is not COMPLETED:
+        report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=4)
     if sentence := advice(trajectory):
         warnings.warn(sentence, StabilityWarning, stacklevel=3)
     return trajectory

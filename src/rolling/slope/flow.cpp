@@ -6,10 +6,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// Least number of half turns of a climb that is computed as a sum, beside series and without them.
-constexpr double least_climb = 16;
-constexpr double least_climb_alone = 1;
-
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
     const double s = body.side * view.sin;
     SlopePlace place{};
@@ -47,15 +43,11 @@ double known_until(const SlopeFlow& flow) {
 }
 
 // Whether the body has moved so little that only a series about the start keeps the digits of the
-// way.
+// way, where the motion begins with a sum.
 bool is_short(const SlopeFlow& flow, double time) {
     constexpr double short_way = 0.1;  // [rad]
-    return time * std::max(std::abs(flow.start.omega), flow.body.slowest) < short_way;
-}
-
-bool is_in_foot(const SlopeFlow& flow, double time) {
-    return !flow.foot.empty() && time < flow.foot.back().end() &&
-           (flow.quarters_by_series > 0 || is_short(flow, time));
+    return (flow.climb || flow.pieces.empty()) &&
+           time * std::max(std::abs(flow.start.omega), flow.body.slowest) < short_way;
 }
 
 // The place at which the series begin: the start, or the end of the sum of a climb.
@@ -64,12 +56,7 @@ SlopePlace begin(SlopeFlow& flow) {
     if (start.omega == 0) flow.turnings.push_back(start.time);
     if (start.omega >= 0) return start;
     const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start.omega);
-    if (n < (flow.quarters_by_series > 0 ? least_climb : least_climb_alone)) return start;
-    SlopePlace at = start;
-    while (start.quarters - at.quarters < flow.quarters_by_series) {
-        flow.foot.push_back(piece_from(flow.body, at));
-        at = place_after(flow.body, flow.energy, flow.foot.back());
-    }
+    if (n < 1) return start;
     flow.climb = slope_run(flow.body, start, flow.energy.start, n);
     extend(*flow.climb, infinity);
     return place_after(*flow.climb, n);
@@ -141,7 +128,10 @@ class SlopeReader {
         const double time = t / flow_.body.time;
         if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
         if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
-        if (is_in_foot(flow_, time)) return place_in_pieces(flow_.foot, {time, 0.0});
+        if (is_short(flow_, time)) {
+            if (!begin_) begin_ = piece_from(flow_.body, flow_.start);
+            if (time < begin_->lasts) return place_in(*begin_, time);
+        }
         if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
             return read(climb_, *flow_.climb, time);
         }
@@ -156,17 +146,16 @@ class SlopeReader {
     }
 
     const SlopeFlow& flow_;
+    std::optional<SlopePiece> begin_;
     std::optional<RunReader> climb_;
     std::optional<RunReader> run_;
 };
 
 }  // namespace
 
-SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x,
-                     double quarters_by_series) {
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x) {
     omega = zero_if_negligible(omega);
     SlopeFlow flow{};
-    flow.quarters_by_series = quarters_by_series;
     flow.theta = theta;
     flow.omega = omega;
     flow.x = x;
@@ -189,19 +178,17 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 bool grow(SlopeFlow& flow) {
     if (flow.kind != MotionKind::rotation || flow.run || climbs_for_ever(flow)) return false;
     const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
-    if (!flow.downhill && from.omega > 0) {
+    if (from.omega > 0) {
         const Geometry here = geometry(flow.body, from);
         const Tracked w = energy_at(flow.body, flow.energy, from, here);
         const double at_least = w.value - 8 * epsilon * w.magnitude;
-        if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
+        if (may_run(flow.body, at_least, here, from.omega) > 0) {
+            flow.run = slope_run(flow.body, from, w.value, most_half_turns);
+            return false;
+        }
     }
-    const auto& downhill = flow.downhill;
-    if (downhill && from.quarters - downhill->quarters >= flow.quarters_by_series) {
-        const Geometry there = geometry(flow.body, *downhill);
-        const Tracked w = energy_at(flow.body, flow.energy, *downhill, there);
-        flow.run = slope_run(flow.body, *downhill, w.value, most_half_turns);
-        return false;
-    }
+    constexpr std::size_t usual_pieces = 16;
+    if (flow.pieces.empty()) flow.pieces.reserve(usual_pieces);
     flow.pieces.push_back(piece_from(flow.body, from));
     const DoubleDouble turning = time_of_turning(flow.pieces.back());
     if (turning.high < infinity) flow.turnings.push_back(turning);
@@ -213,13 +200,7 @@ void prepare(SlopeFlow& flow, double t) {
     const double until = t / flow.body.time;
     if (flow.pieces.empty()) grow(flow);
     while (known_until(flow) <= until && grow(flow)) continue;
-    const bool runs_at_once = flow.run && flow.pieces.empty();
-    if (flow.foot.empty() && (runs_at_once || flow.climb) && is_short(flow, until)) {
-        flow.foot.push_back(piece_from(flow.body, flow.start));
-    }
-    if (flow.run && !is_in_foot(flow, until)) {
-        extend(*flow.run, double(-flow.run->from.time + until));
-    }
+    if (flow.run) extend(*flow.run, double(-flow.run->from.time + until));
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {

@@ -5,9 +5,8 @@
 // * the motion after a turning point mirrors the motion before it, so that the series continue from
 //   the reversed start at twice the time of the first turning point;
 // * a body that rocks between two turning points repeats the series up to the second one;
-// * a climb of many half turns is one sum (`climb`) except for its begin (`foot`), and the series
-//   continue near its top;
-// * a body that runs downhill for good is one sum (`run`) after its begin.
+// * a climb of half turns is one sum (`climb`), and the series continue near its top;
+// * a body that runs downhill for good is one sum (`run`).
 #pragma once
 
 #include <optional>
@@ -25,27 +24,17 @@ struct SlopeFlow {
     double x;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;        // acceleration of a circle
-    double quarters_by_series;  // first quarter turns of a run or climb that series follow, too
+    double acceleration;  // acceleration of a circle
     SlopePlace start;
     SlopeEnergy energy;
-    // The begin of a climb, or of a run without pieces, where the sum loses the digits of a short
-    // way.
-    std::vector<SlopePiece> foot;
     std::optional<SlopeRun> climb;
     std::vector<SlopePiece> pieces;
     std::vector<DoubleDouble> turnings;  // times of the first two turning points
-    std::optional<SlopePlace> downhill;  // first place from which the body runs downhill for good
     std::optional<SlopeRun> run;
 };
 
-// Quarter turns of a run or climb on whose series the law of contact is proved.
-inline constexpr double quarters_of_proof = 3;
-
-// The flow of a body that rolls on a slope other than 0. Without series of a run's first quarter
-// turns a single time of it is faster, and many are slower.
-SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x,
-                     double quarters_by_series = quarters_of_proof);
+// The flow of a body that rolls on a slope other than 0.
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
 // Extend the pieces until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);

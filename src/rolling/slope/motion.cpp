@@ -9,8 +9,6 @@
 namespace rolling_ellipse {
 namespace {
 
-using Quad = double __attribute__((vector_size(4 * sizeof(double))));
-
 // h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
 // difference of its two terms would be a rounding; a slope with equilibria uses the product of
 // physics (62) there.
@@ -105,12 +103,13 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
 
 // The time since the begin of the piece at which it turns back; infinite if it does not.
 double turning_in(const SlopePiece& piece) {
-    const double before = piece.from.omega;
-    const auto turned = [&](double since) {
-        return value(piece.series.omega, since / piece.unit) * before <= 0;
+    const double side = std::copysign(1.0, piece.from.omega);
+    const auto onwards = [&](double since) {
+        return side * value(piece.series.omega, since / piece.unit);
     };
-    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return infinity;
-    return bisect(0.0, piece.lasts, turned).high;
+    const bool is_moving = piece.from.omega != 0 && !std::isinf(piece.lasts);
+    if (!is_moving || onwards(piece.lasts) > 0) return infinity;
+    return bisect_root(0.0, piece.lasts, onwards).high;
 }
 
 }  // namespace
@@ -158,14 +157,6 @@ Geometry geometry(const SlopeBody& body, double quarters, double angle) {
     const double c = std::cos(angle);
     const Axes axes{body.long_axis, body.short_axis};
     return is_odd(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
-}
-
-double path_at(const SlopeBody& body, double quarters, double angle) {
-    const double s = std::sin(std::abs(angle));
-    const double c = std::cos(angle);
-    const double over = is_odd(quarters) ? path_from_tip(body.long_axis, body.short_axis, s, c)
-                                         : path_from_flat(body.long_axis, body.short_axis, s, c);
-    return std::fma(quarters, body.quarter_path, std::copysign(over, angle));
 }
 
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to) {
@@ -251,8 +242,7 @@ SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const S
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, energy, place, here);
     if (w.value > accurate * w.magnitude) {
-        const double inertia = inertia_about_contact(body.gyration2, here);
-        place.omega = std::copysign(std::sqrt(2 * w.value / inertia), place.omega);
+        place.omega = std::copysign(omega_at(body, w.value, here), place.omega);
     }
     return place;
 }

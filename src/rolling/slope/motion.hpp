@@ -2,6 +2,7 @@
 // turning point as any other place; the next series begins where the last one has lost its digits.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "numerics/numbers.hpp"
@@ -59,9 +60,6 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
     return geometry(body, at.quarters, double(at.angle));
 }
 
-// The path of the centre from the flat position of quarter 0.
-double path_at(const SlopeBody& body, double quarters, double angle);
-
 // Height of the centre at `from` minus its height at `to`, as a product: the difference of two
 // heights of a nearly round body would be a rounding.
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
@@ -77,6 +75,11 @@ SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
 // The energy W = D omega^2/2 at a place.
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here);
+
+// The size of omega where the energy is W.
+inline double omega_at(const SlopeBody& body, double energy, const Geometry& here) {
+    return std::sqrt(2 * energy / inertia_about_contact(body.gyration2, here));
+}
 
 struct SlopeSeries {
     LongSeries angle;

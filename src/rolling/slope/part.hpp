@@ -1,10 +1,12 @@
-// Functions on a part of a panel, as polynomials through the Gauss nodes -1 ... 1.
+// Functions on a part of a panel, as polynomials through the Gauss nodes -1 ... 1, and places on
+// it.
 #pragma once
 
 #include <array>
 
 #define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, two elsewhere
 #include "numerics/lanes.hpp"
+#include "numerics/series.hpp"
 #include "numerics/wide.hpp"
 #include "rolling/slope/run.hpp"
 
@@ -16,8 +18,9 @@ using PartMatrix = std::array<PartArray, part_order>;  // [j] belongs to the val
 struct PartRule {
     PartArray places;
     PartArray weights;
-    PartMatrix integrals;     // from -1 to the nodes
-    PartMatrix coefficients;  // of the Legendre polynomials
+    PartMatrix integrals;  // from -1 to the nodes
+    PartMatrix legendre;   // coefficients of the Legendre polynomials
+    PartMatrix powers;     // coefficients of the powers, from those of the Legendre polynomials
 };
 
 // The Legendre polynomials P_0 ... P_part_order at x.
@@ -40,15 +43,23 @@ inline const PartRule& part_rule() {
             rule.weights[j] = weight;
             const auto at_node = legendre_polynomials(place);
             for (int k = 0; k < part_order; ++k) {
-                rule.coefficients[j][k] = (k + 0.5) * weight * at_node[k];
+                rule.legendre[j][k] = (k + 0.5) * weight * at_node[k];
             }
             for (int i = 0; i < part_order; ++i) {
                 const auto p = legendre_polynomials(node_of(gauss, i).place);
-                double sum = rule.coefficients[j][0] * (p[1] + 1);
+                double sum = rule.legendre[j][0] * (p[1] + 1);
                 for (int k = 1; k < part_order; ++k) {
-                    sum += rule.coefficients[j][k] * (p[k + 1] - p[k - 1]) / (2 * k + 1);
+                    sum += rule.legendre[j][k] * (p[k + 1] - p[k - 1]) / (2 * k + 1);
                 }
                 rule.integrals[j][i] = sum;
+            }
+        }
+        auto& powers = rule.powers;  // of P_0 = 1, P_1 = x and the others by their recurrence
+        powers[0][0] = powers[1][1] = 1.0;
+        for (int k = 1; k + 1 < part_order; ++k) {
+            for (int i = 0; i <= k + 1; ++i) {
+                const double times_x = i > 0 ? powers[k][i - 1] : 0.0;
+                powers[k + 1][i] = ((2 * k + 1) * times_x - k * powers[k - 1][i]) / (k + 1);
             }
         }
         return rule;
@@ -80,32 +91,36 @@ inline double integral(const PartArray& values) {
     return total;
 }
 
-// A polynomial and its integral from -1.
-struct PartValue {
-    double value;
-    double integral;
-};
-
-// From the Legendre coefficients; the factors of the recurrence are constants of the compiler.
-inline PartValue value_at(const PartArray& coefficients, double x) {
-    static constexpr auto factors = [] {
-        std::array<std::array<double, 3>, part_order> found{};
-        for (int k = 0; k < part_order; ++k) {
-            found[k] = {(2 * k + 1.0) / (k + 1), k / (k + 1.0), 1 / (2 * k + 1.0)};
-        }
-        return found;
-    }();
-    double before = 1.0;
-    double now = x;
-    PartValue found{coefficients[0], coefficients[0] * (x + 1)};
-    for (int k = 1; k < part_order; ++k) {
-        const double next = factors[k][0] * x * now - factors[k][1] * before;
-        found.value += coefficients[k] * now;
-        found.integral += coefficients[k] * factors[k][2] * (next - before);
-        before = now;
-        now = next;
+// The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
+// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers cancel hardly.
+inline PartPolynomial polynomial_through(const PartArray& values) {
+    const PartRule& rule = part_rule();
+    const PartArray legendre = product(rule.legendre, values);
+    const PartArray powers = product(rule.powers, legendre);
+    PartPolynomial found{legendre[0], legendre[1], {}, {}};
+    for (int k = 0; k < part_order; ++k) {
+        found.value[k] = powers[k];
+        found.integral[k + 1] = powers[k] * (1.0 / (k + 1));
+        found.integral[0] += k % 2 == 0 ? found.integral[k + 1] : -found.integral[k + 1];
     }
     return found;
+}
+
+// A place on a panel, its tangent from the centre, and sine and cosine of its angle from a flat
+// position, both perhaps with the other sign.
+template <class T>
+struct PanelPlace {
+    T tan;
+    T root;  // sqrt(1 + tan^2)
+    T sin;
+    T cos;
+};
+
+template <class T>
+[[gnu::always_inline]] inline PanelPlace<T> place_at(const RunPanel& panel, T v) {
+    const T tan = copysign(panel.grade * hyperbolic(abs(v)).sinh, v);
+    const T root = sqrt(1 + tan * tan);
+    return {tan, root, (panel.sin + panel.cos * tan) / root, (panel.cos - panel.sin * tan) / root};
 }
 
 }  // namespace

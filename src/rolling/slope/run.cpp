@@ -77,27 +77,27 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     const SlopeBody& body = run.body;
     const PartRule& rule = part_rule();
     const double sin2_from = square(run.at.sin);
-    PartArray advance, fallen;
+    PartArray fallen;
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&rule.places[i]);
-        const Pack tan = copysign(panel.grade * hyperbolic(abs(v)).sinh, v);
-        const Pack tan2 = tan * tan;
-        const Pack sin = (panel.sin + panel.cos * tan) / sqrt(1 + tan2);
-        const Pack sin2 = sin * sin;
+        const PanelPlace<Pack> at = place_at(panel, v);
+        const Pack tan2 = at.tan * at.tan;
+        const Pack sin2 = at.sin * at.sin;
         const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
         const Pack rate = part.half * sqrt(tan2 + square(panel.grade)) / (1 + tan2);
-        store(h * rate, &advance[i]);
+        store(h * rate, &part.advance[i]);
         store(rate / h * sqrt(0.5 * (body.d0 + body.d1 * sin2)), &part.mass[i]);
         store(body.c2 * (sin2_from - sin2) / (run.at.h + h), &fallen[i]);
     }
-    const PartArray path = product(rule.integrals, advance);
+    part.path = run.path_ahead;
+    const PartArray path = product(rule.integrals, part.advance);
     const double along = run.heading * body.gravity.along;
     for (int i = 0; i < part_order; ++i) {
         part.level[i] =
             run.energy + (along * (run.path_ahead + path[i]) + body.gravity.into * fallen[i]);
     }
     part.lasts = integral(node_times(run, part, 0.0));
-    run.path_ahead += integral(advance);
+    run.path_ahead += integral(part.advance);
     run.mass += integral(part.mass);
     run.known += part.lasts;
 }
@@ -122,7 +122,6 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     run.turns = run.heading * 2 * std::floor(run.heading * from.quarters / 2);
     run.half_turns = half_turns;
     run.energy = energy;
-    run.path = path_at(body, from.quarters - run.turns, double(from.angle));
     run.at = geometry(body, from);
     run.panels.reserve(usual_panels);
     run.parts.reserve(usual_parts);
@@ -232,33 +231,39 @@ DoubleDouble RunTimes::operator()(double half_turns) {
     return sum;
 }
 
-double level(const SlopeRun& run, double quarters, double angle, const Geometry& here) {
-    return level(run, path_at(run.body, quarters, angle) - run.path, here);
+// N and F as in `contact_force`.
+ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& part,
+                                            double half_turns) {
+    const RunPanel& panel = run.panels[part.panel];
+    const SlopeBody& body = run.body;
+    const double gained = run.heading * half_turns * body.gain;
+    const double into = body.gravity.into;
+    const double along = run.heading * body.gravity.along;
+    const double a = body.long_axis;
+    const double b = body.short_axis;
+    PartForces found;
+    for (int i = 0; i < part_order; i += lanes) {
+        const Pack v = part.middle + part.half * load(&part_rule().places[i]);
+        const PanelPlace<Pack> at = place_at(panel, v);
+        const Pack sin2 = at.sin * at.sin;
+        const Pack cos2 = at.cos * at.cos;
+        const Pack h2 = body.short_axis2 + body.c2 * sin2;
+        const Pack h = sqrt(h2);
+        const Pack over_h3 = 1 / (h * h2);
+        const Pack dh = body.c2 * at.sin * at.cos / h;
+        const Pack ddh = body.c2 * (b * cos2 - a * sin2) * (b * cos2 + a * sin2) * over_h3;
+        const Pack rho = square(a * b) * over_h3;
+        const Pack over_inertia = 1 / (body.gyration2 + h2 + dh * dh);
+        const Pack omega2 = 2 * (load(&part.level[i]) + gained) * over_inertia;
+        const Pack turning = (h * along - dh * (into + rho * omega2)) * over_inertia;
+        store(into + dh * turning + ddh * omega2, &found.normal[i]);
+        store(h * turning + dh * omega2 - along, &found.friction[i]);
+    }
+    return found;
 }
 
-double level(const SlopeRun& run, double path, const Geometry& here) {
-    return run.energy + (run.body.gravity.along * path +
-                         run.body.gravity.into * fall(run.body, run.at, here).value);
-}
-
-double omega_after(const SlopeRun& run, double half_turns, double level, const Geometry& here) {
-    const double w = level + run.heading * half_turns * run.body.gain;
-    return run.heading * std::sqrt(2 * w / inertia_about_contact(run.body.gyration2, here));
-}
-
-SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
-    const double beyond = std::atan(panel.grade * std::sinh(v));
-    const double angle = run.heading * (panel.angle + beyond);
-    const double quarters = run.heading * panel.quarters;
-    const Geometry at = geometry(run.body, quarters, angle);
-    const double turned = run.heading * 2 * half_turns;
-    SlopePlace place{};
-    place.quarters = run.turns + quarters + turned;
-    place.angle = {angle, 0.0};
-    const double path = path_at(run.body, quarters, angle) - run.path;
-    place.omega = omega_after(run, half_turns, level(run, path, at), at);
-    place.path = run.from.path + path + two_product(turned, run.body.quarter_path);
-    return place;
+PartArray legendre_coefficients(const PartArray& at_nodes) {
+    return product(part_rule().legendre, at_nodes);
 }
 
 SlopePlace place_after(const SlopeRun& run, double half_turns) {
@@ -267,7 +272,9 @@ SlopePlace place_after(const SlopeRun& run, double half_turns) {
     place.time = place.time + RunTimes(run)(half_turns);
     place.quarters += turned;
     place.path = place.path + two_product(turned, run.body.quarter_path);
-    place.omega = omega_after(run, half_turns, run.energy, run.at);
+    place.omega =
+        omega_at(run.body, run.energy + run.heading * half_turns * run.body.gain, run.at) *
+        run.heading;
     return place;
 }
 

@@ -24,6 +24,15 @@ namespace rolling_ellipse {
 inline constexpr int part_order = 20;
 using PartArray = std::array<double, part_order>;  // numbers at the nodes of a part
 
+// A polynomial on a part and its integral from -1, by powers of the place; the highest power of the
+// value is 0.
+struct PartPolynomial {
+    double mean;  // of the value; with the slope it is the nearest line
+    double slope;
+    std::array<double, part_order + 1> value;
+    std::array<double, part_order + 1> integral;
+};
+
 // The coordinate v of a panel: tan(phi - centre) = grade sinh(v), first <= v <= last. The centre is
 // a flat position or the place of the least W beside a tip.
 struct RunPanel {
@@ -41,9 +50,11 @@ struct RunPart {
     std::size_t panel;  // its index
     double middle;      // v at the middle of the part
     double half;        // half of its width in v
-    PartArray mass;   // derivative of the integral of sqrt(D/2) at the nodes, by the place -1 ... 1
-    PartArray level;  // W in the first half turn
-    double lasts;     // time of the part in the first half turn
+    double path;        // path ahead at its begin
+    PartArray advance;  // at the nodes: derivative of the path by the place -1 ... 1,
+    PartArray mass;     // derivative of the integral of sqrt(D/2),
+    PartArray level;    // and W in the first half turn
+    double lasts;       // time of the part in the first half turn
 };
 
 struct SlopeRun {
@@ -51,7 +62,6 @@ struct SlopeRun {
     SlopePlace from;
     double turns;                  // whole half turns before `from`, in quarters
     double heading;                // +1 downhill, -1 uphill
-    double path;                   // path at `from`, from the flat position at `turns`
     Geometry at;                   // geometry at `from`
     double energy;                 // W at `from`
     double half_turns;             // largest number of half turns of the run
@@ -97,15 +107,16 @@ class RunTimes {
     std::vector<DoubleDouble> begins_;  // of the first half turns downhill, the last ones uphill
 };
 
-// W at a place in the first half turn, and after a path.
-double level(const SlopeRun& run, double quarters, double angle, const Geometry& here);
-double level(const SlopeRun& run, double path, const Geometry& here);
+// Forces at the nodes of a part after n half turns, per unit mass, along x in the direction of the
+// motion.
+struct PartForces {
+    PartArray normal;
+    PartArray friction;
+};
+PartForces node_forces(const SlopeRun& run, const RunPart& part, double half_turns);
 
-// The angular velocity at a place n half turns after the first half turn has W = level there.
-double omega_after(const SlopeRun& run, double half_turns, double level, const Geometry& here);
-
-// The place at v in a panel during the half turn after the first n.
-SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns);
+// The coefficients of the Legendre polynomials of a function on a part.
+PartArray legendre_coefficients(const PartArray& at_nodes);
 
 // The place after n half turns of a complete run.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
@@ -123,13 +134,14 @@ class RunReader {
     SlopePlace place_at(double rest);
 
     const SlopeRun& run_;
-    RunTimes times_;
+    RunTimes run_times_;
     double half_turns_ = 0.0;  // half turns before the current one
     DoubleDouble begin_;       // time from `from` to the begin of the current half turn
     double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
     std::vector<double> part_times_;
-    std::size_t part_;  // the part whose Legendre coefficients are kept
-    PartArray rates_;   // coefficients of the derivative of the time by the place
+    std::size_t part_;     // the part whose polynomials are kept
+    PartPolynomial time_;  // derivatives of time and path by the place
+    PartPolynomial path_;
 };
 
 }  // namespace rolling_ellipse

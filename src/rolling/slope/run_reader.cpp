@@ -8,19 +8,18 @@ namespace {
 
 // The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
 // The first guess takes the rate as linear.
-double place_in_part(const PartArray& rates, double time) {
+double place_in_part(const PartPolynomial& of_time, double time) {
     constexpr int most_tries = 60;
     constexpr double converged = 1e-9;  // smaller steps are squared by Newton's method
-    const double first = rates[0] - rates[1];
-    const double root = std::sqrt(std::max(square(first) + 2 * rates[1] * time, 0.0));
+    const double first = of_time.mean - of_time.slope;
+    const double root = std::sqrt(std::max(square(first) + 2 * of_time.slope * time, 0.0));
     double x = std::clamp(2 * time / (first + root) - 1, -1.0, 1.0);
     double low = -1.0;
     double high = 1.0;
     for (int i = 0; i < most_tries; ++i) {
-        const PartValue at = value_at(rates, x);
-        const double rest = time - at.integral;
+        const double rest = time - value(of_time.integral, x);
         (rest > 0 ? low : high) = x;
-        double next = x + rest / at.value;
+        double next = x + rest / value(of_time.value, x);
         if (!(next >= low && next <= high)) next = 0.5 * (low + high);
         const double moved = std::abs(next - x);
         x = next;
@@ -32,7 +31,7 @@ double place_in_part(const PartArray& rates, double time) {
 }  // namespace
 
 RunReader::RunReader(const SlopeRun& run)
-    : run_(run), times_(run), part_times_(run.parts.size()), part_(run.parts.size()) {}
+    : run_(run), run_times_(run), part_times_(run.parts.size()), part_(run.parts.size()) {}
 
 // The current half turn is reused only well inside it, so that the answer does not depend on
 // earlier calls.
@@ -65,7 +64,7 @@ void RunReader::move_to(DoubleDouble since) {
 
 void RunReader::set_half_turn(double half_turns) {
     half_turns_ = half_turns;
-    begin_ = times_(half_turns);
+    begin_ = run_times_(half_turns);
     lasts_ = 0.0;
     for (std::size_t i = 0; i < run_.parts.size(); ++i) {
         const RunPart& part = run_.parts[i];
@@ -81,12 +80,27 @@ SlopePlace RunReader::place_at(double rest) {
     for (; i + 1 < part_times_.size() && rest > part_times_[i]; ++i) rest -= part_times_[i];
     const RunPart& part = run_.parts[i];
     if (i != part_) {
-        rates_ = product(part_rule().coefficients, node_times(run_, part, half_turns_));
+        time_ = polynomial_through(node_times(run_, part, half_turns_));
+        path_ = polynomial_through(part.advance);
         part_ = i;
     }
-    const double x = place_in_part(rates_, std::clamp(rest, 0.0, part_times_[i]));
+    const double x = place_in_part(time_, std::clamp(rest, 0.0, part_times_[i]));
     const RunPanel& panel = run_.panels[part.panel];
-    return place_on(run_, panel, part.middle + part.half * x, half_turns_);
+    const SlopeBody& body = run_.body;
+    const auto on_panel = rolling_ellipse::place_at(panel, part.middle + part.half * x);
+    const Geometry here =
+        geometry(Axes{body.long_axis, body.short_axis}, on_panel.sin, on_panel.cos);
+    const double heading = run_.heading;
+    const double ahead = heading * (part.path + value(path_.integral, x));
+    const double energy = run_.energy + (body.gravity.along * ahead +
+                                         body.gravity.into * fall(body, run_.at, here).value);
+    const double turned = heading * 2 * half_turns_;
+    SlopePlace place{};
+    place.quarters = run_.turns + heading * panel.quarters + turned;
+    place.angle = {heading * (panel.angle + std::atan(on_panel.tan)), 0.0};
+    place.omega = heading * omega_at(body, energy + heading * half_turns_ * body.gain, here);
+    place.path = run_.from.path + ahead + two_product(turned, body.quarter_path);
+    return place;
 }
 
 }  // namespace rolling_ellipse

@@ -1,0 +1,65 @@
+"""Rolling on a slope by power series of the equation of motion, in long doubles."""
+
+from typing import Any
+
+import numpy as np
+
+ORDER = 30
+Columns = Any  # an array of long doubles for each motion
+
+
+def product(p: Columns, q: Columns, k: int) -> Columns:
+    """The coefficient k of a product."""
+    return np.sum(p[: k + 1] * q[k::-1], axis=0)
+
+
+def quotient(p: Columns, q: Columns, found: Columns, k: int) -> Columns:
+    """The coefficient k of p/q, of which those before are known."""
+    return (p - np.sum(q[1 : k + 1] * found[:k][::-1], axis=0)) / q[0]
+
+
+def rolled_by_series(
+    t: Any, *, a: Any, b: Any, gyration2: Any, slope: Any, theta: Any, omega: Any, g: float = 9.81
+) -> Columns:
+    """Angle, angular velocity and path of n motions at a time for each, shape (3, n).
+
+    (k^2 + h^2 + h'^2) omega' = g sin(slope) h - h' (g cos(slope) + rho omega^2), where h^2 = u,
+    h h' = p, u' = 2 p omega, p' = q omega, q' = -4 p omega and rho = a^2 b^2/h^3.
+    """
+    given = np.broadcast_arrays(t, a, b, gyration2, slope, theta, omega)
+    left, *bodies, slopes, angle, speed = (np.array(each, np.longdouble) for each in given)
+    state = np.stack([angle, speed, np.zeros_like(left)])
+    while (moving := left > 0).any():
+        a, b, k2 = (each[moving] for each in bodies)
+        along, into = g * np.sin(slopes[moving]), g * np.cos(slopes[moving])
+        now, c2 = state[:, moving], (a - b) * (a + b)
+        s, c = np.sin(now[0]), np.cos(now[0])
+        shape = ORDER + 1, a.size
+        u, p, q, h, dh, cube, rho, w, w2, pull, inertia, turning = np.zeros((12, *shape), a.dtype)
+        u[0], p[0], q[0], w[0] = (
+            (a * s) ** 2 + (b * c) ** 2,
+            c2 * s * c,
+            c2 * (c - s) * (c + s),
+            now[1],
+        )
+        for k in range(ORDER + 1):
+            h[k] = np.sqrt(u[0]) if k == 0 else (u[k] - product(h, h, k)) / (2 * h[0])
+            dh[k], cube[k] = quotient(p[k], h, dh, k), product(u, h, k)
+            rho[k] = quotient((a * b) ** 2 if k == 0 else 0, cube, rho, k)
+            w2[k], inertia[k] = product(w, w, k), u[k] + product(dh, dh, k)
+            pull[k] = product(rho, w2, k)
+            if k == 0:
+                inertia[0], pull[0] = inertia[0] + k2, pull[0] + into
+            turning[k] = quotient(along * h[k] - product(dh, pull, k), inertia, turning, k)
+            if k < ORDER:
+                w[k + 1], u[k + 1] = turning[k] / (k + 1), 2 * product(p, w, k) / (k + 1)
+                p[k + 1], q[k + 1] = product(q, w, k) / (k + 1), -4 * product(p, w, k) / (k + 1)
+        path = np.stack([product(h, w, k) for k in range(ORDER + 1)])
+        ends = np.maximum(np.abs(w[-1]) / np.abs(w).max(axis=0), np.abs(path[-1] / path[0]) + 1e-99)
+        step = np.minimum(left[moving], (np.longdouble(1e-20) / ends) ** (1 / ORDER))
+        powers = step ** np.arange(ORDER + 1)[:, None]
+        over = step / np.arange(1, ORDER + 2)[:, None]
+        theta, x = (np.sum(rates * powers * over, axis=0) for rates in (w, path))
+        state[:, moving] = now[0] + theta, np.sum(w * powers, axis=0), now[2] + x
+        left[moving] -= step
+    return state
