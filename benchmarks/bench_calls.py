@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 from common import Case, end_time, options, print_machine, print_tables, seconds
-from rolling_ellipse import Scene, _core, certify, flow, simulate, thresholds
+from rolling_ellipse import Scene, _core, certify, ends, flow, simulate, simulate_many, thresholds
 from rolling_ellipse._ask.settings import DEFAULTS
 
-IMPORTS = ("numpy", "rolling_ellipse")
+IMPORTS = ("import numpy", "from rolling_ellipse import Scene, flow, simulate")
 IMPORT_ROUNDS = 10
 
 # ---------------------------------------------------------------------------- single calls
@@ -27,6 +27,7 @@ EVENTS = 10
 ROLLING = Scene(2.0, 1.0, omega=3.2)
 BOUNCING = Scene(2.0, 1.0, theta=0.5, z=3.0, friction=0.3, restitution=0.7)
 DOWNHILL = BOUNCING.replace(slope=0.1)
+R = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
 END = 5.0
 
 
@@ -46,15 +47,57 @@ def calls() -> dict[str, Case]:
             last = f"simulate, {kind}, its events"
             found[last] = Case(lambda s=scene, t=end: simulate(s, [t]).events)
         one, many = np.array([end]), np.linspace(0.0, end, 1000)
-        solution, _ = _core.simulate(core, settings, one)
+        solution, _ = _core.simulate(core, settings, one, None)
         found |= {
             f"simulate, {kind}, 1 sample": Case(partial(simulate, scene, [end])),
             f"simulate, {kind}, 1000 samples": Case(partial(simulate, scene, many)),
-            f"simulate, {kind}, the core": Case(partial(_core.simulate, core, settings, one)),
+            f"simulate, {kind}, the core": Case(partial(_core.simulate, core, settings, one, None)),
             f"1 sample, {kind}, the core": Case(partial(solution.samples, one)),
             f"1000 samples, {kind}, the core": Case(partial(solution.samples, many)),
         }
-    return found
+    watched, steep = simulate(ROLLING, 20.0), Scene(**R, slope=0.1, friction=10.0)
+    pair = partial(simulate, Scene(**R), [0.8], method="dopri5")
+    return found | {
+        "Trajectory.at": Case(partial(watched.at, 3.3)),
+        "Trajectory.when(theta=1)": Case(partial(watched.when, theta=1.0)),
+        "simulate, a short roll on a slope": Case(partial(simulate, steep, [0.8])),
+        "simulate, the same, model 'rolling'": Case(
+            partial(simulate, steep, [0.8], model="rolling")
+        ),
+        "simulate by dopri5, 1e-2": Case(partial(pair, rtol=1e-2, atol=1e-2)),
+        "its dense output, a sample": Case(
+            partial(pair(rtol=1e-10)._solution.samples, np.linspace(0, 0.8, SAMPLES // 50)),
+            SAMPLES // 50,
+        ),
+    }
+
+
+# ---------------------------------------------------------------------------- many motions
+
+MANY = 2000  # motions of a batch
+LEVEL = {"a": 2.0, "b": 1.0, "friction": 0.3, "restitution": 0.5, "z": 3.0}
+
+
+def batches() -> dict[str, Case]:
+    """Motions that roll, and others that slip and jump; throws with three events each."""
+    rolls, slips = (
+        [
+            Scene(2.0, 1.0, friction=friction, omega=omega)
+            for omega in np.linspace(*speeds, MANY // 2)
+        ]
+        for friction, speeds in ((10.0, (0.5, 3.0)), (1.0, (5.5, 6.5)))
+    )
+    mixed = [scene for pair in zip(rolls, slips, strict=True) for scene in pair]
+    theta, omega = np.random.default_rng(0).uniform([[0], [-5]], [[3], [5]], (2, MANY))
+    throws = LEVEL | {"theta": theta, "omega": omega}
+    return {
+        "ends, mixed": Case(partial(ends, mixed, 3.0), MANY),
+        "simulate_many, mixed": Case(partial(simulate_many, mixed, [3.0]), MANY),
+        "simulate_many, its theta": Case(
+            partial(simulate_many, mixed, [3.0], returns="theta"), MANY
+        ),
+        "ends, throws of three hops": Case(partial(ends, throws, 1.0), MANY),
+    }
 
 
 # ---------------------------------------------------------------------------- exact rolling
@@ -62,7 +105,6 @@ def calls() -> dict[str, Case]:
 STATES = 2000  # motions in one timing of a set-up through arrays
 SAMPLES = 1_000_000
 HALF_TURNS = 1.37
-R = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
 
 
 def starts() -> dict[str, dict[str, Any]]:
@@ -101,6 +143,20 @@ def flows() -> dict[str, dict[str, Case]]:
         # near a singular start a relative change of omega by 1e-12 is no longer small
         if "separatrix" not in name:
             many[name] = among_many(start, t)
+    swing, speeds, grid = R | {"omega": 1.0}, np.linspace(2.5, 4.0, STATES), np.linspace(0, 8, 1001)
+    sloping = {
+        f"{name} to {t} s": Case(partial(flow, t, **start, slope=0.1))
+        for name, start in (("R", R), ("L", swing))
+        for t in (0.1, 0.8, 8.0)
+    } | {
+        f"of {STATES} runs to 0.8 s": Case(
+            partial(flow, 0.8, **R | {"omega": speeds}, slope=0.1), STATES
+        ),
+        f"of {STATES} swings to 0.8 s": Case(
+            partial(flow, 0.8, **R | {"omega": speeds - 2.2}, slope=0.1), STATES
+        ),
+        "of 1001 times of R to 8 s": Case(partial(flow, grid, **R, slope=0.1), grid.size),
+    }
     source, target = np.ones((3, SAMPLES)), np.zeros((3, SAMPLES))
     of_many = {
         "R: 1e6 samples of 100 half turns": samples(100),
@@ -112,6 +168,7 @@ def flows() -> dict[str, dict[str, Case]]:
         f"flow: end state by a scalar call (set-up and one sample), {HALF_TURNS} half turns": one,
         f"flow: end state among {STATES} motions (set-up and one sample each)": many,
         "flow: one sample of many": of_many,
+        "flow: on a slope of 0.1": sloping,
     }
 
 
@@ -164,9 +221,9 @@ def steps() -> dict[str, dict[str, Case]]:
 # ---------------------------------------------------------------------------- the run
 
 
-def import_seconds(module: str) -> float:
-    """Time of a new interpreter that imports a module [s]."""
-    return seconds(lambda: subprocess.run([sys.executable, "-c", f"import {module}"], check=True))
+def import_seconds(statement: str) -> float:
+    """Time of a new interpreter that imports [s]."""
+    return seconds(lambda: subprocess.run([sys.executable, "-c", statement], check=True))
 
 
 def main() -> None:
@@ -174,12 +231,11 @@ def main() -> None:
     asked.add_argument("--only", default="", help="tables with this word in their titles")
     chosen = asked.parse_args()
     print_machine(chosen.rounds)
-    tables = {"calls: single": calls(), **flows(), **steps()}
+    tables = {"calls: single": calls(), "many motions": batches(), **flows(), **steps()}
     print_tables({t: cases for t, cases in tables.items() if chosen.only in t}, chosen.rounds)
-    imports = {name: min(map(import_seconds, [name] * IMPORT_ROUNDS)) for name in IMPORTS}
     print()
-    for name, found in imports.items():
-        print(f"{'import ' + name:40} {found * 1e3:6.0f} ms {found / imports['numpy']:7.2f}")
+    for line in IMPORTS:
+        print(f"{line:60} {min(map(import_seconds, [line] * IMPORT_ROUNDS)) * 1e3:6.0f} ms")
 
 
 if __name__ == "__main__":

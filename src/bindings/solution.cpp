@@ -103,14 +103,19 @@ py::tuple samples(const Solution& solution, const double* times, py::ssize_t n) 
     return rolling_samples(solution, t);
 }
 
-// A solution up to the last of the times, and its samples at all times that it reaches.
-template <class Simulate>
-py::tuple solved(const Array& t, const Simulate& simulate) {
+// A solution up to the last of the times, and its samples at all times that it reaches. A start q,
+// q_dot replaces that of the scene.
+py::tuple solved(const Scene& scene, const Settings& settings, const Array& t,
+                 const std::optional<std::pair<Array, Array>>& start) {
     require_length("t", t, std::max<py::ssize_t>(t.size(), 1));
     const double* const times = t.data();
+    const double t_end = times[t.size() - 1];
+    std::optional<CoordinateState> from;
+    if (start) from = single_state(start->first, start->second);
     Solution solution = [&] {
         const GilRelease release;
-        return simulate(times[t.size() - 1]);
+        return from ? simulate(scene, *from, settings, t_end, SignalWatch())
+                    : simulate(scene, settings, t_end, SignalWatch());
     }();
     const py::tuple found = samples(solution, times, reached(solution, times, t.size()));
     return py::make_tuple(std::move(solution), found);
@@ -177,6 +182,13 @@ py::dict stats(const Solution& solution) {
         found[name] = value;
     }
     return found;
+}
+
+// The losses of an integrated motion: energy, constraints, projected; None for all others.
+py::object losses_in(const Solution& solution) {
+    const std::optional<Losses> found = losses(solution);
+    if (!found) return py::none();
+    return py::make_tuple(found->energy, found->constraints, found->projected);
 }
 
 // The state just before or just after an event, and the code of its mode.
@@ -256,10 +268,6 @@ void bind_solution(py::module_& m) {
                       {"COMPLETED", "MAX_STEPS", "STEP_TOO_SMALL", "STEP_TOO_LARGE", "MAX_EVENTS",
                        "JAMMED", "UNDETERMINED", "VALIDITY_LOST"});
     bind_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.", names<Quantity>);
-    bind_class<Losses>(m, "Losses")
-        .def_readonly("energy", &Losses::energy)
-        .def_readonly("constraints", &Losses::constraints)
-        .def_readonly("projected", &Losses::projected);
     bind_class<Solution>(m, "Solution")
         .def_property_readonly("ending",
                                [](const Solution& s) { return static_cast<int>(s.ending); })
@@ -276,7 +284,7 @@ void bind_solution(py::module_& m) {
         .def(
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)
-        .def("losses", losses)
+        .def("losses", losses_in)
         .def("knots", [](const Solution& s) { return array_of(knot_times(s.motion)); })
         .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)
         .def("zeros", zeros_of, "function"_a, "direction"_a)
@@ -291,23 +299,7 @@ void bind_solution(py::module_& m) {
     m.attr("STATS") = names_of(stats_of(0, {}));
     m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
     m.def("are_sample_times", are_sample_times, "t"_a);
-    m.def(
-        "simulate",
-        [](const Scene& scene, const Settings& settings, const Array& t) {
-            return solved(
-                t, [&](double t_end) { return simulate(scene, settings, t_end, SignalWatch()); });
-        },
-        "scene"_a, "settings"_a, "t"_a);
-    m.def(
-        "simulate_coordinates",
-        [](const Scene& scene, const Array& q, const Array& q_dot, const Settings& settings,
-           const Array& t) {
-            const CoordinateState start = single_state(q, q_dot);
-            return solved(t, [&](double t_end) {
-                return simulate(scene, start, settings, t_end, SignalWatch());
-            });
-        },
-        "scene"_a, "q"_a, "q_dot"_a, "settings"_a, "t"_a);
+    m.def("simulate", solved, "scene"_a, "settings"_a, "t"_a, "start"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -63,7 +63,4 @@ def core_objects() -> dict[str, Any]:
         "Impulse": rl.Impulse(1.0).core,
         "Settings": motion.settings.core,
         "Solution": motion._solution,
-        "Losses": rl.simulate(
-            rl.scenes.rolling, 1.0, model="rolling", method="dop853"
-        )._solution.losses(),
     }

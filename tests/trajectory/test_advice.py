@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ import rolling_ellipse as rl
 from oracles import losses
 from oracles.margins import told
 from oracles.numbers import EPS
-from rolling_ellipse import Scene, StabilityWarning, _core, simulate
+from rolling_ellipse import Scene, StabilityWarning, simulate
 from rolling_ellipse._motion.constraints import energy_error
 
 SCENE = Scene(2.0, 1.0, mass=3.0, theta=0.2, omega=3.2, x=1.0)
@@ -25,12 +25,20 @@ def advice(scene: Scene, t: Any, **how: Any) -> tuple[rl.Trajectory, list[str]]:
     return motion, [str(w.message) for w in said if w.category is StabilityWarning]
 
 
-def lost(motion: rl.Trajectory) -> _core.Losses:
+class Losses(NamedTuple):
+    """Losses of a stepped motion, as the core gives them."""
+
+    energy: float
+    constraints: float
+    projected: float
+
+
+def lost(motion: rl.Trajectory) -> Losses:
     """Losses of a stepped motion, also printed."""
     found = motion._solution.losses()
     assert found is not None
-    told(found.energy, found.constraints, found.projected)
-    return found
+    told(*found)
+    return Losses(*found)
 
 
 def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, Any]:

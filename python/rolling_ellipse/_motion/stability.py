@@ -31,6 +31,7 @@ def advice(motion: Trajectory) -> str | None:
     losses = motion._solution.losses()
     if losses is None:
         return None
+    energy, constraints, projected = losses
     settings = motion.settings
     step = settings.step
     accepted = max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol)
@@ -39,19 +40,19 @@ def advice(motion: Trajectory) -> str | None:
             settings = replace(settings, method=motion.method)
         if (growth := _core.feedback_growth(settings.core)) > 1:
             return _too_stiff(settings, step, growth)
-    if not (losses.energy > accepted or losses.constraints > _MISSED or losses.projected > _MOVED):
+    if not (energy > accepted or constraints > _MISSED or projected > _MOVED):
         return None
     by = f"by t = {motion.t_end:g} s"
     finer = "smaller steps" if step else "smaller rtol and atol"
-    if losses.projected > _MOVED:
+    if projected > _MOVED:
         return (
-            f"a step has missed the constraints by {losses.projected:.2g} of the long semi-axis "
+            f"a step has missed the constraints by {projected:.2g} of the long semi-axis "
             f"before stabilization {settings.stabilization!r}, which moves the body elsewhere: "
             f"take {finer}"
         )
-    if losses.constraints > _MISSED:
+    if constraints > _MISSED:
         return (
-            f"the constraints are missed by {losses.constraints:.2g} of the long semi-axis "
+            f"the constraints are missed by {constraints:.2g} of the long semi-axis "
             f"{by} with stabilization {settings.stabilization!r}: use 'projection', "
             "which keeps them, or the model 'rolling', which has none to miss"
         )
@@ -59,7 +60,7 @@ def advice(motion: Trajectory) -> str | None:
     if motion.model == "multipliers":
         better = "stabilization 'projection+energy'"
     return (
-        f"the energy has changed by {losses.energy:.2g} of itself {by} with "
+        f"the energy has changed by {energy:.2g} of itself {by} with "
         f"method {settings.method!r}: take {finer}, or {better}"
     )
 

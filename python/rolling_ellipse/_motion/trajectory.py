@@ -482,7 +482,5 @@ def solve(
     scene: Scene, settings: Settings, times: FloatArray, start: Pair | None
 ) -> tuple[_core.Solution, tuple[FloatArray, ...]]:
     """Return the core's solution up to the last time, and its samples at all that are reached."""
-    if start is None:
-        return _core.simulate(scene.core, settings.core, times)
-    q, q_dot = (np.atleast_2d(values) for values in start)
-    return _core.simulate_coordinates(scene.core, q, q_dot, settings.core, times)
+    of_one = start and (np.atleast_2d(start[0]), np.atleast_2d(start[1]))
+    return _core.simulate(scene.core, settings.core, times, of_one)

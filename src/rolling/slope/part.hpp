@@ -91,36 +91,23 @@ inline double integral(const PartArray& values) {
     return total;
 }
 
-// The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers cancel hardly.
-inline PartPolynomial polynomial_through(const PartArray& values) {
-    const PartRule& rule = part_rule();
-    const PartArray legendre = product(rule.legendre, values);
-    const PartArray powers = product(rule.powers, legendre);
-    PartPolynomial found{legendre[0], legendre[1], {}, {}};
-    for (int k = 0; k < part_order; ++k) {
-        found.value[k] = powers[k];
-        found.integral[k + 1] = powers[k] * (1.0 / (k + 1));
-        found.integral[0] += k % 2 == 0 ? found.integral[k + 1] : -found.integral[k + 1];
-    }
-    return found;
-}
-
-// A place on a panel, its tangent from the centre, and sine and cosine of its angle from a flat
-// position, both perhaps with the other sign.
+// A place on a panel: its tangent from the centre and the derivative of that by v; 1/(1 + tan^2);
+// sine and cosine of its angle from a flat position, times sqrt(1 + tan^2) and perhaps -1 both.
 template <class T>
 struct PanelPlace {
     T tan;
-    T root;  // sqrt(1 + tan^2)
+    T tan_rate;
+    T over;
     T sin;
     T cos;
 };
 
 template <class T>
 [[gnu::always_inline]] inline PanelPlace<T> place_at(const RunPanel& panel, T v) {
-    const T tan = copysign(panel.grade * hyperbolic(abs(v)).sinh, v);
-    const T root = sqrt(1 + tan * tan);
-    return {tan, root, (panel.sin + panel.cos * tan) / root, (panel.cos - panel.sin * tan) / root};
+    const auto [sinh, falling] = hyperbolic(abs(v));
+    const T tan = copysign(panel.grade * sinh, v);
+    return {tan, panel.grade * (sinh + falling), 1 / (1 + tan * tan), panel.sin + panel.cos * tan,
+            panel.cos - panel.sin * tan};
 }
 
 }  // namespace

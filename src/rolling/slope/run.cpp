@@ -43,21 +43,20 @@ constexpr double widest_part = 1.0;
 struct Centre {
     double quarters;
     double angle;
-    double grade_angle;  // about the imaginary part of the nearest singularity of dt/dphi
+    double grade;
     double at() const { return quarters * half_pi + angle; }
 };
 
 // Append the panel from low to high.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     if (!(low < high)) return;
-    const double grade = std::tanh(centre.grade_angle);
     const auto coordinate = [&](double at) {
-        return std::asinh(std::tan(at - centre.at()) / grade);
+        return std::asinh(std::tan(at - centre.at()) / centre.grade);
     };
     const double s = std::sin(centre.angle);
     const double c = std::cos(centre.angle);
     const bool tip = is_odd(centre.quarters);
-    run.panels.push_back({centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, grade,
+    run.panels.push_back({centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, centre.grade,
                           coordinate(low), coordinate(high)});
 }
 
@@ -81,12 +80,12 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&rule.places[i]);
         const PanelPlace<Pack> at = place_at(panel, v);
-        const Pack tan2 = at.tan * at.tan;
-        const Pack sin2 = at.sin * at.sin;
-        const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
-        const Pack rate = part.half * sqrt(tan2 + square(panel.grade)) / (1 + tan2);
+        const Pack sin2 = at.sin * at.sin * at.over;
+        const Pack h2 = body.short_axis2 + body.c2 * sin2;
+        const Pack h = sqrt(h2);
+        const Pack rate = part.half * at.tan_rate * at.over;
         store(h * rate, &part.advance[i]);
-        store(rate / h * sqrt(0.5 * (body.d0 + body.d1 * sin2)), &part.mass[i]);
+        store(rate * sqrt(0.5 * (body.d0 + body.d1 * sin2) / h2), &part.mass[i]);
         store(body.c2 * (sin2_from - sin2) / (run.at.h + h), &fallen[i]);
     }
     part.path = run.path_ahead;
@@ -134,16 +133,17 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
     const double least = std::max(energy - lost + body.gravity.into * fall(body, run.at, top).value,
                                   least_levels * body.gain);
-    const double flat = std::asinh(std::sqrt(body.d0 / body.d1));
+    // A grade is tanh of about the imaginary part of the nearest singularity of dt/dphi.
+    const double at_flat = std::sqrt(body.d0 / (body.d0 + body.d1));
     // The singularities of the flat position may be nearer to the hill than its own.
     const double to_flat = half_pi - std::abs(hill);
-    const double beside_hill = std::min(
-        curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0, to_flat / 2);
+    const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
+    const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));
 
     const double here = run.heading * ((from.quarters - run.turns) * half_pi + double(from.angle));
     const auto centre = [&](int quarters) {
-        return quarters % 2 == 0 ? Centre{double(quarters), 0.0, flat}
-                                 : Centre{double(quarters), run.heading * hill, beside_hill};
+        return quarters % 2 == 0 ? Centre{double(quarters), 0.0, at_flat}
+                                 : Centre{double(quarters), run.heading * hill, at_hill};
     };
     const auto add_between = [&](const Centre& left, const Centre& right) {
         const double split = left.at() + (right.at() - left.at()) / 2;
@@ -158,7 +158,7 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
             add_between(left, right);
         } else {
             const QuarterView at = quarter_view({left.at() + (right.at() - left.at()) / 2, 0.0});
-            const Centre middle{at.quarters, double(at.rest), 1.0};
+            const Centre middle{at.quarters, double(at.rest), std::tanh(1.0)};
             add_between(left, middle);
             add_between(middle, right);
         }
@@ -245,12 +245,12 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&part_rule().places[i]);
         const PanelPlace<Pack> at = place_at(panel, v);
-        const Pack sin2 = at.sin * at.sin;
-        const Pack cos2 = at.cos * at.cos;
+        const Pack sin2 = at.sin * at.sin * at.over;
+        const Pack cos2 = at.cos * at.cos * at.over;
         const Pack h2 = body.short_axis2 + body.c2 * sin2;
         const Pack h = sqrt(h2);
         const Pack over_h3 = 1 / (h * h2);
-        const Pack dh = body.c2 * at.sin * at.cos / h;
+        const Pack dh = body.c2 * at.sin * at.cos * at.over / h;
         const Pack ddh = body.c2 * (b * cos2 - a * sin2) * (b * cos2 + a * sin2) * over_h3;
         const Pack rho = square(a * b) * over_h3;
         const Pack over_inertia = 1 / (body.gyration2 + h2 + dh * dh);
@@ -262,7 +262,7 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
     return found;
 }
 
-PartArray legendre_coefficients(const PartArray& at_nodes) {
+ROLLING_ELLIPSE_WIDE PartArray legendre_coefficients(const PartArray& at_nodes) {
     return product(part_rule().legendre, at_nodes);
 }
 

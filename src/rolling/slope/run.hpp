@@ -27,8 +27,6 @@ using PartArray = std::array<double, part_order>;  // numbers at the nodes of a 
 // A polynomial on a part and its integral from -1, by powers of the place; the highest power of the
 // value is 0.
 struct PartPolynomial {
-    double mean;  // of the value; with the slope it is the nearest line
-    double slope;
     std::array<double, part_order + 1> value;
     std::array<double, part_order + 1> integral;
 };
@@ -142,6 +140,7 @@ class RunReader {
     std::size_t part_;     // the part whose polynomials are kept
     PartPolynomial time_;  // derivatives of time and path by the place
     PartPolynomial path_;
+    std::array<double, 7> about_place_;  // the place by the share of the part's time, about
 };
 
 }  // namespace rolling_ellipse

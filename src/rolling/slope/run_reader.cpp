@@ -6,14 +6,50 @@
 namespace rolling_ellipse {
 namespace {
 
+// The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
+// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers cancel hardly.
+ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) {
+    const PartRule& rule = part_rule();
+    const PartArray powers = product(rule.powers, product(rule.legendre, values));
+    PartPolynomial found{};
+    for (int k = 0; k < part_order; ++k) {
+        found.value[k] = powers[k];
+        found.integral[k + 1] = powers[k] * (1.0 / (k + 1));
+        found.integral[0] += k % 2 == 0 ? found.integral[k + 1] : -found.integral[k + 1];
+    }
+    return found;
+}
+
+// The place in a part by the share of its time: the polynomial of degree 5 with the values and two
+// derivatives of the inverse function at both ends.
+std::array<double, 7> inverse_about(const PartPolynomial& time) {
+    double rate[2]{};
+    double rise[2]{};
+    for (int k = 0; k < part_order; ++k) {
+        const double term = time.value[k];
+        rate[0] += k % 2 == 0 ? term : -term;
+        rate[1] += term;
+        rise[0] += k % 2 == 0 ? -k * term : k * term;
+        rise[1] += k * term;
+    }
+    const double lasts = value(time.integral, 1.0);
+    const double d0 = lasts / rate[0];
+    const double d1 = lasts / rate[1];
+    const double c0 = -0.5 * rise[0] * d0 * d0 / rate[0];
+    const double c1 = -0.5 * rise[1] * d1 * d1 / rate[1];
+    return {-1.0,
+            d0,
+            c0,
+            20 - 6 * d0 - 4 * d1 - 3 * c0 + c1,
+            -30 + 8 * d0 + 7 * d1 + 3 * c0 - 2 * c1,
+            12 - 3 * (d0 + d1) - c0 + c1};
+}
+
 // The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
-// The first guess takes the rate as linear.
-double place_in_part(const PartPolynomial& of_time, double time) {
+double place_in_part(const PartPolynomial& of_time, double guess, double time) {
     constexpr int most_tries = 60;
-    constexpr double converged = 1e-9;  // smaller steps are squared by Newton's method
-    const double first = of_time.mean - of_time.slope;
-    const double root = std::sqrt(std::max(square(first) + 2 * of_time.slope * time, 0.0));
-    double x = std::clamp(2 * time / (first + root) - 1, -1.0, 1.0);
+    constexpr double converged = 1e-8;  // smaller steps are squared by Newton's method
+    double x = std::clamp(guess, -1.0, 1.0);
     double low = -1.0;
     double high = 1.0;
     for (int i = 0; i < most_tries; ++i) {
@@ -26,6 +62,15 @@ double place_in_part(const PartPolynomial& of_time, double time) {
         if (moved < converged) break;
     }
     return x;
+}
+
+// As `fall` from the begin of a run.
+double fallen(const SlopeRun& run, const PanelPlace<double>& at, double h) {
+    const auto [sin, cos] = std::pair(run.at.sin, run.at.cos);
+    const double sin2 = square(at.sin) * at.over;
+    const double cos2 = square(at.cos) * at.over;
+    const double change = square(sin) + sin2 > 1.0 ? cos2 - square(cos) : square(sin) - sin2;
+    return run.body.c2 / (run.at.h + h) * change;
 }
 
 }  // namespace
@@ -82,23 +127,25 @@ SlopePlace RunReader::place_at(double rest) {
     if (i != part_) {
         time_ = polynomial_through(node_times(run_, part, half_turns_));
         path_ = polynomial_through(part.advance);
+        about_place_ = inverse_about(time_);
         part_ = i;
     }
-    const double x = place_in_part(time_, std::clamp(rest, 0.0, part_times_[i]));
+    rest = std::clamp(rest, 0.0, part_times_[i]);
+    const double x = place_in_part(time_, value(about_place_, rest / part_times_[i]), rest);
     const RunPanel& panel = run_.panels[part.panel];
     const SlopeBody& body = run_.body;
-    const auto on_panel = rolling_ellipse::place_at(panel, part.middle + part.half * x);
-    const Geometry here =
-        geometry(Axes{body.long_axis, body.short_axis}, on_panel.sin, on_panel.cos);
+    const auto at = rolling_ellipse::place_at(panel, part.middle + part.half * x);
+    const double sin2 = square(at.sin) * at.over;
+    const double h = std::sqrt(body.short_axis2 + body.c2 * sin2);
     const double heading = run_.heading;
-    const double ahead = heading * (part.path + value(path_.integral, x));
-    const double energy = run_.energy + (body.gravity.along * ahead +
-                                         body.gravity.into * fall(body, run_.at, here).value);
     const double turned = heading * 2 * half_turns_;
+    const double ahead = heading * (part.path + value(path_.integral, x));
+    const double energy = run_.energy + heading * half_turns_ * body.gain +
+                          (body.gravity.along * ahead + body.gravity.into * fallen(run_, at, h));
     SlopePlace place{};
     place.quarters = run_.turns + heading * panel.quarters + turned;
-    place.angle = {heading * (panel.angle + std::atan(on_panel.tan)), 0.0};
-    place.omega = heading * omega_at(body, energy + heading * half_turns_ * body.gain, here);
+    place.angle = {heading * (panel.angle + std::atan(at.tan)), 0.0};
+    place.omega = heading * h * std::sqrt(2 * energy / (body.d0 + body.d1 * sin2));
     place.path = run_.from.path + ahead + two_product(turned, body.quarter_path);
     return place;
 }
