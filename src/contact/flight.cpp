@@ -1,9 +1,11 @@
 #include "contact/flight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "numerics/bisect.hpp"
+#include "numerics/series.hpp"
 #include "scene/impact.hpp"
 
 namespace rolling_ellipse {
@@ -13,20 +15,28 @@ namespace {
 // 3e5 of them.
 constexpr double largest_ratio = 0.9999;
 
-// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels.
+// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels: the
+// terms are powers of -4 x^2 over factorials of odd and even numbers.
 struct BeyondSmall {
     double sine;
     double square;
 };
 BeyondSmall beyond_small(double x) {
+    using Terms = std::array<double, 9>;
+    static constexpr auto series = [] {
+        std::array<Terms, 2> found{};
+        double sine = 1.0;
+        double squared = 1.0;
+        for (int k = 1; k < 9; ++k) {
+            found[0][k - 1] = sine;
+            found[1][k - 1] = squared;
+            sine /= -(2 * k + 2) * (2 * k + 3);
+            squared /= -(2 * k + 3) * (2 * k + 4);
+        }
+        return found;
+    }();
     const double y2 = square(2 * x);
-    double sine = 1.0;
-    double squared = 1.0;
-    for (int k = 8; k > 1; --k) {
-        sine = 1 - sine * y2 / ((2 * k) * (2 * k + 1));
-        squared = 1 - squared * y2 / ((2 * k + 1) * (2 * k + 2));
-    }
-    return {-x * y2 / 6 * sine, -square(x) * y2 / 12 * squared};
+    return {-x * y2 / 6 * value(series[0], y2), -square(x) * y2 / 12 * value(series[1], y2)};
 }
 
 // The gap between the body and the ground.
@@ -59,6 +69,16 @@ class Gap {
         const State& s = flight_.start;
         if (const auto small = rate_after_small_turn(t)) return *small;
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
+    }
+
+    // The first root after t of the parabola with the gap's value and two derivatives there.
+    std::optional<RootGuess> root_about(double t) const {
+        const double bend = flight_.gravity.into + at(t).ddh * square(flight_.start.omega);
+        const double gap = value(t);
+        const double approach = -rate(t);
+        const double slope = -std::sqrt(square(approach) + 2 * gap * bend);
+        if (!(slope < 0 && approach - slope > 0)) return std::nullopt;
+        return RootGuess{t + 2 * gap / (approach - slope), slope};
     }
 
     std::optional<double> rate_after_small_turn(double t) const {
@@ -220,7 +240,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
             }
         } else if (after < 0 && gap.value(end) <= 0) {
             const double from = before > 0 ? bisect_root(now.begin, end, rate).high : now.begin;
-            return bisect_root(from, end, value).high;
+            return bisect_root(from, end, value, gap.root_about(from)).high;
         }
         const Curvature::Interval next = curvature.after(now);
         // The body spins so fast that an interval, or half a convex one, is below an ulp of time.

@@ -131,16 +131,15 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     w[0] = centre.omega;
     angle[0] = path[0] = time[0] = work[0] = 0.0;
 
-    const auto step = [&](auto number) __attribute__((always_inline)) {
-        constexpr int k = decltype(number)::value;
+    for (int k = 0; k <= long_order; ++k) {
         const Quad curves = inner(curve, by_curve, k);
         const Quad levers = inner(lever, by_lever, k);
         const Quad forces = inner(force, by_force, k);
         const Quad clocked = inner(clocks, by_clock, k);
         const Quad squares = self_product(squared, k, 1);
         // The coefficient k of a product from its inner terms and the last coefficients of both.
-        const auto product = [](const Quad& known, const Factors& first, const Factors& second,
-                                int lane, double first_k, double second_k) {
+        const auto product = [k](const Quad& known, const Factors& first, const Factors& second,
+                                 int lane, double first_k, double second_k) {
             const double ends =
                 k == 0 ? first_k * second_k : first[0][lane] * second_k + first_k * second[0][lane];
             return known[lane] + ends;
@@ -182,7 +181,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
         }
         x_dot[k] = k == 0 ? centre.x_dot : impulse + body.gravity.along * time[k];
         slip[k] = k == 0 ? centre.slip : x_dot[k] - rolled[k];
-        if (k == long_order) return;
+        if (k == long_order) break;
 
         const double over = over_next[k];
         const double p_rate = product(curves, curve, by_curve, 1, q, spread) * over;
@@ -209,8 +208,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
         work[k + 1] = -power * over;
         path[k + 1] = path_rate * over;
         time[k + 1] = slowed ? rate * over : k == 0 ? 1.0 : 0.0;
-    };
-    for_each_order(step);
+    }
     return slide;
 }
 

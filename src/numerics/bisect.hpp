@@ -74,9 +74,22 @@ class RootBracket {
     int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none yet
 };
 
+// With a guess of the root and of the slope there, two places about it are evaluated first.
+struct RootGuess {
+    double root;
+    double slope;
+};
+
 template <class Function>
-Bracket bisect_root(double low, double high, const Function& f) {
+Bracket bisect_root(double low, double high, const Function& f,
+                    const std::optional<RootGuess>& guess = {}) {
     RootBracket bracket(low, high, f(low), f(high));
+    double next = guess ? guess->root : low;
+    for (int i = 0; i < 2 && bracket.ends().low < next && next < bracket.ends().high; ++i) {
+        const double f_next = f(next);
+        bracket.take(next, f_next);
+        next -= 2 * f_next / guess->slope;
+    }
     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
     return bracket.ends();
 }

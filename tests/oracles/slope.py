@@ -1,4 +1,7 @@
-"""Rolling on a slope by power series of the equation of motion, in long doubles."""
+"""Rolling on a slope by power series of the equation of motion, in long doubles.
+
+Angles of many radians have too few digits there for a body thinner than about a hundredth.
+"""
 
 from typing import Any
 
@@ -55,7 +58,7 @@ def rolled_by_series(
                 w[k + 1], u[k + 1] = turning[k] / (k + 1), 2 * product(p, w, k) / (k + 1)
                 p[k + 1], q[k + 1] = product(q, w, k) / (k + 1), -4 * product(p, w, k) / (k + 1)
         path = np.stack([product(h, w, k) for k in range(ORDER + 1)])
-        ends = np.maximum(np.abs(w[-1]) / np.abs(w).max(axis=0), np.abs(path[-1] / path[0]) + 1e-99)
+        ends = np.maximum(np.abs(w[-1] / w[0]), np.abs(path[-1] / path[0]))
         step = np.minimum(left[moving], (np.longdouble(1e-20) / ends) ** (1 / ORDER))
         powers = step ** np.arange(ORDER + 1)[:, None]
         over = step / np.arange(1, ORDER + 2)[:, None]

@@ -49,7 +49,7 @@ class Settings(FieldsOnly):
 
 def settings(*given: Any) -> Settings:
     """Return Settings of values in the order of the fields; equal values are checked once."""
-    for known, made in (_BY_DEFAULT, _last[0]):
+    for known, made in (_last[0], _BY_DEFAULT):
         if all(map(is_, given, known)):
             return made
     plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
