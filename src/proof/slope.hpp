@@ -33,7 +33,6 @@ class LawWatch {
     LawMeetings met() const;
 
   private:
-    struct Forces;
     struct Law;
 
     // A stretch of time on which the margin is within rounding of 0.

@@ -25,17 +25,16 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The friction that N allows and the friction F, polynomials of the share 0 <= x <= 1 of a piece.
-// Infinite friction leaves the law N > 0.
-struct LawWatch::Forces {
-    std::array<double, law_degree + 1> allowed;
-    std::array<double, law_degree + 1> needed;
+// The margin of the law for friction to one side, a polynomial of the share 0 <= x <= 1 of a piece.
+struct LawWatch::Law {
+    double side;
     double size;  // sum of the sizes of the terms of the law
+    std::array<double, law_degree + 1> coefficients;
 
-    Forces(const SlopeBody& body, const SlopePiece& piece, double friction)
-        : size(law_size({body.gravity.into, body.gravity.along}, friction)) {
-        const double by_normal = std::isinf(friction) ? 1.0 : friction;
-        const double by_friction = std::isinf(friction) ? 0.0 : 1.0;
+    Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
+        : side(to_side), size(law_size({body.gravity.into, body.gravity.along}, friction)) {
+        const double normal = std::isinf(friction) ? 1.0 : friction;
+        const double needed = std::isinf(friction) ? 0.0 : 1.0;
         const double z = piece.lasts / piece.unit;
         double power = 1 / square(piece.unit);
         for (int k = 0; k <= law_degree; ++k) {
@@ -46,35 +45,9 @@ struct LawWatch::Forces {
                 n += body.gravity.into;
                 f -= body.gravity.along;
             }
-            allowed[k] = by_normal * n;
-            needed[k] = by_friction * f;
-            size += std::abs(allowed[k]) + std::abs(needed[k]);
+            coefficients[k] = normal * n - side * needed * f;
+            size += std::abs(normal * n) + std::abs(needed * f);
             power *= z;
-        }
-    }
-
-    // Whether the law holds to both sides, seen by the sizes of its terms.
-    bool hold() const {
-        double others = std::abs(needed[0]);
-        double ends = 0.0;
-        for (int k = 1; k <= law_degree; ++k) {
-            ends = std::abs(allowed[k]) + std::abs(needed[k]);
-            others += ends;
-        }
-        ends += std::abs(allowed[law_degree - 1]) + std::abs(needed[law_degree - 1]);
-        return allowed[0] - others > rounding * size && ends <= rounding * size;
-    }
-};
-
-// The margin of the law for friction to one side, a polynomial of the share of a piece.
-struct LawWatch::Law {
-    double side;
-    double size;  // sum of the sizes of the terms of the law
-    std::array<double, law_degree + 1> coefficients;
-
-    Law(const Forces& forces, double to_side) : side(to_side), size(forces.size) {
-        for (int k = 0; k <= law_degree; ++k) {
-            coefficients[k] = forces.allowed[k] - side * forces.needed[k];
         }
     }
 
@@ -172,17 +145,14 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
 
 bool LawWatch::examine(const SlopePiece& piece) {
     if (std::isinf(piece.lasts)) return false;
-    const Forces forces(flow_.body, piece, friction_);
-    if (near_[0].open || near_[1].open || !forces.hold()) {
-        const int count = std::isinf(friction_) ? 1 : 2;
-        std::optional<Law> laws[2];
-        for (int i = 0; i < count; ++i) {
-            laws[i].emplace(forces, i == 0 ? 1.0 : -1.0);
-            if (!laws[i]->is_resolved()) return examine_parts(piece);
-        }
-        for (int i = 0; i < count; ++i) {
-            if (near_[i].open || !laws[i]->is_positive()) examine(piece, *laws[i], near_[i]);
-        }
+    const int count = std::isinf(friction_) ? 1 : 2;  // infinite friction leaves the law N > 0
+    std::optional<Law> laws[2];
+    for (int i = 0; i < count; ++i) {
+        laws[i].emplace(flow_.body, piece, friction_, i == 0 ? 1.0 : -1.0);
+        if (!laws[i]->is_resolved()) return examine_parts(piece);
+    }
+    for (int i = 0; i < count; ++i) {
+        if (near_[i].open || !laws[i]->is_positive()) examine(piece, *laws[i], near_[i]);
     }
     at_start_ = false;
     return met_.broken.has_value();

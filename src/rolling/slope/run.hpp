@@ -140,7 +140,7 @@ class RunReader {
     std::size_t part_;     // the part whose polynomials are kept
     PartPolynomial time_;  // derivatives of time and path by the place
     PartPolynomial path_;
-    std::array<double, 7> about_place_;  // the place by the share of the part's time, about
+    std::array<double, 5> about_place_;  // the place by the share of the part's time, about
 };
 
 }  // namespace rolling_ellipse

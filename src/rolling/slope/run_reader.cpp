@@ -20,29 +20,13 @@ ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) 
     return found;
 }
 
-// The place in a part by the share of its time: the polynomial of degree 5 with the values and two
-// derivatives of the inverse function at both ends.
-std::array<double, 7> inverse_about(const PartPolynomial& time) {
-    double rate[2]{};
-    double rise[2]{};
-    for (int k = 0; k < part_order; ++k) {
-        const double term = time.value[k];
-        rate[0] += k % 2 == 0 ? term : -term;
-        rate[1] += term;
-        rise[0] += k % 2 == 0 ? -k * term : k * term;
-        rise[1] += k * term;
-    }
+// The place in a part by the share of its time: the cubic with the values and slopes of the inverse
+// function at both ends.
+std::array<double, 5> inverse_about(const PartPolynomial& time) {
     const double lasts = value(time.integral, 1.0);
-    const double d0 = lasts / rate[0];
-    const double d1 = lasts / rate[1];
-    const double c0 = -0.5 * rise[0] * d0 * d0 / rate[0];
-    const double c1 = -0.5 * rise[1] * d1 * d1 / rate[1];
-    return {-1.0,
-            d0,
-            c0,
-            20 - 6 * d0 - 4 * d1 - 3 * c0 + c1,
-            -30 + 8 * d0 + 7 * d1 + 3 * c0 - 2 * c1,
-            12 - 3 * (d0 + d1) - c0 + c1};
+    const double first = lasts / value(time.value, -1.0);
+    const double last = lasts / value(time.value, 1.0);
+    return {-1.0, first, 6 - 2 * first - last, -4 + first + last, 0.0};
 }
 
 // The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
