@@ -15,8 +15,8 @@ namespace {
 // 3e5 of them.
 constexpr double largest_ratio = 0.9999;
 
-// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels: the
-// terms are powers of -4 x^2 over factorials of odd and even numbers.
+// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, by their power series in 4 x^2, in which
+// nothing cancels.
 struct BeyondSmall {
     double sine;
     double square;

@@ -331,8 +331,8 @@ class Trajectory(FieldsOnly):
         times = np.atleast_1d(array("t", t))
         if times.ndim != 1:
             raise ValueError(f"t must be a time or a 1-D array of times, got shape {times.shape}")
-        outside = times[~((times >= 0) & (times <= self.t_end))]
-        if outside.size:
+        if times.size and not (times.min() >= 0 and times.max() <= self.t_end):
+            outside = times[~((times >= 0) & (times <= self.t_end))]
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
         solution = self._solution
         found = self.__getstate__() | sampled(solution, times)

@@ -182,9 +182,8 @@ def _require_consistent(trajectory: Trajectory) -> None:
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
-    solve(
-        trajectory.scene, asked, np.zeros(1), trajectory.start
-    )  # raises if the core cannot solve it
+    # The core refuses what it cannot solve.
+    solve(trajectory.scene, asked, np.zeros(1), trajectory.start)
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:
