@@ -255,12 +255,15 @@ void append(LawMeetings& all, const LawMeetings& later) {
 }
 
 // The meetings in the first half turn of a run in which the law is broken; it is broken in all
-// later ones, too. The search takes growing steps from a guess, then halves. A run that is known up
-// to some time only, in its first half turn, is followed that far.
-LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction) {
+// later ones, too. The search takes growing steps from a guess, then halves. A run is followed up
+// to a time since its begin at least.
+LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
-    const double most = run.half_turns - 1;
-    if (met.broken || !run.is_complete() || most < 1) return met;
+    const double all = run.half_turns - 1;
+    if (met.broken || run.known > until || all < 1) return met;
+    double most = until < infinity ? std::clamp(about(run, until), 1.0, all) : all;
+    RunTimes times(run);
+    while (most < all && double(times(most + 1)) <= until) most = std::min(2 * most, all);
     LawMeetings later{};
     double holds = 0.0;
     double broken = most + 1;
@@ -301,7 +304,7 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     if (flow.pieces.empty()) grow(flow);
     LawMeetings all{};
-    if (flow.climb) append(all, law_in_run(flow, *flow.climb, friction));
+    if (flow.climb) append(all, law_in_run(flow, *flow.climb, friction, infinity));
     if (all.broken) return all;
     LawWatch watch(flow, friction);
     const double last = until / flow.body.time;
@@ -314,8 +317,9 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     append(all, watch.met());
     if (all.broken || !flow.run || double(flow.run->from.time) > last) return all;
-    extend(*flow.run, last - double(flow.run->from.time));
-    append(all, law_in_run(flow, *flow.run, friction));
+    const double since = last - double(flow.run->from.time);
+    extend(*flow.run, since);
+    append(all, law_in_run(flow, *flow.run, friction, since));
     return all;
 }
 
