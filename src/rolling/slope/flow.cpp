@@ -178,8 +178,8 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 bool grow(SlopeFlow& flow) {
     if (flow.kind != MotionKind::rotation || flow.run || climbs_for_ever(flow)) return false;
     const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
+    const Geometry here = geometry(flow.body, from);
     if (from.omega > 0) {
-        const Geometry here = geometry(flow.body, from);
         const Tracked w = energy_at(flow.body, flow.energy, from, here);
         const double at_least = w.value - 8 * epsilon * w.magnitude;
         if (may_run(flow.body, at_least, here, from.omega) > 0) {
@@ -189,7 +189,7 @@ bool grow(SlopeFlow& flow) {
     }
     constexpr std::size_t usual_pieces = 16;
     if (flow.pieces.empty()) flow.pieces.reserve(usual_pieces);
-    flow.pieces.push_back(piece_from(flow.body, from));
+    flow.pieces.push_back(piece_from(flow.body, from, here));
     const DoubleDouble turning = time_of_turning(flow.pieces.back());
     if (turning.high < infinity) flow.turnings.push_back(turning);
     if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;

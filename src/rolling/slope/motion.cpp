@@ -181,20 +181,14 @@ Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopeP
            tracked(body.gravity.into) * fall(body, energy.at, here);
 }
 
-SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
-    const double s = std::sin(double(from.angle));
-    const double c = std::cos(double(from.angle));
-    SlopePiece piece{};
-    piece.from = from;
-    piece.unit = 1 / std::max(std::abs(from.omega), body.slowest);
-    const double unit2 = square(piece.unit);
+SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from, const Geometry& at) {
+    const double unit = 1 / std::max(std::abs(from.omega), body.slowest);
+    const double unit2 = square(unit);
     const GroundGravity gravity{body.gravity.into * unit2, body.gravity.along * unit2};
-    const bool tip = is_odd(from.quarters);
-    const double sin = tip ? c : s;
-    const double cos = tip ? -s : c;
-    const double drive = unit2 * gravity_drive(body, from, sin, cos);
-    piece.series = slope_series(body, gravity, sin, cos, from.omega * piece.unit, drive);
-    piece.lasts = piece.unit * reach({&piece.series.omega, &piece.series.path});
+    const double drive = unit2 * gravity_drive(body, from, at.sin, at.cos);
+    SlopePiece piece{from, unit, 0.0,
+                     slope_series(body, gravity, at.sin, at.cos, from.omega * unit, drive)};
+    piece.lasts = unit * reach({&piece.series.omega, &piece.series.path});
     return piece;
 }
 

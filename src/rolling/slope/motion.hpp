@@ -98,7 +98,10 @@ struct SlopePiece {
     double end() const { return double(from.time + lasts); }
 };
 
-SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from);
+SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from, const Geometry& at);
+inline SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
+    return piece_from(body, from, geometry(body, from));
+}
 
 // The place at a time since the begin of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
