@@ -311,7 +311,7 @@ def test_the_flow_on_a_slope(omega: float) -> None:
 def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
     """Bodies that run down or climb: round, thin or tall, on gentle or steep slopes."""
     ratio = np.where(
-        rng.random(n) < 0.5, 10 ** rng.uniform(-1.5, 0, n), 1 - 10 ** rng.uniform(-9, -1, n)
+        rng.random(n) < 0.5, 10 ** rng.uniform(-3, 0, n), 1 - 10 ** rng.uniform(-9, -1, n)
     )
     a, b = rng.permuted([np.ones(n), ratio], axis=0)
     slope = np.where(rng.random(n) < 0.5, 10 ** rng.uniform(-5, 0, n), rng.uniform(0.3, 1.49, n))
