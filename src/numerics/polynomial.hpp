@@ -32,6 +32,7 @@ inline Tracked operator*(Tracked x, Tracked y) {
     return {x.value * y.value, x.magnitude * y.magnitude};
 }
 
+// Two numbers in one register where the processor has one.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };

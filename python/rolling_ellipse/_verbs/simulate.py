@@ -157,8 +157,6 @@ def simulate(
 
 def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
     """Warn if the validity was lost; raise, if asked to, for an integration that stopped early."""
-    if trajectory.status is COMPLETED:
-        return
     if trajectory.status is Status.VALIDITY_LOST:
         warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
     elif not trajectory.success and raise_on_failure:
