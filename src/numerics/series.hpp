@@ -46,13 +46,14 @@ template <class Coefficients>
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// The value of a series at z. Two independent sums halve the time of the chain of operations.
-template <std::size_t Size>
-double value(const std::array<double, Size>& series, double z) {
+// The value of a series at z, or its values in several lanes. Two independent sums halve the time of
+// the chain of operations.
+template <std::size_t Size, class Number>
+[[gnu::always_inline]] inline Number value(const std::array<double, Size>& series, Number z) {
     static_assert(Size % 2 == 1 && Size > 2);
-    const double z2 = z * z;
-    double even = series[Size - 1];
-    double odd = series[Size - 2];
+    const Number z2 = z * z;
+    Number even = series[Size - 1] - Number{};
+    Number odd = series[Size - 2] - Number{};
     for (int k = int(Size) - 3; k > 0; k -= 2) {
         even = even * z2 + series[k];
         odd = odd * z2 + series[k - 1];

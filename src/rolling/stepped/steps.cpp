@@ -1,10 +1,14 @@
 #include "rolling/stepped/steps.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "numerics/series.hpp"
+#include "numerics/wide.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -30,6 +34,15 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
+// The values of a series at four places after another one.
+ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double from, const double* places,
+                                      double* values) {
+    Quad z;
+    std::memcpy(&z, places, sizeof z);
+    z = value(series, z - from);
+    std::memcpy(values, &z, sizeof z);
+}
+
 // The path of the centre at many angles, each mostly close to the one before: Taylor series of the
 // integral of h, physics (9), each about the middle of an interval. A body that rolls over meets
 // the same intervals in each half turn, so that they are kept.
@@ -44,8 +57,22 @@ class PathSeries {
     double operator()(double theta) {
         const double angle = std::abs(theta);
         if (!here_.holds(angle)) move_to(angle);
-        const double path = value(here_.path, angle - here_.middle);
-        return theta < 0 ? -path : path;
+        return std::copysign(value(here_.path, angle - here_.middle), theta);
+    }
+
+    // The same at n angles of at least 0, side by side where four of them share an interval.
+    void operator()(const double* angles, std::size_t n, double* paths) {
+        for (std::size_t i = 0; i < n;) {
+            if (!here_.holds(angles[i])) move_to(angles[i]);
+            const auto is_here = [this](double angle) { return here_.holds(angle); };
+            if (n - i >= 4 && std::all_of(angles + i + 1, angles + i + 4, is_here)) {
+                four_values(here_.path, here_.middle, angles + i, paths + i);
+                i += 4;
+            } else {
+                paths[i] = value(here_.path, angles[i] - here_.middle);
+                ++i;
+            }
+        }
     }
 
   private:
@@ -122,20 +149,46 @@ class PathSeries {
     std::vector<Interval> known_;
 };
 
-// The state at places of a motion. All places of a step share what is computed at its knot.
+// States at places of a motion. The places of a step share what is computed at its knot. x needs the
+// path of the centre; places wait for one another, so that paths are computed side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
 
-    FlowSample operator()(const Knot<2>& knot, const Vector<2>& change) {
+    void take(const Knot<2>& knot, const Vector<2>& change, FlowSample& sample) {
         if (&knot != knot_) move_to(knot);
         const double rest = knot.y[0] + (knot.carry[0] + change[0]);
-        const double path = change[0] == 0 ? centre_path(motion_.axes, rest) : path_(rest);
-        return {double(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
-                double(motion_.x_base + (path_before_ + path))};
+        sample.theta = double(theta_ + change[0]);
+        sample.omega = knot.y[1] + (knot.carry[1] + change[1]);
+        if (change[0] == 0) {
+            sample.x = x_at(path_before_, centre_path(motion_.axes, rest));
+            return;
+        }
+        angles_[waiting_] = std::abs(rest);
+        places_[waiting_] = {&sample, path_before_, rest};
+        if (++waiting_ == places_.size()) finish();
+    }
+
+    // Computes x of the samples that wait.
+    void finish() {
+        std::array<double, most_waiting> paths;
+        path_(angles_.data(), waiting_, paths.data());
+        for (std::size_t i = 0; i < waiting_; ++i) {
+            const auto& [sample, before, rest] = places_[i];
+            sample->x = x_at(before, std::copysign(paths[i], rest));
+        }
+        waiting_ = 0;
     }
 
   private:
+    static constexpr std::size_t most_waiting = 16;
+
+    struct Place {
+        FlowSample* sample;
+        double path_before;
+        double rest;  // angle beyond the half turns
+    };
+
     void move_to(const Knot<2>& knot) {
         knot_ = &knot;
         theta_ =
@@ -143,11 +196,18 @@ class StepView {
         path_before_ = knot.periods * motion_.half_turn_path;
     }
 
+    double x_at(double path_before, double path) const {
+        return double(motion_.x_base + (path_before + path));
+    }
+
     const SteppedRolling& motion_;
     PathSeries path_;
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
     double path_before_ = 0.0;  // path of the half turns before the knot
+    std::array<double, most_waiting> angles_;
+    std::array<Place, most_waiting> places_;
+    std::size_t waiting_ = 0;
 };
 
 // The motion before its first step.
@@ -194,8 +254,9 @@ void sample(const SteppedRolling& motion, const double* times, std::size_t n, Fl
         StepView view(motion);
         sample_steps(integrator, motion.steps, times, n,
                      [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-                         samples[i] = view(knot, change);
+                         view.take(knot, change, samples[i]);
                      });
+        view.finish();
     });
 }
 
