@@ -95,18 +95,22 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double fou
     add_between(found, high);
 }
 
-// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N.
+// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N. Where N < 0
+// its squared form vanishes at F = mu N, too, but the law does not.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {
+    constexpr double clearly_negative = 1e-3;  // share of the weight, many times its rounding
     const auto place_at = [&](double x) { return quarter.place(rolling_forces(quarter.range, x)); };
     const std::vector<double> roots = roots_on_unit_interval(law);
     std::vector<double> places;
     for (const double x : roots_on_unit_interval(contact)) places.push_back(place_at(x));
     for (std::size_t i = 0; i < roots.size(); ++i) {
+        const RollingForces forces = rolling_forces(quarter.range, roots[i]);
+        if (forces.normal < -clearly_negative) continue;
         const double from = i == 0 ? 0.0 : 0.5 * (roots[i - 1] + roots[i]);
         const double to = i + 1 == roots.size() ? 1.0 : 0.5 * (roots[i] + roots[i + 1]);
-        add_refined(places, quarter, place_at(roots[i]), place_at(from), place_at(to));
+        add_refined(places, quarter, quarter.place(forces), place_at(from), place_at(to));
     }
     std::sort(places.begin(), places.end());
     return places;
