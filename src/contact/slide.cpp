@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "numerics/bisect.hpp"
@@ -36,38 +37,41 @@ bool is_finite(const SlidePoint& point) {
                        [](const DoubleDouble& each) { return std::isfinite(double(each)); });
 }
 
-// coefficient * power, but 0 for a coefficient 0: powers of the reach of a circle are infinite.
-double times_power(double coefficient, double power) {
-    return coefficient == 0 ? 0.0 : coefficient * power;
+// Powers of the reach of a piece; finite, since a circle's reach may be huge where its coefficients
+// are 0.
+LongSeries powers_of(double reach) {
+    LongSeries powers{1.0};
+    for (int k = 0; k < long_order; ++k) {
+        powers[k + 1] = std::min(powers[k] * reach, std::numeric_limits<double>::max());
+    }
+    return powers;
 }
 
 // The first share of the reach at which a series that must stay positive is provably negative; each
 // coefficient(k) comes with the magnitude of the terms it was made from.
 template <class Coefficient>
-std::optional<double> first_end(double reach, const Coefficient& coefficient) {
-    double others = 0.0;
-    double power = reach;
-    for (int k = 1; k <= long_order; ++k) {
-        others += times_power(coefficient(k).magnitude, power);
-        power *= reach;
-    }
-    if (coefficient(0).value > others) return std::nullopt;
-    Polynomial<long_order> margin;
-    power = 1.0;
+std::optional<double> first_end(const LongSeries& powers, const Coefficient& coefficient) {
+    Polynomial<long_order> shares;
+    Tracked least;  // a bound of the series from below
     for (int k = 0; k <= long_order; ++k) {
         const auto [value, magnitude] = coefficient(k);
-        margin.coefficients[k] = {times_power(value, power), times_power(magnitude, power)};
-        power *= reach;
+        const Tracked term{value * powers[k], magnitude * powers[k]};
+        shares.coefficients[k] = term;
+        least.value += k == 0 ? term.value : -std::abs(term.value);
+        least.magnitude += term.magnitude;
     }
-    return first_negative(bernstein(margin));
+    if (sign(least) == Sign::positive) return std::nullopt;
+    return first_negative(bernstein(shares));
 }
 
 // The geometry at an angle that has more digits than a double.
 Geometry geometry(const Axes& axes, const DoubleDouble& angle) {
     const double sin = std::sin(angle.high);
     const double cos = std::cos(angle.high);
-    const double rest_sin = std::sin(angle.low);  // angle.low reaches 1 after 1e16 radians
-    const double rest_cos = std::cos(angle.low);
+    constexpr double small = 0x1p-27;  // the sine of a smaller angle is the angle, the cosine 1
+    const bool is_small = std::abs(angle.low) < small;  // it reaches 1 after 1e16 radians
+    const double rest_sin = is_small ? angle.low : std::sin(angle.low);
+    const double rest_cos = is_small ? 1.0 : std::cos(angle.low);
     return geometry(axes, sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin);
 }
 
@@ -94,20 +98,22 @@ ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
 class SlideIntegration {
   public:
     SlideIntegration(Slide& slide, const SlideBounds& bounds)
-        : slide_(slide), last_(slide.last), bounds_(bounds) {
-        const double b = response(slide.body, geometry_here(), last_.omega.high).b;
+        : slide_(slide),
+          last_(slide.last),
+          bounds_(bounds),
+          at_(geometry(slide.body.axes, slide.last.angle)) {
+        const double b = response(slide.body, at_, last_.omega.high).b;
         if (slide.body.may_jam() && b < small_response) clock_ = SlideClock::slowed;
     }
 
     // Adds a piece. Returns the reason if the slide stops there.
     std::optional<SlideStop> step() {
         const SlidePoint& from = last_;
-        const Geometry at = geometry_here();
-        const double unit = std::ldexp(1.0, -std::ilogb(rate(at)));
+        const double unit = std::ldexp(1.0, -std::ilogb(rate()));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
         SlideSeries series = slide_series(body,
-                                          {at.sin, at.cos, double(from.omega) * unit,
+                                          {at_.sin, at_.cos, double(from.omega) * unit,
                                            double(from.slip) * unit, double(from.x_dot) * unit},
                                           clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
@@ -135,13 +141,12 @@ class SlideIntegration {
         worked_ += std::abs(work);
         next.slip = next.slip + value(series.slip, reach_) / unit;
         last_ = next;
+        at_ = geometry(slide_.body.axes, last_.angle);
         keep_energy();
         return end_ ? end() : std::nullopt;
     }
 
   private:
-    Geometry geometry_here() const { return geometry(slide_.body.axes, last_.angle); }
-
     // Takes omega from the energy where the body creeps over the tip. The series carry the
     // roundings of the fast motion before; the energy, counted from the tip, has smaller ones,
     // unless friction has done much work: its roundings are in the energy.
@@ -149,27 +154,26 @@ class SlideIntegration {
         constexpr double slow = 0.02;       // kinetic energy below this share of its maximum
         constexpr double near = 10;         // g times height under the tip over kinetic energy
         constexpr double rounding = 1e-12;  // a larger relative change of omega is no rounding
-        const Geometry at = geometry_here();
-        const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at);
+        const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
         most_kinetic_ = std::max(most_kinetic_, kinetic);
         if (!(kinetic < slow * most_kinetic_ && fallen < near * kinetic)) return;
         if (square(worked_) > 4 * kinetic * most_kinetic_) return;
-        const double inertia = slide_.body.gyration2 + square(at.dh);
+        const double inertia = slide_.body.gyration2 + square(at_.dh);
         const double omega = std::copysign(std::sqrt(2 * kinetic / inertia), last_.omega.high);
         const double change = (omega - last_.omega.high) - last_.omega.low;
         if (!(std::abs(change) < rounding * std::abs(omega))) return;
         last_.omega = {omega, 0.0};
-        last_.slip = last_.slip + -at.h * change;
+        last_.slip = last_.slip + -at_.h * change;
     }
 
     // 1 + the rate of turning + the rate at which the force changes B, where that is large. In
     // units of this rate no power overflows.
-    double rate(const Geometry& at) const {
+    double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
-        const auto [c, b] = response(slide_.body, at, omega);
-        double by_force = slowed_response_rate(slide_.body, at, c);
+        const auto [c, b] = response(slide_.body, at_, omega);
+        double by_force = slowed_response_rate(slide_.body, at_, c);
         if (clock_ == SlideClock::time) by_force /= b;
         return 1 + std::abs(omega) + (by_force > stiff && by_force < infinity ? by_force : 0.0);
     }
@@ -179,11 +183,13 @@ class SlideIntegration {
     // Shortens the reach to the first place where slip, pressure or B vanishes or a bound lies.
     void find_end(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
+        LongSeries powers = powers_of(reach_);
         const auto search = [&](End what, const auto& coefficient) {
-            const auto share = first_end(reach_, coefficient);
+            const auto share = first_end(powers, coefficient);
             if (!share) return;
             end_ = what;
             reach_ *= *share;
+            powers = powers_of(reach_);
         };
         const auto search_response = [&](End what, double sign, double least) {
             const double least_v = least * body.gyration2;
@@ -256,7 +262,7 @@ class SlideIntegration {
         const double omega = double(last_.omega);
         const double gravity = slide_.body.gravity.into;
         return free_acceleration(tip, gravity, omega) < 0 && !is_weightless(tip, gravity, omega) &&
-               geometry_here().dh * omega > 0;
+               at_.dh * omega > 0;
     }
 
     // The end of a slide at B = 0: in a moment, N = c/B stops the slip or jams the body.
@@ -279,6 +285,7 @@ class SlideIntegration {
     Slide& slide_;
     SlidePoint& last_;
     const SlideBounds& bounds_;
+    Geometry at_;  // geometry at the last point
     double most_kinetic_ = 0.0;
     double worked_ = 0.0;  // sum of the sizes of the work of friction [energy per mass]
     SlideClock clock_ = SlideClock::time;
