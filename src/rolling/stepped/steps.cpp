@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
@@ -34,13 +33,13 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
-// The values of a series at four places after another one.
-ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double from, const double* places,
+// The values of a series about `middle` at four angles, for negative ones the negative values.
+ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const double* angles,
                                       double* values) {
     Quad z;
-    std::memcpy(&z, places, sizeof z);
-    z = value(series, z - from);
-    std::memcpy(values, &z, sizeof z);
+    for (int i = 0; i < 4; ++i) z[i] = std::abs(angles[i]) - middle;
+    z = value(series, z);
+    for (int i = 0; i < 4; ++i) values[i] = std::copysign(z[i], angles[i]);
 }
 
 // The path of the centre at many angles, each mostly close to the one before: Taylor series of the
@@ -60,16 +59,15 @@ class PathSeries {
         return std::copysign(value(here_.path, angle - here_.middle), theta);
     }
 
-    // The same at n angles of at least 0, side by side where four of them share an interval.
-    void operator()(const double* angles, std::size_t n, double* paths) {
+    // The same at n angles, side by side where four of them share an interval.
+    void operator()(const double* thetas, std::size_t n, double* paths) {
+        const auto is_here = [this](double theta) { return here_.holds(std::abs(theta)); };
         for (std::size_t i = 0; i < n;) {
-            if (!here_.holds(angles[i])) move_to(angles[i]);
-            const auto is_here = [this](double angle) { return here_.holds(angle); };
-            if (n - i >= 4 && std::all_of(angles + i + 1, angles + i + 4, is_here)) {
-                four_values(here_.path, here_.middle, angles + i, paths + i);
+            if (n - i >= 4 && std::all_of(thetas + i, thetas + i + 4, is_here)) {
+                four_values(here_.path, here_.middle, thetas + i, paths + i);
                 i += 4;
             } else {
-                paths[i] = value(here_.path, angles[i] - here_.middle);
+                paths[i] = (*this)(thetas[i]);
                 ++i;
             }
         }
@@ -149,8 +147,8 @@ class PathSeries {
     std::vector<Interval> known_;
 };
 
-// States at places of a motion. The places of a step share what is computed at its knot. x needs the
-// path of the centre; places wait for one another, so that paths are computed side by side.
+// States at places of a motion. The places of a step share what is computed at its knot. x waits for
+// those of the next places, so that their paths are computed side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -161,33 +159,28 @@ class StepView {
         sample.theta = double(theta_ + change[0]);
         sample.omega = knot.y[1] + (knot.carry[1] + change[1]);
         if (change[0] == 0) {
-            sample.x = x_at(path_before_, centre_path(motion_.axes, rest));
+            sample.x = double(motion_.x_base + (path_before_ + centre_path(motion_.axes, rest)));
             return;
         }
-        angles_[waiting_] = std::abs(rest);
-        places_[waiting_] = {&sample, path_before_, rest};
-        if (++waiting_ == places_.size()) finish();
+        sample.x = path_before_;
+        samples_[waiting_] = &sample;
+        angles_[waiting_] = rest;
+        if (++waiting_ == angles_.size()) finish();
     }
 
-    // Computes x of the samples that wait.
+    // Completes x of the samples that wait.
     void finish() {
         std::array<double, most_waiting> paths;
         path_(angles_.data(), waiting_, paths.data());
         for (std::size_t i = 0; i < waiting_; ++i) {
-            const auto& [sample, before, rest] = places_[i];
-            sample->x = x_at(before, std::copysign(paths[i], rest));
+            double& x = samples_[i]->x;
+            x = double(motion_.x_base + (x + paths[i]));
         }
         waiting_ = 0;
     }
 
   private:
     static constexpr std::size_t most_waiting = 16;
-
-    struct Place {
-        FlowSample* sample;
-        double path_before;
-        double rest;  // angle beyond the half turns
-    };
 
     void move_to(const Knot<2>& knot) {
         knot_ = &knot;
@@ -196,17 +189,13 @@ class StepView {
         path_before_ = knot.periods * motion_.half_turn_path;
     }
 
-    double x_at(double path_before, double path) const {
-        return double(motion_.x_base + (path_before + path));
-    }
-
     const SteppedRolling& motion_;
     PathSeries path_;
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
     double path_before_ = 0.0;  // path of the half turns before the knot
-    std::array<double, most_waiting> angles_;
-    std::array<Place, most_waiting> places_;
+    std::array<double, most_waiting> angles_;  // beyond the half turns
+    std::array<FlowSample*, most_waiting> samples_;
     std::size_t waiting_ = 0;
 };
 
