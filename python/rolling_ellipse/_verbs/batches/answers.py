@@ -7,7 +7,7 @@ answer is a trajectory, or the exception of its scene. Arrays have the axes of t
 from __future__ import annotations
 
 import pickle
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -52,6 +52,7 @@ _TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 _HELD = {code for code, each in STATUSES.items() if each in AT_AN_END}
 _LOST = max(STATUSES) + 1  # the ending of a scene whose worker was lost
+_SENTENCES = {code: each.value for code, each in STATUSES.items()}
 _ENDINGS = {REFUSED: "REFUSED", **{k: each.name for k, each in STATUSES.items()}, _LOST: "LOST"}
 _UNITS = SCENE_UNITS | _core.FIELDS["Impulse"]
 
@@ -100,14 +101,9 @@ def answers(
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
     again when events are first asked for, as after pickling.
     """
-    times, letters_of_all = frozen(np.array(request.times)), tables["text"].tobytes()
-    at: defaultdict[str, int] = defaultdict(int)  # how much of each table is taken
-
-    def following(table: str, size: int) -> slice:
-        begin = at[table]
-        at[table] = begin + size
-        return slice(begin, begin + size)
-
+    times, text = frozen(np.array(request.times)), tables["text"].tobytes()
+    span, settings, table = float(times[-1]), request.settings, tables["events"]
+    taken, letters_taken, events_taken = dict.fromkeys(MODELS, 0), 0, 0
     found: list[Answer] = []
     known = columns("codes", tables) | columns("numbers", tables)
     code = {name: values.tolist() for name, values in known.items()}
@@ -115,22 +111,25 @@ def answers(
     of_each = zip(*(code[name] for name in names), strict=True)
     counts = zip(*(code[name] for name in _STATS), strict=True)
     for scene, each, count in zip(scenes, of_each, counts, strict=True):
-        ending, model, method, samples, events, letters, t_end, valid_until = each
-        message = letters_of_all[following("text", letters)].decode() if letters else ""
+        ending, model_code, method, samples, events, letters, t_end, valid_until = each
+        message = text[letters_taken : (letters_taken := letters_taken + letters)].decode()
         if ending == REFUSED:
             found.append(ValueError(message))
             continue
-        status, here = STATUSES[ending], following(MODELS[model], samples)
-        facts = {
-            "scene": scene, "model": MODELS[model], "method": METHODS[method], "status": status,
-            "message": message or status.value, "valid_until": valid_until, "t_end": t_end,
-            "span": float(request.times[-1]), "settings": request.settings, "start": None,
+        status, model = STATUSES[ending], MODELS[model_code]
+        here = slice(taken[model], taken[model] + samples)
+        taken[model] = here.stop
+        facts = _samples(model, tables, here, times)
+        facts |= {
+            "scene": scene, "model": model, "method": METHODS[method], "status": status,
+            "message": message or _SENTENCES[ending], "valid_until": valid_until, "t_end": t_end,
+            "span": span, "settings": settings, "start": None,
             "stats": dict(zip(_STATS, count, strict=True)), "kept_events": None,
         }  # fmt: skip
         if keep_events:
-            rows = tables["events"][following("events", events)].tolist()
+            rows = table[events_taken : (events_taken := events_taken + events)].tolist()
             facts["kept_events"] = made_events(scene, rows)
-        made = trusted(Trajectory, _samples(MODELS[model], tables, here, times) | facts)
+        made = trusted(Trajectory, facts)
         failed = request.raise_on_failure and status not in AT_AN_END
         found.append(IntegrationError(made) if failed else made)
     return found
