@@ -46,8 +46,8 @@ template <class Coefficients>
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// The value of a series at z, or its values in several lanes. Two independent sums halve the time of
-// the chain of operations.
+// The value of a series at z, or its values in several lanes. Two independent sums halve the time
+// of the chain of operations.
 template <std::size_t Size, class Number>
 [[gnu::always_inline]] inline Number value(const std::array<double, Size>& series, Number z) {
     static_assert(Size % 2 == 1 && Size > 2);

@@ -147,8 +147,8 @@ class PathSeries {
     std::vector<Interval> known_;
 };
 
-// States at places of a motion. The places of a step share what is computed at its knot. x waits for
-// those of the next places, so that their paths are computed side by side.
+// States at places of a motion. The places of a step share what is computed at its knot. x waits
+// for those of the next places, so that their paths are computed side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -193,7 +193,7 @@ class StepView {
     PathSeries path_;
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
-    double path_before_ = 0.0;  // path of the half turns before the knot
+    double path_before_ = 0.0;                 // path of the half turns before the knot
     std::array<double, most_waiting> angles_;  // beyond the half turns
     std::array<FlowSample*, most_waiting> samples_;
     std::size_t waiting_ = 0;
