@@ -95,8 +95,8 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double fou
     add_between(found, high);
 }
 
-// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N. Where N
-// < 0 its squared form vanishes at F = mu N, too, but the law does not.
+// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N. A zero
+// of the squared form at a negative N is none of the law.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {
