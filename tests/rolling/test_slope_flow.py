@@ -347,6 +347,7 @@ def test_the_flow_has_the_bits_of_single_times() -> None:
             "a": a, "b": b, "theta": rng.uniform(-3, 3), "slope": rng.uniform(-0.1, 0.1),
             "omega": rng.choice([rng.uniform(-6, 6), rng.uniform(-0.02, 0.02)]),
         }  # fmt: skip
-        times = np.concatenate([rng.uniform(-5, 40, 6), rng.uniform(-0.5, 1, 12)])
+        dense = np.linspace(0.0, rng.uniform(1, 3), 40)  # several in each part of a run
+        times = np.concatenate([rng.uniform(-5, 40, 6), rng.uniform(-0.5, 1, 12), dense])
         single = [rl.flow(t, **asked) for t in times.tolist()]
         assert np.array_equal(rl.flow(times, **asked), np.transpose(single))

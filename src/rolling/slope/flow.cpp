@@ -1,6 +1,7 @@
 #include "rolling/slope/flow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rolling_ellipse {
@@ -124,25 +125,34 @@ class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
 
-    SlopePlace operator()(double t) {
-        const double time = t / flow_.body.time;
+    // The place at a time that no sum has.
+    SlopePlace operator()(double time) {
         if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
         if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
-        if (is_short(flow_, time)) {
-            if (!begin_) begin_ = piece_from(flow_.body, flow_.start);
-            if (time < begin_->lasts) return place_in(*begin_, time);
-        }
-        if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
-            return read(climb_, *flow_.climb, time);
-        }
-        if (flow_.run && time > known_until(flow_)) return read(run_, *flow_.run, time);
+        if (begins(time)) return place_in(*begin_, time);
         return place_about_turning(flow_, {time, 0.0});
     }
 
+    // The reader of the sum that has a time; null if there is none.
+    RunReader* sum_at(double time) {
+        if (flow_.kind != MotionKind::rotation || begins(time)) return nullptr;
+        if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
+            return reader(climb_, *flow_.climb);
+        }
+        return flow_.run && time > known_until(flow_) ? reader(run_, *flow_.run) : nullptr;
+    }
+
   private:
-    static SlopePlace read(std::optional<RunReader>& reader, const SlopeRun& run, double time) {
-        if (!reader) reader.emplace(run);
-        return (*reader)({time, 0.0});
+    // Whether a series about the start serves a time where the motion begins with a sum.
+    bool begins(double time) {
+        if (!is_short(flow_, time)) return false;
+        if (!begin_) begin_ = piece_from(flow_.body, flow_.start);
+        return time < begin_->lasts;
+    }
+
+    static RunReader* reader(std::optional<RunReader>& known, const SlopeRun& run) {
+        if (!known) known.emplace(run);
+        return &*known;
     }
 
     const SlopeFlow& flow_;
@@ -217,12 +227,29 @@ FlowSample sample(const SlopeFlow& flow, double t) {
     return found;
 }
 
+// Times of one sum beside each other are read together.
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
-    SlopeReader place_at(flow);
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool starts = flow.kind == MotionKind::rest || times[i] == 0;
-        samples[i] = starts ? FlowSample{flow.theta, flow.omega, flow.x}
-                            : sample_of(flow, place_at(times[i]));
+    constexpr std::size_t most = 16;
+    std::array<double, most> since;
+    std::array<SlopePlace, most> places;
+    SlopeReader read(flow);
+    for (std::size_t i = 0; i < n;) {
+        if (flow.kind == MotionKind::rest || times[i] == 0) {
+            samples[i++] = {flow.theta, flow.omega, flow.x};
+            continue;
+        }
+        since[0] = times[i] / flow.body.time;
+        std::size_t count = 1;
+        if (RunReader* const sum = read.sum_at(since[0])) {
+            for (; count < most && i + count < n; ++count) {
+                since[count] = times[i + count] / flow.body.time;
+                if (read.sum_at(since[count]) != sum) break;
+            }
+            (*sum)(since.data(), count, places.data());
+        } else {
+            places[0] = read(since[0]);
+        }
+        for (std::size_t k = 0; k < count; ++k) samples[i++] = sample_of(flow, places[k]);
     }
 }
 

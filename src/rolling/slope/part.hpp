@@ -91,21 +91,20 @@ inline double integral(const PartArray& values) {
     return total;
 }
 
-// A place on a panel: its tangent from the centre and the derivative of that by v; 1/(1 + tan^2);
-// sine and cosine of its angle from a flat position, times sqrt(1 + tan^2) and perhaps -1 both.
-template <class T>
-struct PanelPlace {
-    T tan;
-    T tan_rate;
-    T over;
-    T sin;
-    T cos;
+// Places on a panel: their tangents from the centre and the derivatives of those by v; 1/(1 +
+// tan^2); sines and cosines of their angles from a flat position, times sqrt(1 + tan^2) and perhaps
+// -1 both.
+struct PanelPlaces {
+    Pack tan;
+    Pack tan_rate;
+    Pack over;
+    Pack sin;
+    Pack cos;
 };
 
-template <class T>
-[[gnu::always_inline]] inline PanelPlace<T> place_at(const RunPanel& panel, T v) {
+[[gnu::always_inline]] inline PanelPlaces places_at(const RunPanel& panel, Pack v) {
     const auto [sinh, falling] = hyperbolic(abs(v));
-    const T tan = copysign(panel.grade * sinh, v);
+    const Pack tan = copysign(panel.grade * sinh, v);
     return {tan, panel.grade * (sinh + falling), 1 / (1 + tan * tan), panel.sin + panel.cos * tan,
             panel.cos - panel.sin * tan};
 }

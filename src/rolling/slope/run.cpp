@@ -79,7 +79,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     PartArray fallen;
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&rule.places[i]);
-        const PanelPlace<Pack> at = place_at(panel, v);
+        const PanelPlaces at = places_at(panel, v);
         const Pack sin2 = at.sin * at.sin * at.over;
         const Pack h2 = body.short_axis2 + body.c2 * sin2;
         const Pack h = sqrt(h2);
@@ -244,7 +244,7 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
     PartForces found;
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&part_rule().places[i]);
-        const PanelPlace<Pack> at = place_at(panel, v);
+        const PanelPlaces at = places_at(panel, v);
         const Pack sin2 = at.sin * at.sin * at.over;
         const Pack cos2 = at.cos * at.cos * at.over;
         const Pack h2 = body.short_axis2 + body.c2 * sin2;

@@ -119,17 +119,31 @@ PartArray legendre_coefficients(const PartArray& at_nodes);
 // The place after n half turns of a complete run.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
 
+// A part in a half turn, to read places from.
+struct PartReading {
+    const RunPart* part;
+    double half_turns;    // half turns before
+    double lasts;         // time of the part
+    PartPolynomial time;  // derivatives of time and path by the place
+    PartPolynomial path;
+    std::array<double, 5> about_place;  // the place by the share of the part's time, about
+};
+
 // Reads places at times after `from`, which `extend` has reached. Integrals over the current half
-// turn are kept for the next times in it; the bits of an answer do not depend on earlier calls.
+// turn are kept for the next times in it; the bits of an answer depend neither on earlier calls nor
+// on the other times.
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);
-    SlopePlace operator()(DoubleDouble time);
+    void operator()(const double* times, std::size_t n, SlopePlace* places);
 
   private:
+    bool is_here(double time) const;
+    double since_begin(double time) const;
+    std::size_t part_at(double time, double& rest) const;
     void move_to(DoubleDouble since);
     void set_half_turn(double half_turns);
-    SlopePlace place_at(double rest);
+    void read_part(std::size_t part);
 
     const SlopeRun& run_;
     RunTimes run_times_;
@@ -137,10 +151,7 @@ class RunReader {
     DoubleDouble begin_;       // time from `from` to the begin of the current half turn
     double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
     std::vector<double> part_times_;
-    std::size_t part_;     // the part whose polynomials are kept
-    PartPolynomial time_;  // derivatives of time and path by the place
-    PartPolynomial path_;
-    std::array<double, 5> about_place_;  // the place by the share of the part's time, about
+    PartReading reading_{};
 };
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rolling/slope/part.hpp"
@@ -29,52 +30,111 @@ std::array<double, 5> inverse_about(const PartPolynomial& time) {
     return {-1.0, first, 6 - 2 * first - last, -4 + first + last, 0.0};
 }
 
-// The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
-double place_in_part(const PartPolynomial& of_time, double guess, double time) {
-    constexpr int most_tries = 60;
-    constexpr double converged = 1e-8;  // smaller steps are squared by Newton's method
-    double x = std::clamp(guess, -1.0, 1.0);
-    double low = -1.0;
-    double high = 1.0;
-    for (int i = 0; i < most_tries; ++i) {
-        const double rest = time - value(of_time.integral, x);
-        (rest > 0 ? low : high) = x;
-        double next = x + rest / value(of_time.value, x);
-        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-        const double moved = std::abs(next - x);
-        x = next;
-        if (moved < converged) break;
+// The places in a part, -1 ... 1, at times since its beginning, by Newton's method.
+[[gnu::always_inline]] inline Pack places_in_part(const PartPolynomial& of_time, Pack guess,
+                                                  Pack times) {
+    constexpr int most_steps = 8;       // four reach the rounding from the worst guess, 0.2 away
+    constexpr double converged = 1e-8;  // Newton's method squares smaller steps
+    Pack x = max(min(guess, pack(1.0)), pack(-1.0));
+    Mask<Pack> moving = x == x;
+    for (int i = 0; i < most_steps && any(moving); ++i) {
+        const Pack step = (times - value(of_time.integral, x)) / value(of_time.value, x);
+        x = moving ? x + step : x;
+        moving = moving & (abs(step) >= converged);
     }
     return x;
 }
 
 // As `fall` from the begin of a run.
-double fallen(const SlopeRun& run, const PanelPlace<double>& at, double h) {
-    const auto [sin, cos] = std::pair(run.at.sin, run.at.cos);
-    const double sin2 = square(at.sin) * at.over;
-    const double cos2 = square(at.cos) * at.over;
-    const double change = square(sin) + sin2 > 1.0 ? cos2 - square(cos) : square(sin) - sin2;
+[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, Pack sin2, Pack cos2, Pack h) {
+    const double sin2_from = square(run.at.sin);
+    const Pack change = sin2_from + sin2 > 1.0 ? cos2 - square(run.at.cos) : sin2_from - sin2;
     return run.body.c2 / (run.at.h + h) * change;
+}
+
+// Places on a part: tangent of the angle from the panel's centre, path ahead, size of omega.
+struct PlacesOnPart {
+    std::array<double, lanes> tan;
+    std::array<double, lanes> ahead;
+    std::array<double, lanes> speed;
+};
+
+// The places at times since the begin of the part.
+ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of,
+                                      const std::array<double, lanes>& times,
+                                      PlacesOnPart& places) {
+    const RunPart& part = *of.part;
+    const SlopeBody& body = run.body;
+    const Pack time = load(times.data());
+    const Pack x = places_in_part(of.time, value(of.about_place, time / of.lasts), time);
+    const PanelPlaces at = places_at(run.panels[part.panel], part.middle + part.half * x);
+    const Pack sin2 = at.sin * at.sin * at.over;
+    const Pack cos2 = at.cos * at.cos * at.over;
+    const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
+    const Pack ahead = run.heading * (part.path + value(of.path.integral, x));
+    const Pack energy =
+        run.energy + run.heading * of.half_turns * body.gain +
+        (body.gravity.along * ahead + body.gravity.into * fallen(run, sin2, cos2, h));
+    store(at.tan, places.tan.data());
+    store(ahead, places.ahead.data());
+    store(h * sqrt(2 * energy / (body.d0 + body.d1 * sin2)), places.speed.data());
 }
 
 }  // namespace
 
 RunReader::RunReader(const SlopeRun& run)
-    : run_(run), run_times_(run), part_times_(run.parts.size()), part_(run.parts.size()) {}
+    : run_(run), run_times_(run), part_times_(run.parts.size()) {}
 
-// The current half turn is reused only well inside it, so that the answer does not depend on
-// earlier calls.
-SlopePlace RunReader::operator()(DoubleDouble time) {
-    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
-    const DoubleDouble since = time - run_.from.time;
-    double rest = double(since - begin_);
-    if (!(rest > margin * lasts_ && rest < (1 - margin) * lasts_)) {
-        move_to(since);
-        rest = double(since - begin_);
+// Times of one part beside each other are read side by side, and a single one as often as there are
+// lanes.
+void RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
+    for (std::size_t i = 0; i < n;) {
+        if (!is_here(times[i])) move_to(DoubleDouble{times[i], 0.0} - run_.from.time);
+        std::array<double, lanes> rests;
+        const std::size_t part = part_at(times[i], rests[0]);
+        rests.fill(rests[0]);
+        std::size_t count = 1;
+        for (; count < lanes && i + count < n && is_here(times[i + count]); ++count) {
+            double rest;
+            if (part_at(times[i + count], rest) != part) break;
+            rests[count] = rest;
+        }
+        read_part(part);
+        PlacesOnPart found;
+        read_places(run_, reading_, rests, found);
+        const RunPanel& panel = run_.panels[reading_.part->panel];
+        const double turned = run_.heading * 2 * half_turns_;
+        const DoubleDouble path = two_product(turned, run_.body.quarter_path);
+        for (std::size_t k = 0; k < count; ++k, ++i) {
+            const double angle = panel.angle + std::atan(found.tan[k]);
+            places[i] = {{times[i], 0.0},
+                         run_.turns + run_.heading * panel.quarters + turned,
+                         {run_.heading * angle, 0.0},
+                         run_.heading * found.speed[k],
+                         run_.from.path + found.ahead[k] + path};
+        }
     }
-    SlopePlace place = place_at(rest);
-    place.time = time;
-    return place;
+}
+
+// Whether a time is in the current half turn, and well inside it, so that the answer does not
+// depend on earlier calls.
+bool RunReader::is_here(double time) const {
+    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
+    const double rest = since_begin(time);
+    return rest > margin * lasts_ && rest < (1 - margin) * lasts_;
+}
+
+double RunReader::since_begin(double time) const {
+    return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
+}
+
+// The part of the current half turn at a time, and the time since its begin.
+std::size_t RunReader::part_at(double time, double& rest) const {
+    rest = since_begin(time);
+    std::size_t i = 0;
+    for (; i + 1 < part_times_.size() && rest > part_times_[i]; ++i) rest -= part_times_[i];
+    rest = std::clamp(rest, 0.0, part_times_[i]);
+    return i;
 }
 
 // Make the half turn that contains a time since `from` the current one.
@@ -88,7 +148,7 @@ void RunReader::move_to(DoubleDouble since) {
         half_turns = std::clamp(half_turns, 0.0, last);
         if (half_turns == half_turns_) break;
     }
-    part_ = part_times_.size();
+    reading_.part = nullptr;
 }
 
 void RunReader::set_half_turn(double half_turns) {
@@ -103,35 +163,16 @@ void RunReader::set_half_turn(double half_turns) {
     }
 }
 
-// The place at a time since the begin of the half turn.
-SlopePlace RunReader::place_at(double rest) {
-    std::size_t i = 0;
-    for (; i + 1 < part_times_.size() && rest > part_times_[i]; ++i) rest -= part_times_[i];
+void RunReader::read_part(std::size_t i) {
     const RunPart& part = run_.parts[i];
-    if (i != part_) {
-        time_ = polynomial_through(node_times(run_, part, half_turns_));
-        path_ = polynomial_through(part.advance);
-        about_place_ = inverse_about(time_);
-        part_ = i;
-    }
-    rest = std::clamp(rest, 0.0, part_times_[i]);
-    const double x = place_in_part(time_, value(about_place_, rest / part_times_[i]), rest);
-    const RunPanel& panel = run_.panels[part.panel];
-    const SlopeBody& body = run_.body;
-    const auto at = rolling_ellipse::place_at(panel, part.middle + part.half * x);
-    const double sin2 = square(at.sin) * at.over;
-    const double h = std::sqrt(body.short_axis2 + body.c2 * sin2);
-    const double heading = run_.heading;
-    const double turned = heading * 2 * half_turns_;
-    const double ahead = heading * (part.path + value(path_.integral, x));
-    const double energy = run_.energy + heading * half_turns_ * body.gain +
-                          (body.gravity.along * ahead + body.gravity.into * fallen(run_, at, h));
-    SlopePlace place{};
-    place.quarters = run_.turns + heading * panel.quarters + turned;
-    place.angle = {heading * (panel.angle + std::atan(at.tan)), 0.0};
-    place.omega = heading * h * std::sqrt(2 * energy / (body.d0 + body.d1 * sin2));
-    place.path = run_.from.path + ahead + two_product(turned, body.quarter_path);
-    return place;
+    if (reading_.part == &part) return;
+    reading_ = {&part,
+                half_turns_,
+                part_times_[i],
+                polynomial_through(node_times(run_, part, half_turns_)),
+                polynomial_through(part.advance),
+                {}};
+    reading_.about_place = inverse_about(reading_.time);
 }
 
 }  // namespace rolling_ellipse
