@@ -44,83 +44,6 @@ Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     return x > 0 ? divided(whole, x).right : whole;
 }
 
-// P, Q and G of the forces on a part of their range. Q is raised to the degree of P.
-struct ForcesOnPart {
-    Bernstein<5> normal;
-    Bernstein<5> friction;
-    Bernstein<4> slope_square;
-};
-
-// The sign of mu^2 P^2 - G Q^2 = held P^2 - needed G Q^2, from the signs of sqrt(held) P +-
-// sqrt(needed G) Q with a bound of G, which have a lower degree. Undecided where this is too
-// coarse.
-struct GripByBounds {
-    double held;
-    double needed;
-
-    static constexpr int deepest = 2;
-    static constexpr double rounding = 1 + 64 * epsilon;
-
-    Sign operator()(const ForcesOnPart& part, int depth = 0) const {
-        if (fails(part.normal.coefficients.front(), part.friction.coefficients.front(),
-                  part.slope_square.coefficients.front()) ||
-            fails(part.normal.coefficients.back(), part.friction.coefficients.back(),
-                  part.slope_square.coefficients.back())) {
-            return Sign::negative;
-        }
-        if (holds(part)) return Sign::positive;
-        if (depth == deepest) return Sign::undecided;
-        const Parts<5> normal = divided(part.normal);
-        const Parts<5> friction = divided(part.friction);
-        const Parts<4> slope_square = divided(part.slope_square);
-        const Sign low = (*this)({normal.left, friction.left, slope_square.left}, depth + 1);
-        if (low == Sign::negative) return low;
-        const Sign high = (*this)({normal.right, friction.right, slope_square.right}, depth + 1);
-        return high == Sign::negative || low == Sign::positive ? high : low;
-    }
-
-  private:
-    // Is mu^2 P^2 - G Q^2 negative at one place, provably?
-    bool fails(Tracked normal, Tracked friction, Tracked slope_square) const {
-        const double most = std::abs(normal.value) + margin(normal);
-        const double least = std::abs(friction.value) - margin(friction);
-        const double least_slope = slope_square.value - margin(slope_square);
-        return least > 0 && least_slope > 0 &&
-               rounding * held * square(most) < needed * least_slope * square(least);
-    }
-
-    // Is mu^2 P^2 - G Q^2 positive on the whole part, provably?
-    bool holds(const ForcesOnPart& part) const {
-        double most_slope = 0.0;
-        for (const Tracked c : part.slope_square.coefficients) {
-            most_slope = std::max(most_slope, c.value + margin(c));
-        }
-        const double of_normal = std::sqrt(held);
-        const double of_friction = rounding * std::sqrt(needed * most_slope);
-        for (int i = 0; i <= 5; ++i) {
-            const Tracked n = part.normal.coefficients[i];
-            const Tracked f = part.friction.coefficients[i];
-            if (!(of_normal * (n.value - margin(n)) >
-                  of_friction * (std::abs(f.value) + margin(f)))) {
-                return false;
-            }
-        }
-        return true;
-    }
-};
-
-// The sign of mu N - |F| from the place `start` up to the top.
-Sign grip_sign(const ForcePolynomials& forces, const Bernstein<5>& normal, double friction,
-               double start) {
-    const bool large = friction > 1;
-    const GripByBounds by_bounds{large ? 1.0 : square(friction),
-                                 large ? 1 / friction / friction : 1.0};
-    const Sign found = by_bounds({normal, from_place(forces.friction + Polynomial<5>{}, start),
-                                  from_place(forces.slope_square, start)});
-    if (found != Sign::undecided) return found;
-    return sign_on_unit_interval(from_place(grip_polynomial(forces, friction), start));
-}
-
 // The outcome for a body on a slope whose rolling ends at a time [s]: it slips or flies.
 Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     prepare(flow, time);
@@ -199,9 +122,10 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const bool grips_always = std::isinf(friction);
     const Bernstein<5> normal = from_place(forces.normal, start);
     const Sign contact = sign_on_unit_interval(normal);
-    const Sign grip = grips_always || contact == Sign::negative
-                          ? contact
-                          : grip_sign(forces, normal, friction, start);
+    const Sign grip =
+        grips_always || contact == Sign::negative
+            ? contact
+            : sign_on_unit_interval(from_place(grip_polynomial(forces, friction), start));
     if (grip == Sign::negative) return Outcome::slips;
     if (contact == Sign::undecided || grip == Sign::undecided) return Outcome::edge;
     return at_the_top(from);
