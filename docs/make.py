@@ -41,7 +41,11 @@ BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
 LADDER = [1e-2, 1e-3]  # steps of the engines [s]
-MOTIONS = {"R": "rolling over, {:g} half turns", "L": "rocking, {:g} half swings"}
+MOTIONS = {
+    "R": "rolling over, {:g} half turns",
+    "L": "rocking, {:g} half swings",
+    "S": "down a slope of 0.1, {:g} half turns",
+}
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
 
