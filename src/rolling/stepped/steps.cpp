@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
@@ -33,13 +34,13 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
-// The values of a series about `middle` at four angles, for negative ones the negative values.
-ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const double* angles,
+// The values of a series about `middle` at four places.
+ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const double* places,
                                       double* values) {
     Quad z;
-    for (int i = 0; i < 4; ++i) z[i] = std::abs(angles[i]) - middle;
-    z = value(series, z);
-    for (int i = 0; i < 4; ++i) values[i] = std::copysign(z[i], angles[i]);
+    std::memcpy(&z, places, sizeof z);
+    z = value(series, z - middle);
+    std::memcpy(values, &z, sizeof z);
 }
 
 // The path of the centre at many angles, each mostly close to the one before: Taylor series of the
@@ -54,14 +55,13 @@ class PathSeries {
 
     // centre_path(theta) to 2 ulp. Its bits depend neither on earlier calls nor on the sign.
     double operator()(double theta) {
-        const double angle = std::abs(theta);
-        if (!here_.holds(angle)) move_to(angle);
-        return std::copysign(value(here_.path, angle - here_.middle), theta);
+        if (!here_.is_inside(theta)) move_to(theta);
+        return value(here_.path, theta - here_.middle);
     }
 
     // The same at n angles, side by side where four of them share an interval.
     void operator()(const double* thetas, std::size_t n, double* paths) {
-        const auto is_here = [this](double theta) { return here_.holds(std::abs(theta)); };
+        const auto is_here = [this](double theta) { return here_.is_inside(theta); };
         for (std::size_t i = 0; i < n;) {
             if (n - i >= 4 && std::all_of(thetas + i, thetas + i + 4, is_here)) {
                 four_values(here_.path, here_.middle, thetas + i, paths + i);
@@ -80,24 +80,32 @@ class PathSeries {
         double middle = 0.0;
         Series path{};
 
-        bool holds(double angle) const { return low <= angle && angle < high; }
+        // Not at its ends, which move_to decides.
+        bool is_inside(double theta) const { return low < theta && theta < high; }
+
+        // The same path at negative angles.
+        Interval mirrored() const {
+            Interval found{-high, -low, -middle, path};
+            for (int k = 0; k <= series_order; k += 2) found.path[k] = -path[k];
+            return found;
+        }
     };
 
-    void move_to(double angle) {
+    void move_to(double theta) {
+        here_ = around(std::abs(theta));
+        if (theta < 0) here_ = here_.mirrored();
+    }
+
+    Interval around(double angle) {
         constexpr std::size_t most_known = 256;  // intervals kept; thin bodies use 100 a half turn
         if (!(angle <= largest_in_quarters)) {
-            here_ = {angle, angle, angle, {centre_path(axes_, angle)}};
-            return;
+            return {angle, angle, angle, {centre_path(axes_, angle)}};
         }
         for (const Interval& interval : known_) {
-            if (interval.holds(angle)) {
-                here_ = interval;
-                return;
-            }
+            if (interval.low <= angle && angle < interval.high) return interval;
         }
-        here_ = interval_at(angle);
         if (known_.size() == most_known) known_.clear();
-        known_.push_back(here_);
+        return known_.emplace_back(interval_at(angle));
     }
 
     // Distance of an angle from the nearest root of h, at which its series ceases to converge.
