@@ -320,7 +320,7 @@ def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
     heading = np.sign(slope) * rng.choice([-1, 1], n, p=[0.2, 0.8])
     return {
         "a": a, "b": b, "gyration2": gyration2, "slope": slope, "theta": rng.uniform(-10, 10, n),
-        "omega": heading * 10 ** rng.uniform(0.0, 1.5, n),
+        "omega": heading * 10 ** rng.uniform(-0.3, 1.5, n),
     }  # fmt: skip
 
 

@@ -56,7 +56,7 @@ SlopePlace begin(SlopeFlow& flow) {
     const SlopePlace& start = flow.start;
     if (start.omega == 0) flow.turnings.push_back(start.time);
     if (start.omega >= 0) return start;
-    const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start.omega);
+    const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start);
     if (n < 1) return start;
     flow.climb = slope_run(flow.body, start, flow.energy.start, n);
     extend(*flow.climb, infinity);
@@ -192,7 +192,7 @@ bool grow(SlopeFlow& flow) {
     if (from.omega > 0) {
         const Tracked w = energy_at(flow.body, flow.energy, from, here);
         const double at_least = w.value - 8 * epsilon * w.magnitude;
-        if (may_run(flow.body, at_least, here, from.omega) > 0) {
+        if (may_run(flow.body, at_least, here, from) > 0) {
             flow.run = slope_run(flow.body, from, w.value, most_half_turns);
             return false;
         }

@@ -103,13 +103,20 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
 
 }  // namespace
 
-double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega) {
+double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from) {
     // The height of the tip over the centre, as a product exact for nearly round bodies, too.
     const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
-    const double above = energy - body.gravity.into * to_tip;
-    const double levels = above / body.gain - least_levels;
+    double least = energy - body.gravity.into * to_tip;
+    if (from.omega > 0) {
+        // The way down to the next unstable equilibrium is at least its angle times the short axis.
+        const double hill = body.equilibria ? body.equilibria->upright : 0.0;
+        const double ahead = (is_odd(from.quarters) ? hill : half_pi + hill) - double(from.angle);
+        const double angle = ahead < 0 ? ahead + pi : ahead;
+        least = std::min(energy, least + body.gravity.along * body.short_axis * angle);
+    }
+    const double levels = least / body.gain - least_levels;
     if (!(levels >= 0)) return 0.0;
-    return omega > 0 ? most_half_turns : std::min(std::floor(levels), most_half_turns);
+    return from.omega > 0 ? most_half_turns : std::min(std::floor(levels), most_half_turns);
 }
 
 SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,

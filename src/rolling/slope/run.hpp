@@ -85,7 +85,7 @@ inline constexpr double most_half_turns = 1e15;
 
 // Number of half turns from a place, in its direction, during which W is large enough beside w for
 // the sum.
-double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
+double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from);
 
 // Derivatives of the time by the place at the nodes of a part, after n half turns.
 PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns);
