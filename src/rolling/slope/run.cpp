@@ -107,6 +107,7 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, const S
     // The height of the tip over the centre, as a product exact for nearly round bodies, too.
     const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
     double least = energy - body.gravity.into * to_tip;
+    if (least < -body.gain) return 0.0;  // half a turn downhill gains no more
     if (from.omega > 0) {
         // The way down to the next unstable equilibrium is at least its angle times the short axis.
         const double hill = body.equilibria ? body.equilibria->upright : 0.0;
