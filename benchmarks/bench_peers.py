@@ -170,6 +170,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     if slope_reference is None:
         missing["gmpy2"] = "no judge on a slope"
         chosen.scenes = [name for name in chosen.scenes if not SCENES[name].slope]
+        if not chosen.scenes:
+            options.error("the scene S needs gmpy2 for its judge")
     libraries = ", ".join(dict.fromkeys(peer.library for peer in found))
     print(libraries)
     for library, reason in missing.items():
