@@ -138,9 +138,9 @@ class RunReader {
     void operator()(const double* times, std::size_t n, SlopePlace* places);
 
   private:
-    bool is_here(double time) const;
     double since_begin(double time) const;
-    std::size_t part_at(double time, double& rest) const;
+    bool is_well_inside(double since) const;
+    std::size_t take_parts_off(double& since) const;
     void move_to(DoubleDouble since);
     void set_half_turn(double half_turns);
     void read_part(std::size_t part);

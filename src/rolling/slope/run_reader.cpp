@@ -89,14 +89,18 @@ RunReader::RunReader(const SlopeRun& run)
 // lanes.
 void RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
     for (std::size_t i = 0; i < n;) {
-        if (!is_here(times[i])) move_to(DoubleDouble{times[i], 0.0} - run_.from.time);
+        double rest = since_begin(times[i]);
+        if (!is_well_inside(rest)) {
+            move_to(DoubleDouble{times[i], 0.0} - run_.from.time);
+            rest = since_begin(times[i]);
+        }
+        const std::size_t part = take_parts_off(rest);
         std::array<double, lanes> rests;
-        const std::size_t part = part_at(times[i], rests[0]);
-        rests.fill(rests[0]);
+        rests.fill(rest);
         std::size_t count = 1;
-        for (; count < lanes && i + count < n && is_here(times[i + count]); ++count) {
-            double rest;
-            if (part_at(times[i + count], rest) != part) break;
+        for (; count < lanes && i + count < n; ++count) {
+            rest = since_begin(times[i + count]);
+            if (!is_well_inside(rest) || take_parts_off(rest) != part) break;
             rests[count] = rest;
         }
         read_part(part);
@@ -116,24 +120,23 @@ void RunReader::operator()(const double* times, std::size_t n, SlopePlace* place
     }
 }
 
-// Whether a time is in the current half turn, and well inside it, so that the answer does not
-// depend on earlier calls.
-bool RunReader::is_here(double time) const {
-    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
-    const double rest = since_begin(time);
-    return rest > margin * lasts_ && rest < (1 - margin) * lasts_;
-}
-
+// The time since the begin of the current half turn.
 double RunReader::since_begin(double time) const {
     return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
 }
 
-// The part of the current half turn at a time, and the time since its begin.
-std::size_t RunReader::part_at(double time, double& rest) const {
-    rest = since_begin(time);
+// Whether such a time is well inside the half turn: then the answer does not depend on earlier
+// calls.
+bool RunReader::is_well_inside(double since) const {
+    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
+    return since > margin * lasts_ && since < (1 - margin) * lasts_;
+}
+
+// Takes the parts before a time in the half turn off it; returns the part that it is in.
+std::size_t RunReader::take_parts_off(double& since) const {
     std::size_t i = 0;
-    for (; i + 1 < part_times_.size() && rest > part_times_[i]; ++i) rest -= part_times_[i];
-    rest = std::clamp(rest, 0.0, part_times_[i]);
+    for (; i + 1 < part_times_.size() && since > part_times_[i]; ++i) since -= part_times_[i];
+    since = std::clamp(since, 0.0, part_times_[i]);
     return i;
 }
 
