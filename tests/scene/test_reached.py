@@ -80,8 +80,8 @@ def test_what_was_gained_downhill_is_not_typed_again() -> None:
     for change in ({"omega": reached.omega}, {"impulse": Impulse(1.0)}):
         with pytest.raises(ValueError, match=r"^omega must be at most .* for this body, got"):
             reached.replace(**change)
-    # No ground holds it: it slips, or leaves where c = g cos(alpha) + h'' omega^2 is negative. Which
-    # of both depends on the last bit of theta, a quarter of a radian.
+    # No ground holds it: it slips, or leaves where c = g cos(alpha) + h'' omega^2 is negative. The
+    # last bit of theta, a quarter of a radian, decides.
     h = math.hypot(2.0 * math.sin(reached.theta), math.cos(reached.theta))
     c = reached.gravity * math.cos(reached.slope) + (4.0 / h**3 - h) * reached.omega**2
     first = rl.Outcome.LOSES_CONTACT if c < 0 else rl.Outcome.SLIPS
