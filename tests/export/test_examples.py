@@ -35,3 +35,23 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
     assert run.read_text() == "mine" and not gone.exists()
     run.unlink()
     assert sorted(rl.examples(tmp_path)) == [run, gone]
+
+
+def test_no_link_is_followed(tmp_path: Path) -> None:
+    """A dangling one, one to an equal file, and a folder that is one: nothing is written."""
+    place, away = tmp_path / "place", tmp_path / "away"
+    rl.examples(away)
+    for name, target in (
+        ("01_first_roll.ipynb", tmp_path / "nowhere"),
+        ("01_first_roll.ipynb", away / "01_first_roll.ipynb"),
+        ("reference", tmp_path / "empty"),
+    ):
+        place.mkdir()
+        (tmp_path / "empty").mkdir(exist_ok=True)
+        (place / name).symlink_to(target)
+        with pytest.raises(ValueError, match=rf"folder must not have another .*{name}"):
+            rl.examples(place)
+        assert [path.name for path in place.iterdir()] == [name]
+        assert not (tmp_path / "nowhere").exists() and not any((tmp_path / "empty").iterdir())
+        (place / name).unlink()
+        place.rmdir()

@@ -2,6 +2,7 @@
 
 import io
 import math
+import os
 import pickle
 import zipfile
 from collections.abc import Callable, Iterator
@@ -32,6 +33,11 @@ def reads(content: bytes) -> Callable[[Path], Any]:
         return rl.load(path)
 
     return call
+
+
+def pipe(folder: Path) -> Any:
+    os.mkfifo(folder / "motion.npz")
+    return rl.load(folder / "motion.npz")
 
 
 def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
@@ -136,6 +142,7 @@ REFUSALS: list[Row] = [
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders
+    ("path", pipe),
     ("folder", lambda folder: [(folder / "02_physics.ipynb").write_text(""), rl.examples(folder)]),
     ("path", lambda _: MOTION.save("")),
     (IsADirectoryError, lambda folder: MOTION.save(f"{folder}/")),

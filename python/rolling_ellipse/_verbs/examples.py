@@ -8,7 +8,7 @@ from zipfile import ZipFile
 
 from .. import _core
 from .._ask.check import file_name
-from .._motion.export.atomic import replacing
+from .._motion.export.new_files import write_new
 
 _ARCHIVE = "examples.zip"  # beside the core, written by notebooks/pack.py in every build
 
@@ -32,8 +32,8 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     Raises
     ------
     ValueError
-        If the folder has another file of one of the names, such as a notebook that has been run;
-        nothing is written then.
+        If the folder has another file of one of the names, such as a notebook that has been run,
+        or a link; nothing is written then.
     TypeError
         If `folder` is no path.
     OSError
@@ -41,13 +41,5 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     """
     place = Path(file_name("folder", folder))
     with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:
-        files = {place / name: archive.read(name) for name in archive.namelist()}
-    there = {path for path in files if path.exists()}
-    if changed := [path.name for path in sorted(there) if path.read_bytes() != files[path]]:
-        raise ValueError(f"folder must not have another {', '.join(changed)}, got {str(place)!r}")
-    missing = sorted(files.keys() - there)
-    for path in missing:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as new:
-            new.write_bytes(files[path])
-    return missing
+        files = {name: archive.read(name) for name in archive.namelist()}
+    return write_new(place, files)

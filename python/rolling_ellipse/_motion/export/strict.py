@@ -9,6 +9,7 @@ import io
 import json
 import math
 import os
+import stat
 import zipfile
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import fields
@@ -37,14 +38,16 @@ def restored(
     """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
     Only a file with the right first bytes (and the end of an archive) is read: another file may
-    have any size. Whatever `restore` raises becomes a ValueError with the file, the trouble and the
-    cure, if any.
+    have any size, and a pipe would be waited for. Whatever `restore` raises becomes a
+    ValueError with the file, the trouble and the cure, if any.
     """
     name = file_name("path", path)
+    if stat.S_ISFIFO(os.stat(name).st_mode):
+        raise ValueError(f"path must name a file written by {writer}, got {name!r}: it is a pipe")
     with open(name, "rb") as file:
         content = file.read(len(begins))
         is_whole = content == begins
-        if is_whole and begins == ARCHIVE and file.seekable():
+        if is_whole and begins == ARCHIVE:
             is_whole = zipfile.is_zipfile(file)
             file.seek(len(begins))
         if is_whole:

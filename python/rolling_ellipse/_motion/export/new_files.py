@@ -1,0 +1,39 @@
+"""Files for a folder of a user: written over nothing, and through no link."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .atomic import replacing
+
+
+def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
+    """Write files, by their paths in a folder, and return those that were not there already.
+
+    Raises
+    ------
+    ValueError
+        If the folder has another file, or a link, in the place of one; nothing is written then.
+    OSError
+        If a file cannot be written. Each file is there whole or not at all.
+    """
+    kept = {name for name, content in files.items() if _is_there(folder / name, content)}
+    if others := [name for name in sorted(files) if name not in kept and _is_taken(folder, name)]:
+        raise ValueError(f"folder must not have another {', '.join(others)}, got {str(folder)!r}")
+    missing = [folder / name for name in sorted(files) if name not in kept]
+    for path in missing:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as new:
+            new.write_bytes(files[path.relative_to(folder).as_posix()])
+    return missing
+
+
+def _is_there(path: Path, content: bytes) -> bool:
+    return path.is_file() and not path.is_symlink() and path.read_bytes() == content
+
+
+def _is_taken(folder: Path, name: str) -> bool:
+    """Return whether the path of a new file is something else, or a link leads away from it."""
+    path = folder / name
+    between = [part for part in path.parents if part != folder and part.is_relative_to(folder)]
+    return path.is_symlink() or path.exists() or any(part.is_symlink() for part in between)
