@@ -112,3 +112,22 @@ def test_the_files_are_small_and_of_one_form() -> None:
         assert all(len(row) == 9 and condition >= 1 for row, condition in rows)
         wild = [row[0] for row, condition in rows if condition > 1000]
         assert data["horizon"] == min([*wild, data["t_end"]])
+
+
+def test_answers_follow_from_the_known_motions() -> None:
+    """Bounces that are asked for rise by more than 0.002 L before; the end is that of the last."""
+    for name, data in PROBLEMS.items():
+        answer, rows = data["answer"], np.array(data["states"])
+        values = {column: rows[:, k] for k, column in enumerate(data["columns"])}
+        if "over" in answer:
+            assert answer["over"] == (np.abs(values["theta"]).max() > np.pi / 2), name
+        for column, value in answer.get("last", {}).items():
+            assert values[column][-1] == value and rows[-1, 0] == data["t_end"]
+        for column, value in answer.get("always", {}).items():
+            assert np.all(values[column] == value)
+        if "end" in answer:
+            high = [e["after"][4] ** 2 > 0.004 * data["scene"]["gravity"] for e in data["events"]]
+            assert len(answer["events"]) == sum(high) + 1 == 5 and high == sorted(high)[::-1]
+            assert answer["end"] == data["events"][-1]["t"]
+        kinds = [event["kind"] for event in data["events"]]
+        assert answer.get("events", kinds) == kinds[: len(answer.get("events", kinds))]

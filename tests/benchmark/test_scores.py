@@ -130,6 +130,14 @@ def exact(one: Any, t: Any, setting: Any = None) -> Any:
     return benchmark.Result(states_of(motion), **forces)
 
 
+def by_step(one: Any, t: Any, step: Any) -> Any:
+    return one.exact(t) * (1 + step)
+
+
+def none(one: Any, t: Any, setting: Any) -> None:
+    """A simulator that forgets to return its states."""
+
+
 def score_of(one: benchmark.Problem, result: Any) -> benchmark.Score:
     return benchmark.score({one.id: result})[IDS.index(one.id)]
 
@@ -260,27 +268,6 @@ def test_the_picture_says_what_is_right(tmp_path: Path) -> None:
     assert scores.plot(ax=ax).ax is ax and scores[0].tolerance == 1e-6
 
 
-def test_files_written_and_scored(tmp_path: Path) -> None:
-    """The exact answers are perfect, written with synonyms by 17 digits; missing ones are said."""
-    benchmark.export(tmp_path)
-    assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [18, 18, 15]
-    assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
-    for one in benchmark.problems():
-        t = one.output_times[: 51 if one.id == "roll.rock" else None]
-        rows = np.column_stack([t, one.exact(t)])
-        header = "t,x,z,theta,vx,vz,omega"
-        np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
-    benchmark.export(tmp_path)  # leaves the results
-    (tmp_path / "roll.thin.csv").write_text("")
-    found = benchmark.score(tmp_path)
-    unlike = [(score.problem, score.answer) for score in found if not score.passed]
-    assert unlike == [("roll.rock", "failed"), ("roll.thin", "not supported")]
-    short = found[IDS.index("roll.rock")]
-    assert found.wrong == ["roll.rock"] and short.answer == "failed" and short.digits > 12
-    assert short.reason == "ends at 0.5 s; 39 of 41 given times are missing"
-    assert len(found.to_dataframe()) == 18
-
-
 def test_rows_that_are_not_finite_are_missing() -> None:
     one = benchmark.problem("slide.stick")
     states = one.exact(one.output_times)
@@ -316,12 +303,23 @@ def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert all(name in listed for name in IDS)
     assert main(["benchmark", "run", f"{__name__}:exact", "--json"]) == 0
     assert {row["answer"] for row in json.loads(capsys.readouterr().out)} == {"right"}
-    assert main(["benchmark", "run", f"{__name__}:exact", "--tags"]) == 0
-    assert capsys.readouterr().out == "flight non-round restitution slope spin stiction\n"
+    chosen = ["--tags", "slope,stiction", "--problem", "slide.slope", "hit.settle", "--json"]
+    assert main(["benchmark", "run", f"{__name__}:exact", *chosen]) == 0
+    answers = {row["problem"]: row["answer"] for row in json.loads(capsys.readouterr().out)}
+    assert answers == {"slide.slope": "right", "hit.settle": "not supported"}
     assert main(["benchmark", "run", f"{__name__}:no_bounce", "--ladder", "0.01", "0.001"]) == 1
     assert "wrong: hit.bounce, hit.bounce_flat, hit.settle" in capsys.readouterr().out
     assert main(["benchmark", "export", str(tmp_path)]) == 0
     assert main(["benchmark", "score", str(tmp_path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out.partition("files\n")[2])[0]["error"] is None
-    for typed in (["run", "exact"], ["run", "json:nothing"], ["score", str(tmp_path / "x")]):
+    capsys.readouterr()
+    for typed in (
+        ["run", "exact"], ["run", "json:nothing"], ["run", "../x:f"], ["run", "json:dumps"],
+        ["run", "math:sin"], ["run", ".x:f"], ["run", f"{__name__}:exact", "--problem", "slide"],
+        ["run", f"{__name__}:by_step"], ["run", f"{__name__}:none"], ["run", "no_such_module:f"],
+        ["run", f"{__name__}:exact", "--tags", "gpu"], ["score", str(tmp_path / "x")],
+    ):  # fmt: skip
         assert main(["benchmark", *typed]) == 2
+        assert capsys.readouterr().err.count("\n") == 1, typed
+    assert main(["benchmark", "run", f"{__name__}:by_step"]) == 2
+    assert "without --ladder the setting is None" in capsys.readouterr().err

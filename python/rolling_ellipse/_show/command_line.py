@@ -7,6 +7,7 @@ import json
 import math
 import re
 import sys
+import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -26,6 +27,7 @@ from .._motion.trajectory import Trajectory
 from .._player.page import LANGUAGES
 from .._verbs.certify import certify
 from .._verbs.flow import period
+from ..benchmark._run import require_simulator
 from ..benchmark.adapters import ENGINES
 
 SCENE_OPTIONS = {
@@ -167,10 +169,16 @@ def benchmark_parser() -> OneLineParser:
     score.add_argument("folder", metavar="DIR")
     run = actions.add_parser("run", help="run an engine, or your mine(problem, times, setting)")
     run.add_argument("mine", metavar="|".join((*ENGINES, "module:function")))
-    run.add_argument("--ladder", type=float, nargs="+", default=[None], metavar="SETTING")
+    run.add_argument(
+        "--ladder", type=float, nargs="+", default=[None], metavar="SETTING",
+        help="settings, such as steps [s], from coarse to fine (default: one, which is None)",
+    )  # fmt: skip
     for parser in (score, run):
         parser.add_argument("--json", action="store_true", help="print the scores as JSON")
-        parser.add_argument("--tags", action="store_true", help="print the tags that are passed")
+        parser.add_argument("--problem", nargs="+", metavar="ID", help="these only (default: all)")
+        parser.add_argument(
+            "--tags", metavar="A,B", help="problems that need no other abilities than these"
+        )
     return found
 
 
@@ -181,17 +189,35 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
         return 0, text_table([("problem", "question", "needs"), *rows])
     if options.action == "export":
         return 0, f"written           {len(benchmark.export(options.folder))} files"
+    chosen = {"problems": options.problem, "tags": options.tags}
     if options.action == "score":
-        scores = benchmark.score(options.folder)
+        scores = benchmark.score(options.folder, **chosen)
     else:
-        scores = benchmark.run(_function(options.mine), ladder=options.ladder)
+        scores = _scores_of(options.mine, ladder=options.ladder, **chosen)
     text = repr(scores)
-    if options.tags:
-        text = " ".join(_passed_tags(scores))
-    elif options.json:
+    if options.json:
         plain = json.dumps(scores.records())  # has NaN, which JSON does not know
         text = json.dumps(json.loads(plain, parse_constant=lambda name: None), indent=2)
     return int(bool(scores.wrong)), text
+
+
+def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
+    """Run an engine or a function; what goes wrong in it is a sentence with its place."""
+    mine = _function(name)
+
+    def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
+        try:
+            return mine(problem, times, setting)
+        except NotImplementedError:
+            raise
+        except Exception as error:
+            hint = "" if setting is not None else ": without --ladder the setting is None"
+            raise _failed(f"{name} on {problem.id}", error, hint) from error
+
+    try:
+        return benchmark.run(placed, **chosen)
+    except TypeError as error:
+        raise ValueError(str(error)) from error
 
 
 def _function(name: str) -> Any:
@@ -202,19 +228,29 @@ def _function(name: str) -> Any:
         except ImportError as error:
             raise ImportError(f"{name} needs pip install {ENGINES[name]}: {error}") from error
     module, _, function = name.partition(":")
-    if not (module and function):
+    if not (all(part.isidentifier() for part in module.split(".")) and function):
         raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")
     sys.path.insert(0, "")
-    found = getattr(import_module(module), function, None)
+    try:
+        found = getattr(import_module(module), function, None)
+    except ImportError:
+        raise
+    except Exception as error:
+        raise _failed(module, error) from error
     if not callable(found):
         raise ValueError(f"run must name a function of {module}, got {function!r}")
+    try:
+        require_simulator("run", found)
+    except TypeError as error:
+        raise ValueError(str(error)) from error
     return found
 
 
-def _passed_tags(scores: benchmark.Scores) -> list[str]:
-    """Return the tags whose problems all pass."""
-    failed = {tag for s in scores if not s.passed for tag in benchmark.problem(s.problem).tags}
-    return sorted({tag for one in benchmark.problems() for tag in one.tags} - failed)
+def _failed(name: str, error: Exception, hint: str = "") -> RuntimeError:
+    """Return the error of somebody's code in one sentence, with its last place."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    place = f"line {last.lineno} of {Path(last.filename).name}"
+    return RuntimeError(f"{name} raised {type(error).__name__} in {place}: {error}{hint}")
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:

@@ -3,17 +3,21 @@
 We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Eighteen
 problems of an ellipse on the ground have exact answers, found by two independent programs, each
 with its condition number. SI units and radians; ``x`` lies along the ground (downhill where it
-slopes), ``z`` points away from it, ``theta`` is the clockwise rotation. States are in the order x,
-z, theta, x_dot, z_dot, omega.
+slopes), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are
+in the order x, z, theta, x_dot, z_dot, omega.
 
 >>> from rolling_ellipse import benchmark
 >>> benchmark.problem("slide.stick").question
 """
 
+from ._catalogue import Gradient, gradients, problem, problems
 from ._equations import Dae, Ode
-from ._files import Result, export
-from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
-from ._scores import Score, Scores, run, score
+from ._export import export
+from ._problem import KnownEvent, Problem
+from ._results import Result
+from ._run import run, score
+from ._score import Score
+from ._scores import Scores
 
 __all__ = [
     "Dae", "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export",

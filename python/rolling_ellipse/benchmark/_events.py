@@ -3,16 +3,19 @@
 With L = max(a, b), a row flies where the gap is above L/500, slips where it does not fly and the
 slip is above sqrt(g L)/100 in size, and rolls otherwise. Rows of one kind form a run; a push of the
 centre by more than sqrt(g L)/10 between two rows, while the gap turns from closing to opening,
-divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10 belong to the run before.
-Two runs are joined by an IMPACT where the first one flies: at the time at which the free flight
-from its last row touches the ground. All other events are at the first row of the second run:
-LIFT_OFF if it flies, STICK if it rolls, SLIP if the first one rolls, REVERSE if both slip.
+divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10, and rolling ones twice
+as long between opposite slips, belong to the run before. Two runs are joined by an IMPACT where the
+first one flies: at the time at which the free flight from its last row touches the ground. All
+other events are where the gap or the slip passes its limit, linear between two rows: LIFT_OFF if
+the second run flies, STICK if it rolls, SLIP if the first one rolls, REVERSE, at the slip 0, if
+both slip.
 """
 
 from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -28,32 +31,59 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
     """Return the kinds and times of the events in rows of states."""
     scene, length, speed = problem.scene, float(problem.scales[0]), float(problem.scales[3])
     gap, slip = gap_and_slip(problem, states)
-    _, _, theta, _, z_dot, omega = states.T
-    opening = z_dot - support_slope(theta, a=scene.a, b=scene.b) * omega
-    slips = np.where(np.abs(slip) > _LEAST_SLIP * speed, np.sign(slip), _ROLLS)
-    kinds = np.where(gap > _LEAST_GAP * length, _FLIES, slips).astype(int)
-    pull = scene.gravity * math.cos(scene.slope)
-    pushed = np.diff(z_dot) + pull * np.diff(t) > _LEAST_PUSH * speed
-    divided = (np.diff(kinds) != 0) | (pushed & (opening[:-1] < 0) & (opening[1:] > 0))
-    starts = [*(np.nonzero(divided)[0] + 1), len(t)]
+    least_gap, least_slip = _LEAST_GAP * length, _LEAST_SLIP * speed
+    kinds = _kinds(gap - least_gap, slip, least_slip)
+    starts = _starts(problem, t, states, kinds)
     shortest = _SHORTEST * math.sqrt(length / scene.gravity)
     found: list[tuple[str, float]] = []
     before = kinds[0]
     rebounds = False  # whether the body flies on after an impact and a run too short to count
     for start, end in pairwise(starts):
         kind = kinds[start]
+        lasts = t[end] - t[start] if end < len(t) else math.inf
         if before == _FLIES and not rebounds:
             found.append(("IMPACT", _touch(problem, t[start - 1], states[start - 1])))
-        if kind != _FLIES and end < len(t) and t[end] - t[start] < shortest:
+        turns = kind == _ROLLS and before != _FLIES and end < len(t) and kinds[end] == -before
+        if kind != _FLIES and lasts < shortest * (2 if turns and before else 1):
             rebounds = before == _FLIES
             continue
         if before != _FLIES and kind == _FLIES:
-            found.append(("LIFT_OFF", float(t[start])))
+            found.append(("LIFT_OFF", _passing(t, gap, least_gap, start)))
         elif before != _FLIES and kind != before:
-            change = "STICK" if kind == _ROLLS else "SLIP" if before == _ROLLS else "REVERSE"
-            found.append((change, float(t[start])))
+            if kind and before:
+                found.append(("REVERSE", _passing(t, slip * kind, 0.0, start)))
+            else:
+                passed = _passing(t, np.abs(slip), least_slip, start)
+                found.append(("STICK" if kind == _ROLLS else "SLIP", passed))
         before, rebounds = kind, False
     return found
+
+
+def _kinds(above: FloatArray, slip: FloatArray, least_slip: float) -> Any:
+    """Return the codes of rows, by the height above the least gap, and the slip."""
+    slips = np.where(np.abs(slip) > least_slip, np.sign(slip), _ROLLS)
+    return np.where(above > 0, _FLIES, slips).astype(int)
+
+
+def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> list[int]:
+    """Return the first rows of the runs, and the number of rows."""
+    scene, (_, _, theta, _, z_dot, omega) = problem.scene, states.T
+    opening = z_dot - support_slope(theta, a=scene.a, b=scene.b) * omega
+    pull = scene.gravity * math.cos(scene.slope)
+    pushed = np.diff(z_dot) + pull * np.diff(t) > _LEAST_PUSH * problem.scales[3]
+    divided = (np.diff(kinds) != 0) | (pushed & (opening[:-1] < 0) & (opening[1:] > 0))
+    return [*(np.nonzero(divided)[0] + 1).tolist(), len(t)]
+
+
+def _passing(t: FloatArray, values: FloatArray, level: float, start: int) -> float:
+    """Return the last time at which values pass a level before or at a row."""
+    sides = np.sign(values[: start + 1] - level)
+    changes = np.nonzero(sides[1:] != sides[:-1])[0]
+    if not changes.size:
+        return float(t[start])
+    k = changes[-1]
+    share = (level - values[k]) / (values[k + 1] - values[k])
+    return float(t[k] + share * (t[k + 1] - t[k]))
 
 
 def gap_and_slip(problem: Problem, states: FloatArray) -> tuple[FloatArray, FloatArray]:

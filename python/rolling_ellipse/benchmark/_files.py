@@ -1,187 +1,145 @@
-"""Results of a simulator: checked arrays, and files that any program can read and write."""
+"""Results in files that any program can write."""
 
 from __future__ import annotations
 
 import csv
-import shutil
-from contextlib import suppress
-from dataclasses import dataclass, replace
+import io
+import math
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, choice, file_name
-from .._core import EventKind
-from ._problem import COLUMNS, FOLDER, STATE, Problem, problems
+from .._ask.check import file_name
+from ._catalogue import listed, scored_ones
+from ._problem import COLUMNS, STATE, Problem
+from ._results import KINDS, Result
 
 SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}
-_KINDS = tuple(kind.name for kind in EventKind)
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """A simulator's answer to a problem.
+class _Table(NamedTuple):
+    """Names of the columns of a file, and its rows with their places in it, from 1."""
 
-    Attributes
-    ----------
-    states : array_like, shape (n, 6)
-        x, z, theta, x_dot, z_dot, omega. Rows that are not finite count as missing.
-    t : array_like, shape (n,), optional
-        Increasing times [s]; default: the times asked for. Only rows from 0 to the end count.
-    events : iterable of (kind, t), optional
-        Events in order of time, kinds as names of `EventKind`.
-    normal_force, friction_force : array_like, shape (n,), optional
-        Forces of the ground on the body [N].
-    note : str
-        A word on the result, for tables.
-    """
-
-    states: Any
-    t: Any = None
-    events: Any = None
-    normal_force: Any = None
-    friction_force: Any = None
-    note: str = ""
+    file: str
+    names: list[str]
+    rows: list[tuple[int, list[str]]]
 
 
-def checked(problem: Problem, mine: Any, times: FloatArray) -> tuple[Result, str]:
-    """Return the usable rows of a result, and what is missing; forces that are not given are NaN.
+def read_folder(results: Any) -> dict[str, Result]:
+    """Return the results in a folder; a table without a state waits for its result.
 
     Raises
     ------
-    TypeError, ValueError
-        If its arrays are no numbers, have wrong shapes, times do not increase, or an event has no
-        such kind. The message names the problem and the argument.
+    ValueError
+        If there is no such folder, a table has the name of no scored problem, or is not as it must
+        be.
     """
-    result = mine if isinstance(mine, Result) else Result(mine)
-    states = array(f"states of {problem.id}", result.states)
-    if states.ndim != 2 or states.shape[1] != len(STATE):
-        columns = ", ".join(STATE)
-        raise ValueError(
-            f"states of {problem.id} must have shape (n, 6) for {columns}, got {states.shape}"
-        )
-    count = len(states)
-    t = _column(f"t of {problem.id}", times[:count] if result.t is None else result.t, count)
-    grows = np.diff(t) > 0
-    if not grows.all():
-        k = int(np.argmin(grows))
-        raise ValueError(
-            f"t of {problem.id} must increase from row to row, got {t[k + 1]!s} after {t[k]!s}"
-        )
-    usable = np.isfinite(states).all(axis=1) & (t >= 0) & (t <= problem.t_end)
-    there = np.isin(problem.times.round(9), t[usable].round(9))
-    missing = "" if there.all() else f"{(~there).sum()} of {there.size} given times are missing"
-    found: dict[str, Any] = {
-        "t": t[usable],
-        "states": states[usable],
-        "events": _events(problem, result.events),
-    }
-    for name in COLUMNS[7:]:
-        given = getattr(result, name)
-        values = np.full(count, np.nan) if given is None else given
-        found[name] = _column(f"{name} of {problem.id}", values, count)[usable]
-    return replace(result, **found), missing
-
-
-def _column(name: str, values: Any, count: int) -> FloatArray:
-    found = array(name, values)
-    if found.shape != (count,):
-        raise ValueError(
-            f"{name} must have one number for each of {count} rows of states, "
-            f"got shape {found.shape}"
-        )
-    return found
-
-
-def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | None:
-    if events is None:
-        return None
-    found = [
-        (choice(f"events of {problem.id}", getattr(kind, "name", kind), _KINDS), float(t))
-        for kind, t in events
-    ]
-    return tuple(sorted(found, key=lambda event: event[1]))
+    folder = Path(file_name("results", results))
+    if not folder.is_dir():
+        raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
+    known = {one.id: one for one in scored_ones(None)}
+    found = {}
+    for path in sorted(folder.iterdir()):
+        if path.suffix.lower() != ".csv":
+            continue
+        name = path.name.removesuffix(".csv").removesuffix(".events")
+        one = known[listed("results", name, tuple(known))]
+        table = folder / f"{name}.csv"
+        if path == table:
+            found[name] = read(one, path)
+        elif not table.exists():
+            raise ValueError(f"results must have {table.name} beside {path.name}, got no such file")
+    return {name: result for name, result in found.items() if len(result.states)}
 
 
 def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
-    Rows without a time are left out. Two rows at one time are the sides of a jump: the second is
-    kept. Columns beyond those known are left out, too. An empty file has no rows. Events are in
-    `<id>.events.csv` with the columns kind, t, where there is such a file.
+    Rows without a time or without a state are left out. Two rows at one time are the sides of a
+    jump: the second is kept. Columns beyond those known are left out, too. An empty file has no
+    rows. Events are in `<id>.events.csv` with the columns kind, t, where there is such a file.
 
     Raises
     ------
     ValueError
-        If a column is missing, or an entry is no number; the message names problem and column.
+        If a file is no table of UTF-8 text, a column is missing, or an entry is no number; the
+        message names problem, column and row.
     """
-    rows, beside, events = _rows(path), path.with_name(f"{problem.id}.events.csv"), None
-    if not rows:
-        return Result(np.empty((0, len(STATE))))
-    names = [SYNONYMS.get(name.strip(), name.strip()) for name in rows[0]]
-    for name in COLUMNS[:7]:
-        if name not in names:
-            raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")
-    columns = {
-        name: np.array([_entry(problem, name, row, names.index(name)) for row in rows[1:]])
-        for name in COLUMNS
-        if name in names
-    }
-    t = columns["t"]
-    kept = np.append(t[:-1] != t[1:], True) & np.isfinite(t) if t.size else np.zeros(0, bool)
-    forces = {name: columns[name][kept] for name in COLUMNS[7:] if name in columns}
-    states = np.stack([columns[name][kept] for name in STATE], axis=1)
-    if beside.exists():
-        known = _rows(beside)[1:]
-        events = [(row[0].strip().upper(), _entry(problem, "t", row, 1)) for row in known]
-    return Result(states, t[kept], events, **forces)
+    table, events = _table(path), _read_events(problem, path.with_name(f"{problem.id}.events.csv"))
+    if not table.names:
+        return Result(np.empty((0, len(STATE))), events=events)
+    places = {name: _place(problem, table, name) for name in COLUMNS[:7]}
+    places |= {name: table.names.index(name) for name in COLUMNS[7:] if name in table.names}
+    kept: list[list[float]] = []
+    for row, entries in table.rows:
+        if _text(entries, places["t"]) and any(_text(entries, places[name]) for name in STATE):
+            numbers = {
+                name: _entry(problem, table, row, name, _text(entries, place))
+                for name, place in places.items()
+            }
+            t = _finite(problem, table, row, numbers["t"])
+            del kept[len(kept) - bool(kept and kept[-1][0] == t) :]
+            kept.append(list(numbers.values()))
+    rows = np.array(kept).reshape(-1, len(places))
+    forces: dict[str, Any] = {name: rows[:, k] for k, name in enumerate(places) if k >= 7}
+    return Result(rows[:, 1:7], rows[:, 0], events, **forces)
 
 
-def _rows(path: Path) -> list[list[str]]:
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        return [row for row in csv.reader(file) if any(entry.strip() for entry in row)]
+def _read_events(problem: Problem, path: Path) -> list[tuple[str, float]] | None:
+    if not path.exists():
+        return None
+    table = _table(path)
+    kind, t = (_place(problem, table, name) for name in ("kind", "t"))
+    found = []
+    for row, entries in table.rows:
+        then = _finite(problem, table, row, _entry(problem, table, row, "t", _text(entries, t)))
+        typed = _text(entries, kind).upper()
+        found.append((listed(f"kind of {problem.id}", typed, KINDS), then))
+    return found
 
 
-def _entry(problem: Problem, name: str, row: list[str], place: int) -> float:
-    text = row[place].strip() if place < len(row) else ""
+def _table(path: Path) -> _Table:
+    """Return the table in a file, without its empty rows; a pipe would be waited for."""
+    if not path.is_file():
+        raise ValueError(f"results must be files, got {path.name!r}, which is none")
     try:
-        return float(text) if text else np.nan
+        text = path.read_bytes().decode("utf-8-sig")
+        lines = csv.reader(io.StringIO(text, newline=""), strict=True)
+        rows = [(lines.line_num, row) for row in lines if any(entry.strip() for entry in row)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(
+            f"results must be tables of UTF-8 text with commas, got {path.name!r}: {error}"
+        ) from None
+    head = rows[0][1] if rows else []
+    return _Table(path.name, [SYNONYMS.get(one.strip(), one.strip()) for one in head], rows[1:])
+
+
+def _place(problem: Problem, table: _Table, name: str) -> int:
+    if name not in table.names:
+        raise ValueError(
+            f"{name} of {problem.id} must be a column of {table.file}, got {table.names}"
+        )
+    return table.names.index(name)
+
+
+def _text(entries: list[str], place: int) -> str:
+    return entries[place].strip() if place < len(entries) else ""
+
+
+def _entry(problem: Problem, table: _Table, row: int, name: str, text: str) -> float:
+    """Return a number; an empty entry is one of a force only, and NaN."""
+    if not text and name in COLUMNS[7:]:
+        return math.nan
+    try:
+        return float(text)
     except ValueError:
-        raise ValueError(f"{name} of {problem.id} must be a number, got {text!r}") from None
+        raise ValueError(
+            f"{name} of {problem.id} must be a number, got {text!r} in row {row} of {table.file}"
+        ) from None
 
 
-def export(folder: Any) -> list[Path]:
-    """Write the scored problems, their scenes and empty tables of results into a folder.
-
-    Parameters
-    ----------
-    folder : path
-        Made if it does not exist. A table of results that is there already stays as it is.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
-    """
-    place = Path(file_name("folder", folder))
-    place.mkdir(parents=True, exist_ok=True)
-    written = [Path(shutil.copy(FOLDER.with_name("export.txt"), place / "README.txt"))]
-    for one in problems():
-        written.append(Path(shutil.copy(FOLDER / f"{one.id}.json", place)))
-        for suffix, write in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
-            with suppress(ValueError):  # coefficients of restitution that MJCF has not
-                (place / (one.id + suffix)).write_text(write(), encoding="utf-8")
-                written.append(place / (one.id + suffix))
-        table = place / f"{one.id}.csv"
-        if not table.exists():
-            empty = "," * (len(COLUMNS) - 1)
-            rows = [",".join(COLUMNS), *(f"{t!r}{empty}" for t in one.output_times.tolist())]
-            table.write_text("\n".join(rows) + "\n", encoding="utf-8")
-            written.append(table)
-    return written
+def _finite(problem: Problem, table: _Table, row: int, t: float) -> float:
+    if not math.isfinite(t):
+        raise ValueError(f"t of {problem.id} must be finite, got {t} in row {row} of {table.file}")
+    return t

@@ -1,12 +1,8 @@
-"""The problems and their known answers, read from the files in `problems/`."""
+"""A problem with its known answer."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,9 +17,7 @@ from ._equations import FORMS, Dae, Ode, first_arc
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
-TAGS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
 OUTPUT_RATE = 100  # states a second that a simulator is asked for
-FOLDER = Path(__file__).with_name("problems")
 
 
 def states_of(found: Any) -> FloatArray:
@@ -73,8 +67,10 @@ class Problem(FieldsOnly):
         End, and time before which states are scored [s]: from the horizon on an error of 0.1 % of
         the inputs is an error of the state as large as the motion.
     answer : dict
-        The answer in words: whether the body passes over its tip (``"over"``), its events in order
-        (``"events"``), or the laws of impact that it may follow (``"law"``).
+        What is asked for: whether the body passes over its tip (``"over"``); values of the last
+        state (``"last"``) or of all (``"always"``); kinds of events in order (``"events"``), of
+        bounces that end the first ones and the time of their end (``"end"``); or the laws of impact
+        that it may follow (``"law"``).
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
@@ -161,110 +157,3 @@ class Problem(FieldsOnly):
         if form not in FORMS:
             form = choice("index", index, tuple(FORMS))
         return Dae(self, form, *FORMS[form])
-
-
-@dataclass(frozen=True, eq=False)
-class Gradient:
-    """The known derivative of a state with respect to one argument of the scene.
-
-    The other arguments stay as they are typed: on the ground, z, x_dot and z_dot follow rolling.
-
-    Attributes
-    ----------
-    problem, wrt : str
-        Id of the problem, and name of the argument.
-    t : float
-        Time of the state [s].
-    value : ndarray, shape (6,)
-        Derivatives of x, z, theta, x_dot, z_dot, omega.
-    """
-
-    problem: str
-    wrt: str
-    t: float
-    value: FloatArray
-
-    def error(self, value: Any) -> float:
-        """Return the error of a derivative over the known one, both by the scales of states.
-
-        Parameters
-        ----------
-        value : array_like, shape (6,)
-
-        Raises
-        ------
-        ValueError
-            If it has another shape.
-        """
-        found = array("value", value)
-        if found.shape != self.value.shape:
-            raise ValueError(f"value must have shape (6,), got {found.shape}")
-        scales = problem(self.problem).scales
-        largest = np.max(np.abs(self.value / scales))
-        return float(np.max(np.abs((found - self.value) / scales)) / largest)
-
-
-@cache
-def _read() -> dict[str, dict[str, Any]]:
-    found = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(FOLDER.glob("*.json"))]
-    return {one["id"]: one for one in found}
-
-
-@cache
-def _made(name: str) -> Problem:
-    data = _read()[name]
-    rows = np.array(data["states"])
-    given: dict[str, Any] = data["scene"]
-    laws = {law: np.array(states)[:, 1:7] for law, states in data.get("laws", {}).items()}
-    return Problem(
-        **{key: data[key] for key in ("id", "title", "question", "scored", "answer")},
-        tags=tuple(data["tags"]), scene=Scene(**given),
-        t_end=float(data["t_end"]), horizon=float(data["horizon"]),
-        scales=np.array(data["scales"], dtype=float), times=rows[:, 0], states=rows[:, 1:7],
-        normal_force=rows[:, 7], friction_force=rows[:, 8], condition=np.array(data["condition"]),
-        events=tuple(_event(one) for one in data["events"]), laws=laws,
-    )  # fmt: skip
-
-
-def _event(data: dict[str, Any]) -> KnownEvent:
-    sides = np.array([data["before"], data["after"]], dtype=float)
-    known = EventKind[data["kind"]], float(data["t"]), float(data["condition"])
-    return KnownEvent(*known, sides[0, :6], sides[1, :6], sides[:, 6], sides[:, 7])
-
-
-def problem(id: str) -> Problem:
-    """Return a problem by its id.
-
-    Raises
-    ------
-    ValueError
-        If there is no such problem; the message lists all.
-    """
-    return _made(choice("id", id, tuple(_read())))
-
-
-def problems(tags: Iterable[str] | None = None) -> list[Problem]:
-    """Return the scored problems.
-
-    Parameters
-    ----------
-    tags : iterable of str, optional
-        Abilities of a simulator; problems that need others are left out. Default: all.
-
-    Raises
-    ------
-    ValueError
-        If there is no such tag.
-    """
-    able = TAGS if tags is None else [choice("tags", tag, TAGS) for tag in tags]
-    found = [problem(name) for name in _read()]
-    return [one for one in found if one.scored and set(one.tags) <= set(able)]
-
-
-def gradients() -> list[Gradient]:
-    """Return the known derivatives."""
-    return [
-        Gradient(name, row["wrt"], float(row["t"]), np.array(row["value"], dtype=float))
-        for name, data in _read().items()
-        for row in data.get("gradients", [])
-    ]

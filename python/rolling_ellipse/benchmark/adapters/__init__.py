@@ -1,7 +1,7 @@
 """Adapters of physics engines, which are installed beside the package.
 
 Each module has ``simulate(problem, times, setting)`` for `benchmark.run`; the setting is the time
-step [s], and a `Scene` may stand in place of the problem.
+step [s], and an id or a `Scene` may stand in place of the problem.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,8 @@ import numpy as np
 
 from ..._ask.check import FloatArray, positive
 from ..._ask.scene import Scene
-from .._files import Result
+from .._catalogue import problem as known_problem
+from .._results import Result
 
 #: Names of the modules, with what pip installs for each.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")
@@ -33,7 +34,7 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
         counts = np.rint(times / step).astype(int)
         if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):
             raise ValueError(f"setting must be a step that divides all times, got {step!r}")
-        scene = problem if isinstance(problem, Scene) else problem.scene
+        scene = problem if isinstance(problem, Scene) else known_problem(problem).scene
         try:
             advance, state, *note = start(scene, step, **options)
         except ValueError as error:

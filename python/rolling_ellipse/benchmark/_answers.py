@@ -1,0 +1,160 @@
+"""Whether a simulator answers the question of a problem.
+
+The answer has to follow from its numbers: values at the end, or at all times, to 0.01 L or 0.01
+rad; events of the right kinds, in order, each at its time to 2 % of sqrt(L/g), or to a thousandth
+of the largest condition number up to it where that is more, 10 % at most. Its states have to be
+those of the motion: no further away than by inputs that are off by 10 %, and in our conventions
+(`_mistakes`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._ask.check import FloatArray
+from ._events import read_off
+from ._mistakes import mistakes
+from ._problem import STATE, Problem, states_of
+from ._results import Rows
+
+_CLOSE = 0.01  # largest error of a value of the answer, over its scale
+_SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest error of the time of an event, over sqrt(L/g)
+_PER_CONDITION = 1e-3  # share of a sensitive event, over its condition number
+_NEAR = 0.1  # largest error over condition of states that are those of the motion
+_APART = 3.0  # least factor between the distances from the nearest law and from the next one
+_Event = tuple[str, float]
+
+
+class Answer(NamedTuple):
+    """Whether the answer is right, and why or why not, with the differences of the events.
+
+    `errors` are those of the compared rows over scales, shape (n, 6), against the nearest law.
+    """
+
+    right: bool
+    reasons: list[str]
+    errors: FloatArray
+    events: dict[str, dict[str, Any]]
+
+
+def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
+    """Return the answer by usable rows.
+
+    `rows` are those of the problem that are compared, `places` those of the result at their times.
+    """
+    states, law, wrong = _nearest_law(one, rows, mine.states[places])
+    events: dict[str, dict[str, Any]] = {}
+    if "over" in one.answer:
+        wrong += _passes(one, mine)
+    elif not one.laws and "events" not in one.answer:
+        wrong += _values(one, mine)
+    if "events" in one.answer or mine.events is not None:
+        differences, events = _events(one, mine)
+        wrong += differences
+    wrong += mistakes(one, mine, rows, places)
+    errors = np.abs(mine.states[places] - states) / one.scales
+    if not wrong and not (errors / one.condition[rows, None]).max(initial=0.0) <= _NEAR:
+        wrong = ["the states are those of another motion"]
+    return Answer(not wrong, law + wrong, errors, events)
+
+
+def _passes(one: Problem, mine: Rows) -> list[str]:
+    over = bool((np.abs(mine.states[:, 2]) > math.pi / 2).any())
+    words = "passes over the tip" if over else "never passes over the tip"
+    return [] if over == one.answer["over"] else [words]
+
+
+def _values(one: Problem, mine: Rows) -> list[str]:
+    """Compare the values that the last row, or every row, has to have."""
+    (which, known), *_ = one.answer.items()
+    t, states = (mine.t[-1:], mine.states[-1:]) if which == "last" else (mine.t, mine.states)
+    said = []
+    for name, value in known.items():
+        column = STATE.index(name)
+        error = np.abs(states[:, column] - value)
+        row = int(np.argmax(error))
+        if not error[row] <= _CLOSE * one.scales[column]:
+            said.append(f"{name} is {states[row, column]:.6g} at {t[row]:.6g} s, right {value:.6g}")
+    return said
+
+
+def _nearest_law(
+    one: Problem, rows: Any, states: FloatArray
+) -> tuple[FloatArray, list[str], list[str]]:
+    """Return the states by the nearest law, its name with its factor, and why it is none."""
+    if not one.laws or not rows.size:
+        return one.states[rows], [], []
+    motions = {"stronge": one.states, **one.laws}
+    away = {
+        law: float((np.abs(states - motion[rows]) / one.scales).max())
+        for law, motion in motions.items()
+    }
+    first, second = sorted(away, key=lambda law: away[law])[:2]
+    factor = away[second] / max(away[first], 1e-16)
+    said = f"nearest to {first} by a factor of {factor:.3g}"
+    if factor > _APART:
+        return motions[first][rows], [said], []
+    return motions[first][rows], [], [f"no law is followed: {said}"]
+
+
+def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
+    """Compare given events with the known ones, or those that one rule reads off both motions.
+
+    The error of the rule drops out. Of bounces that settle, the first and the end are compared.
+    """
+    if mine.events is None:
+        exact = states_of(one.trajectory.sol(mine.t))
+        return _differences(one, read_off(one, mine.t, mine.states), read_off(one, mine.t, exact))
+    known = [(event.kind.name, event.t) for event in one.events]
+    if "end" not in one.answer:
+        return _differences(one, mine.events, known)
+    count = len(one.answer["events"])
+    wrong, events = _differences(one, mine.events[:count], known[:count])
+    return wrong or _settling(one, mine.events[count - 1 :]), events
+
+
+def _settling(one: Problem, bounces: Sequence[_Event]) -> list[str]:
+    """Say what is wrong with bounces and their end, which may be listed as STICK."""
+    others = [kind for kind, _ in bounces if kind not in ("IMPACT", "STICK")]
+    sticks, end = [t for kind, t in bounces if kind == "STICK"], float(one.answer["end"])
+    if others or len(sticks) > 1:
+        return [f"invented {', '.join(others or ['STICK'])}"]
+    late = [t for t in (*sticks, bounces[-1][1]) if not abs(t - end) <= _allowed(one, end)]
+    return [f"the bounces end at {late[0]:.6g} s, right {end:.6g} s"] if late else []
+
+
+def _differences(
+    one: Problem, mine: Sequence[_Event], known: Sequence[_Event]
+) -> tuple[list[str], dict[str, Any]]:
+    """Return what is wrong with events, and counts and errors of times by kind.
+
+    Where the problem has no event, the rule may read one off both motions: its time is not asked.
+    """
+    kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in known)
+    off: dict[str, float] = {}
+    wrong = []
+    for k, ((kind, t), (other, then)) in enumerate(zip(mine, known, strict=False), 1):
+        if kind == other:
+            off[kind] = max(off.get(kind, 0.0), abs(t - then))
+            if one.events and not abs(t - then) <= _allowed(one, then):
+                wrong.append(f"{kind} {k} at {t:.6g} s, right {then:.6g} s")
+    counts = {"missed": dict(wanted - kinds), "invented": dict(kinds - wanted)}
+    if [kind for kind, _ in mine] != [kind for kind, _ in known]:
+        wrong = [
+            f"{name} {', '.join(f'{n} {kind}' for kind, n in each.items())}"
+            for name, each in counts.items()
+            if each
+        ] or ["events in another order"]
+    return wrong[:2], {**counts, "times": off}
+
+
+def _allowed(one: Problem, t: float) -> float:
+    """Return the largest error of an event at a time [s], by the condition numbers up to it."""
+    before = [event.condition for event in one.events if event.t <= t]
+    share = max(_SHARE, _PER_CONDITION * max(before, default=0.0))
+    return float(min(share, _LARGEST_SHARE) / one.scales[5])

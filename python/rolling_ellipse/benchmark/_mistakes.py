@@ -1,0 +1,141 @@
+"""Mistakes of convention and of output that a simulator's states show, in words.
+
+A mistake is named where undoing it leaves a twentieth of the error, or less. Errors are those over
+scale and condition number: so a simulator's own errors stay small beside its mistakes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._ask.check import FloatArray
+from ..geometry import support
+from ._problem import STATE, Problem
+from ._results import Rows
+
+_LEFT = 0.05  # largest share of an error that is left once its mistake is undone
+_LEAST = 0.02  # least error of a variable with a mistake
+_LEAST_SHIFT = 1e-3  # least error of rows of other times, which may be those of the next row
+_FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped
+_SHIFTS = {1: "one", 2: "two", 3: "three"}
+_DEGREE = math.pi / 180
+_LENGTHS = {0.01: "centimetres", 0.001: "millimetres"}
+_ANGLES: tuple[tuple[float, list[str]], ...] = (
+    (1.0, []), (-1.0, ["counter-clockwise"]), (_DEGREE, ["like degrees"]),
+    (-_DEGREE, ["like degrees", "counter-clockwise"]),
+)  # fmt: skip
+
+
+class _Known(NamedTuple):
+    """Right states at given times, the units of their errors, and the places of these times in the
+    rows of a result."""
+
+    states: FloatArray
+    units: FloatArray
+    places: Any
+
+
+def mistakes(one: Problem, mine: Rows, rows: Any, places: Any) -> list[str]:
+    """Return the mistakes, against the motion by the law of restitution that shows one.
+
+    `places` are those of given times in the rows of the result, `rows` those of the problem.
+    """
+    if len(mine.t) < 2 or not rows.size:
+        return []
+    units = one.scales * one.condition[rows, None]
+    motions = [one.states[rows], *(states[rows] for states in one.laws.values())]
+    errors = [_largest((mine.states[places] - states) / units) for states in motions]
+    for k in np.argsort(errors, kind="stable"):
+        said = list(_named(one, mine, _Known(motions[k], units, places)))
+        if said or errors[k] < _LEAST:
+            return said
+    return []
+
+
+def _largest(errors: FloatArray) -> float:
+    return float(np.abs(errors).max(initial=0.0))
+
+
+def _named(one: Problem, mine: Rows, known: _Known) -> Iterator[str]:
+    difference = mine.states[known.places] - known.states
+    errors = np.abs(difference / known.units).max(axis=0, initial=0.0)
+    stays, rests = (not np.ptp(each, axis=0).any() for each in (mine.states, known.states))
+    if stays and (not rests or errors.max() > _LEAST):
+        same = "all rows are the same, as of a body at rest"
+        yield same if mine.states.any() else "all rows are zero"
+    if stays and not rests:
+        return
+    if errors.max() > _LEAST_SHIFT and (order := _other_times(mine, known)):
+        yield order
+        return
+    for k, name in enumerate(STATE):
+        if errors[k] > _LEAST:
+            values = mine.states[known.places, k]
+            words = _unlike(name, values, known.states[:, k], known.units[:, k])
+            if name == "z" and not words:
+                words = _other_height(one, values, known)
+            yield from [f"{name} looks {words}"] if words else []
+
+
+def _other_times(mine: Rows, known: _Known) -> str:
+    """Say that rows are those of their neighbours, or counted from the end."""
+    for by in (sign * shift for shift in _SHIFTS for sign in (1, -1)):
+        if _fits_in(known.places + by, mine.states, mine, known):
+            towards = "later" if by > 0 else "earlier"
+            return f"rows look shifted by {_SHIFTS[abs(by)]}, to {towards} times"
+    from_the_end = len(mine.t) - 1 - known.places
+    turned = mine.states * [1, 1, 1, -1, -1, -1]  # velocities, whose signs change with time
+    both = (mine.states, turned)
+    is_reversed = any(_fits_in(from_the_end, states, mine, known) for states in both)
+    return "rows look reversed in time" if is_reversed else ""
+
+
+def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool:
+    """Return whether states in other places, where there are some, are nearer by far."""
+    there = (places >= 0) & (places < len(states))
+    right, units = known.states[there], known.units[there]
+    now = _largest((mine.states[known.places[there]] - right) / units)
+    then = _largest((states[places[there]] - right) / units)
+    return bool(there.sum() > 1 and now > _LEAST_SHIFT and then < _LEFT * now)
+
+
+def _unlike(name: str, values: FloatArray, right: FloatArray, units: FloatArray) -> str:
+    """Say as what the values of a variable look; one that is zero looks the same in any unit."""
+    error, size = _largest((values - right) / units), _largest(right / units)
+
+    def fits(changed: Any, most: float = min(error, size)) -> bool:
+        return _largest((changed - right) / units) < _LEFT * most
+
+    if name in ("theta", "omega"):
+        for factor, words in _ANGLES:
+            if fits(factor * values):
+                return " and ".join(words)
+            left = np.remainder(factor * values - right + math.pi, math.tau) - math.pi
+            if name == "theta" and np.abs(left).max() < _FEW_OF_A_TURN and fits(right + left):
+                return f"{' and '.join([*words, 'wrapped'])}: theta counts turns"
+    else:
+        for factor, unit in _LENGTHS.items():
+            if fits(factor * values):
+                return f"like {unit}{'' if name in ('x', 'z') else ' a second'}"
+        if fits(-values):
+            return "counted the other way"
+    off = float(np.mean(values - right))
+    if name in ("x", "theta") and fits(values - off, error):
+        return f"off by {off:.4g} at all times"
+    return ""
+
+
+def _other_height(one: Problem, values: FloatArray, known: _Known) -> str:
+    right, units = known.states[:, 1], known.units[:, 1]
+    most = _LEFT * _largest((values - right) / units)
+    height = support(known.states[:, 2], a=one.scene.a, b=one.scene.b)
+    if _largest((values + height - right) / units) < most:
+        return "like the gap to the ground: it is the height of the centre"
+    off = float(np.mean(values - right))
+    if _largest((values - off - right) / units) < most:
+        return f"off by {off:.4g} at all times: it is the height of the centre above the ground"
+    return ""

@@ -1,0 +1,167 @@
+"""Results of a simulator, and the rows of them that can be scored."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, array, number, shown
+from .._core import EventKind
+from ._catalogue import listed
+from ._problem import COLUMNS, STATE, Problem
+
+KINDS = tuple(kind.name for kind in EventKind)
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A simulator's answer to a problem.
+
+    Attributes
+    ----------
+    states : array_like, shape (n, 6)
+        x, z, theta, x_dot, z_dot, omega; theta counts turns: it is not wrapped. A row with a number
+        that is not finite fails the problem.
+    t : array_like, shape (n,), optional
+        Increasing times [s]; default: the times asked for. Only rows from 0 to the end count.
+    events : iterable of (kind, t), optional
+        Events with finite times, kinds as names of `EventKind`. Without them events are read off
+        the states.
+    normal_force, friction_force : array_like, shape (n,), optional
+        Forces of the ground on the body [N]; NaN where there is none.
+    note : str
+        A word on the result, for tables.
+    """
+
+    states: Any
+    t: Any = None
+    events: Any = None
+    normal_force: Any = None
+    friction_force: Any = None
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """The rows of a result that are finite and within the time of the problem.
+
+    Forces that are not given are NaN. In words: which given times are missing, and the first number
+    that is not finite.
+    """
+
+    t: FloatArray
+    states: FloatArray
+    events: tuple[tuple[str, float], ...] | None
+    normal_force: FloatArray
+    friction_force: FloatArray
+    note: str
+    missing: str
+    not_finite: str
+
+
+def checked(problem: Problem, mine: Any, times: FloatArray) -> Rows:
+    """Return the rows of a result that can be scored.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If its arrays are no numbers, have wrong shapes, times do not increase, or an event has no
+        such kind or no finite time. The message names the problem and the argument.
+    """
+    result = mine if isinstance(mine, Result) else Result(mine)
+    states = _states(problem, result.states)
+    t = _times(problem, result.t, times, len(states))
+    columns = dict(zip(STATE, states.T, strict=True))
+    forces = {name: _force(problem, name, getattr(result, name), len(t)) for name in COLUMNS[7:]}
+    endless = {name: np.where(np.isinf(values), values, 0.0) for name, values in forces.items()}
+    within = (t >= 0) & (t <= problem.t_end)
+    usable = np.isfinite(states).all(axis=1) & within
+    there = np.isin(problem.times.round(9), t[usable].round(9))
+    return Rows(
+        t=t[usable], states=states[usable], events=_events(problem, result.events),
+        normal_force=forces["normal_force"][usable],
+        friction_force=forces["friction_force"][usable], note=result.note,
+        missing="" if there.all() else f"{(~there).sum()} of {there.size} given times are missing",
+        not_finite=_not_finite(t, within, columns | endless),
+    )  # fmt: skip
+
+
+def _states(problem: Problem, values: Any) -> FloatArray:
+    name = f"states of {problem.id}"
+    states = array(name, values)
+    if states.ndim != 2 or states.shape[1] != len(STATE):
+        columns = ", ".join(STATE)
+        lost = STATE[states.shape[1] :] if states.ndim == 2 and len(states) > len(STATE) else ()
+        said = f", without {', '.join(lost)}" if lost else ""
+        raise ValueError(f"{name} must have shape (n, 6) for {columns}, got {states.shape}{said}")
+    return states
+
+
+def _times(problem: Problem, given: Any, asked: FloatArray, count: int) -> FloatArray:
+    name = f"t of {problem.id}"
+    if given is None and count > asked.size:
+        raise ValueError(
+            f"states of {problem.id} must have a row for each of {asked.size} times, or t, "
+            f"got {count} rows"
+        )
+    t = _column(name, asked[:count] if given is None else given, count)
+    if not np.isfinite(t).all():
+        row = int(np.argmin(np.isfinite(t)))
+        raise ValueError(f"{name} must be finite, got {t[row]!s} in row {row}")
+    if not (grows := np.diff(t) > 0).all():
+        k = int(np.argmin(grows))
+        raise ValueError(f"{name} must increase from row to row, got {t[k + 1]!s} after {t[k]!s}")
+    return t
+
+
+def _force(problem: Problem, name: str, given: Any, count: int) -> FloatArray:
+    values = np.full(count, np.nan) if given is None else given
+    return _column(f"{name} of {problem.id}", values, count)
+
+
+def _column(name: str, values: Any, count: int) -> FloatArray:
+    found = array(name, values)
+    if found.shape != (count,):
+        raise ValueError(
+            f"{name} must have one number for each of {count} rows of states, "
+            f"got shape {found.shape}"
+        )
+    return found
+
+
+def _not_finite(t: FloatArray, within: Any, columns: dict[str, FloatArray]) -> str:
+    """Say where the first number is that is not finite, and how many rows have one."""
+    bad = {name: within & ~np.isfinite(values) for name, values in columns.items()}
+    rows = np.nonzero(np.any(list(bad.values()), axis=0))[0]
+    if not rows.size:
+        return ""
+    name = next(name for name, wrong in bad.items() if wrong[rows[0]])
+    more = f", and {rows.size - 1} rows more have such numbers" if rows.size > 1 else ""
+    value, then = columns[name][rows[0]], t[rows[0]]
+    return f"{name} is {value!s} in row {rows[0]} (t = {then:.6g} s){more}"
+
+
+def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | None:
+    if events is None:
+        return None
+    name = f"events of {problem.id}"
+    if not isinstance(events, Iterable):
+        raise TypeError(f"{name} must be pairs of kind and time, got {shown(events)}")
+    found = []
+    for row, event in enumerate(events):
+        pair = list(event) if isinstance(event, Iterable) and not isinstance(event, str) else []
+        if len(pair) != 2:
+            raise ValueError(
+                f"{name} must be pairs of kind and time, got {shown(event)} in row {row}"
+            )
+        kind = getattr(pair[0], "name", pair[0])
+        kind = listed(name, kind.upper() if isinstance(kind, str) else kind, KINDS)
+        t = number(f"t of {name}", pair[1])
+        if not math.isfinite(t):
+            raise ValueError(f"t of {name} must be finite, got {t} in row {row} ({kind})")
+        found.append((kind, t))
+    return tuple(sorted(found, key=lambda event: event[1]))

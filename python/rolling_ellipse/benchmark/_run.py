@@ -1,0 +1,132 @@
+"""Scoring of a simulator that is called, and of results that are there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from inspect import signature
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, positive, shown
+from ._catalogue import listed, scored_ones
+from ._catalogue import problems as able_to
+from ._files import read_folder
+from ._problem import Problem
+from ._results import checked
+from ._score import TOLERANCE, UNSUPPORTED, Score, scored
+from ._scores import Scores
+
+
+def run(
+    mine: Callable[[Problem, FloatArray, Any], Any],
+    *,
+    problems: str | Problem | Iterable[str | Problem] | None = None,
+    tags: str | Iterable[str] | None = None,
+    ladder: Iterable[float | None] = (None,),
+    tolerance: float = TOLERANCE,
+) -> Scores:
+    """Run a simulator on problems, and score it.
+
+    Parameters
+    ----------
+    mine : callable
+        ``mine(problem, times, setting)`` returns states of shape (n, 6) at the times, or a
+        `Result`. It raises NotImplementedError for a problem that it does not support. The setting
+        is what `ladder` has: a step, a tolerance, or None for a default of its own.
+    problems : id, Problem or iterable of them, optional
+        Default: all that are scored.
+    tags : str or iterable of str, optional
+        Abilities of the simulator, also as one text with commas; problems that need others are "not
+        supported".
+    ladder : iterable of float
+        Settings, such as steps [s], from coarse to fine. Default: one, which is None.
+    tolerance : float
+        Largest error over condition number that passes.
+
+    Returns
+    -------
+    Scores
+
+    Raises
+    ------
+    ValueError
+        If a problem or a tag is unknown, or a result is not as it must be; the message names the
+        problem.
+    TypeError
+        If `mine` takes other arguments, or a result is no numbers.
+
+    Examples
+    --------
+    >>> from rolling_ellipse import benchmark
+    >>> benchmark.run(lambda problem, times, step: problem.exact(times), problems="rest.lie")
+    """
+    require_simulator("mine", mine)
+    tolerance, settings = positive("tolerance", tolerance), list(ladder)
+    able = {one.id for one in able_to(tags)}
+    found = []
+    for one in scored_ones(problems):
+        for setting in settings:
+            times = one.output_times
+            try:
+                if tags is not None and one.id not in able:
+                    raise NotImplementedError("needs other abilities")
+                result = mine(one, times, setting)
+            except NotImplementedError as error:
+                why = str(error)
+                found.append(Score(one.id, setting, UNSUPPORTED, reason=why, tolerance=tolerance))
+                continue
+            with np.errstate(over="ignore", invalid="ignore"):  # states may be huge
+                found.append(scored(one, setting, checked(one, result, times), tolerance))
+    return Scores(found)
+
+
+def require_simulator(name: str, mine: Any) -> None:
+    """Raise TypeError if an object cannot be called with a problem, times and a setting."""
+    if callable(mine):
+        try:
+            signature(mine).bind(None, None, None)
+        except ValueError:  # of a function without a signature
+            return
+        except TypeError:
+            said = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
+        else:
+            return
+    else:
+        said = shown(mine)
+    raise TypeError(f"{name} must be a function of (problem, times, setting), got {said}")
+
+
+def score(
+    results: Mapping[str, Any] | Any,
+    *,
+    problems: str | Problem | Iterable[str | Problem] | None = None,
+    tags: str | Iterable[str] | None = None,
+    tolerance: float = TOLERANCE,
+) -> Scores:
+    """Score results that are there already.
+
+    Parameters
+    ----------
+    results : mapping or path
+        Results by the ids of their problems, or the folder of their files ``<id>.csv``. A problem
+        without a result is "not supported".
+    problems, tags, tolerance
+        As in `run`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such folder, a result or a table has the name of no problem that is scored,
+        or a result is not as it must be.
+    """
+    given_results = results if isinstance(results, Mapping) else read_folder(results)
+    names = tuple(one.id for one in scored_ones(None))
+    known = {listed("results", name, names): one for name, one in given_results.items()}
+
+    def given(one: Problem, times: FloatArray, setting: Any) -> Any:
+        if one.id not in known:
+            raise NotImplementedError("no result")
+        return known[one.id]
+
+    return run(given, problems=problems, tags=tags, tolerance=tolerance)

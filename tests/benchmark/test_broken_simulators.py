@@ -1,0 +1,378 @@
+"""Simulators that do not answer: "right" only where the answer does not depend on the break.
+
+The table `BROKEN` has each break, the problems that it leaves as they are, each with the reason,
+and what the score has to say of it elsewhere.
+"""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from rolling_ellipse import benchmark, simulate
+from rolling_ellipse.__main__ import main
+from rolling_ellipse.benchmark._problem import states_of
+from rolling_ellipse.geometry import support
+
+IDS = {one.id for one in benchmark.problems()}
+LIES = {"rest.lie": "the body does not move"}
+NO_ANGLE = LIES | {"hit.bounce_flat": "theta and omega are 0 all the time"}
+WITHIN_HALF_A_TURN = dict.fromkeys(
+    IDS - {"hit.settle", "leave.slip_then_lift", "roll.circle", "roll.roll",
+           "slide.slope"},
+    "theta stays between -pi and pi; in brink.over up to the horizon, and it is over a tip anyway",
+)  # fmt: skip
+NO_EVENTS = dict.fromkeys(
+    ["brink.back", "brink.over", "rest.lie", "roll.circle", "roll.rock", "roll.roll", "roll.thin",
+     "slide.slope"],
+    "there is no event whose time could be wrong",
+)  # fmt: skip
+Change = Callable[[benchmark.Problem, Any], Any]
+TURN = 180 / math.pi
+
+
+class Break(NamedTuple):
+    """What becomes of right states, the problems that it leaves as they are, and the words for it
+    elsewhere."""
+
+    of: Change
+    independent: dict[str, str]
+    words: str
+
+
+def times(*factors: float) -> Change:
+    return lambda one, states: states * factors
+
+
+def all_rows(row: Callable[[Any, Any], Any]) -> Change:
+    return lambda one, states: np.tile(row(one, states), (len(states), 1))
+
+
+def wrapped(one: Any, states: Any) -> Any:
+    angles = np.arctan2(np.sin(states[:, 2]), np.cos(states[:, 2]))
+    return np.column_stack([states[:, :2], angles, states[:, 3:]])
+
+
+def gap(one: Any, states: Any) -> Any:
+    """The height of the lowest point, which is 0 on the ground, in place of that of the centre."""
+    height = support(states[:, 2], a=one.scene.a, b=one.scene.b)
+    return states - np.outer(height, [0, 1, 0, 0, 0, 0])
+
+
+def known_events(one: Any) -> list[tuple[str, float]]:
+    return [(event.kind.name, event.t) for event in one.events]
+
+
+def events_later(by: float) -> Change:
+    return lambda one, states: benchmark.Result(
+        states, events=[(kind, then + by) for kind, then in known_events(one)]
+    )
+
+
+zeros = all_rows(lambda one, states: np.zeros(6))
+BROKEN = {
+    "the start for ever": Break(
+        all_rows(lambda one, states: states[0]), LIES, "all rows are the same"
+    ),
+    "ones": Break(all_rows(lambda one, states: np.ones(6)), {}, "all rows are the same"),
+    "zeros": Break(zeros, {}, "all rows are zero"),
+    "zeros beside the right events": Break(
+        lambda one, states: benchmark.Result(zeros(one, states), events=known_events(one)), {},
+        "all rows are zero",
+    ),
+    "a body at rest on its flat side": Break(
+        all_rows(lambda one, states: [0, one.scene.b, 0, 0, 0, 0.0]), LIES, "all rows are the same"
+    ),
+    "time reversed": Break(
+        lambda one, states: states[::-1], LIES, "rows look reversed in time"
+    ),
+    "time reversed, and the velocities": Break(
+        lambda one, states: states[::-1] * [1, 1, 1, -1, -1, -1], LIES,
+        "rows look reversed in time",
+    ),
+    "theta counter-clockwise": Break(
+        times(1, 1, -1, 1, 1, -1), NO_ANGLE, "theta looks counter-clockwise"
+    ),
+    "theta wrapped to half a turn": Break(wrapped, WITHIN_HALF_A_TURN, "theta counts turns"),
+    "theta and omega in degrees": Break(
+        times(1, 1, TURN, 1, 1, TURN), NO_ANGLE, "theta looks like degrees"
+    ),
+    "centimetres": Break(times(100, 100, 1, 100, 100, 1), {}, "z looks like centimetres"),
+    "z from the ground to the lowest point": Break(gap, {}, "z looks like the gap to the ground"),
+    "rows one too late": Break(
+        lambda one, states: np.roll(states, 1, axis=0), LIES, "rows look shifted by one"
+    ),
+    "rows one too early": Break(
+        lambda one, states: np.roll(states, -1, axis=0), LIES, "rows look shifted by one"
+    ),
+    "events a thousand seconds late": Break(events_later(1000.0), NO_EVENTS, ", right"),
+    "events five seconds early": Break(events_later(-5.0), NO_EVENTS, ", right"),
+    "events a tenth of a second late": Break(events_later(0.1), NO_EVENTS, ", right"),
+}  # fmt: skip
+
+
+def right(scores: benchmark.Scores) -> set[str]:
+    return {score.problem for score in scores if score.answer == "right"}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+@pytest.mark.parametrize("accurate", [True, False])
+def test_right_is_what_does_not_depend_on_the_break(name: str, accurate: bool) -> None:
+    """Also beside errors of the simulator: those of a gravity that is off by 1e-5."""
+    broken = BROKEN[name]
+
+    def mine(one: Any, t: Any, _: Any) -> Any:
+        scene = one.scene.replace(gravity=one.scene.gravity * (1 if accurate else 1 + 1e-5))
+        return broken.of(one, states_of(simulate(scene, t)))
+
+    found = benchmark.run(mine)
+    assert right(found) == set(broken.independent)
+    assert f"{len(broken.independent)} of 18 answers are right" in found.verdict()
+    for score in found:
+        assert score.answer in ("right", "wrong") and score.passed == (score.answer == "right")
+        assert (broken.words in score.reason) == (score.answer == "wrong"), score
+
+
+OTHERS: dict[str, tuple[Change, str, list[str]]] = {
+    "all in other units": (
+        times(100, 100, -TURN, 100, 100, -TURN), "roll.roll",
+        ["x looks like centimetres", "z_dot looks like centimetres a second",
+         "theta looks like degrees and counter-clockwise"],
+    ),
+    "millimetres": (times(1e3, 1e3, 1, 1e3, 1e3, 1), "hit.bounce", ["z looks like millimetres"]),
+    "degrees of half a turn": (
+        lambda one, states: wrapped(one, states) * [1, 1, TURN, 1, 1, TURN], "roll.roll",
+        ["theta looks like degrees and wrapped: theta counts turns", "omega looks like degrees"],
+    ),
+    "mirrored turns": (
+        lambda one, states: wrapped(one, states * [1, 1, -1, 1, 1, -1]), "roll.circle",
+        ["theta looks counter-clockwise and wrapped: theta counts turns"],
+    ),
+    "z down": (times(1, -1, 1, 1, -1, 1), "hit.drop_stick", ["z looks counted the other way"]),
+    "seen from behind": (
+        times(-1, 1, -1, -1, 1, -1), "slide.stick",
+        ["x looks counted the other way", "theta looks counter-clockwise"],
+    ),
+    "angular velocity alone": (
+        times(1, 1, 1, 1, 1, -1), "brink.over", ["omega looks counter-clockwise"]
+    ),
+    "from the other axis": (
+        lambda one, states: np.add(states, [0, 0, math.pi / 2, 0, 0, 0]), "roll.rock",
+        ["theta looks off by 1.571 at all times"],
+    ),
+    "z from the lowest place of the centre": (
+        lambda one, states: states - [0, one.scene.b, 0, 0, 0, 0], "roll.rock",
+        ["z looks off by -1 at all times: it is the height of the centre above the ground"],
+    ),
+    "two rows": (
+        lambda one, states: np.roll(states, 2, axis=0), "hit.bounce", ["rows look shifted by two"]
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_mistakes_are_named(name: str) -> None:
+    change, problem, words = OTHERS[name]
+    (score,) = benchmark.run(lambda one, t, _: change(one, one.exact(t)), problems=problem)
+    assert score.answer == "wrong" and all(word in score.reason for word in words), score
+
+
+@pytest.mark.parametrize("off", [1e-4, 1e-3, 1e-2, 0.1])
+@pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
+def test_no_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
+    """Errors of another scene are no mistakes of output."""
+
+    def mine(one: Any, t: Any, _: Any) -> Any:
+        return states_of(simulate(one.scene.replace(**{field: getattr(one.scene, field) * by}), t))
+
+    for by in (1 - off, 1 + off):
+        if field != "restitution" or by < 1:
+            assert not any(" look" in score.reason for score in benchmark.run(mine))
+
+
+def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
+    """Impacts of `hit.settle` in closed form: flights shorter by e each, from the second on."""
+    first, second = (event.t for event in one.events[:2])
+    times, last = [first, second], second - first
+    while len(times) < most:
+        last *= one.scene.restitution
+        times.append(times[-1] + last)
+    return [("IMPACT", t) for t in times]
+
+
+@pytest.mark.parametrize("count", [11, 21, 22, 40, 200])
+@pytest.mark.parametrize("sticks", [True, False])
+def test_bounces_beyond_any_cut_are_right(count: int, sticks: bool) -> None:
+    """After 200 of them the times between them are below an ulp."""
+    one = benchmark.problem("hit.settle")
+    events = every_impact(one, count)
+    end = one.events[-1].t
+    assert all(t <= later for (_, t), (_, later) in pairwise(events)) and events[-1][1] <= end
+    events += [("STICK", end)] * sticks
+    states = one.exact(one.output_times)
+    (score,) = benchmark.run(lambda *_: benchmark.Result(states, events=events), problems=one)
+    assert score.answer == "right" and score.passed and score.reason == "", score
+
+
+@pytest.mark.parametrize("rest_speed", [1e-12, 1e-9, 1e-3, 0.03])
+def test_any_threshold_of_rest_is_right(rest_speed: float) -> None:
+    def mine(one: Any, t: Any, _: Any) -> Any:
+        motion = simulate(one.scene, t, rest_speed=rest_speed)
+        return benchmark.Result(
+            states_of(motion), events=[(event.kind, event.t) for event in motion.events]
+        )
+
+    found = benchmark.run(mine)
+    assert right(found) == IDS and all(score.passed for score in found)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda all_of: all_of[:4], "missed 1 IMPACT"),
+        (lambda all_of: [*all_of[:5], ("STICK", all_of[4][1])], "end"),  # no later bounces
+        (lambda all_of: all_of[:6], "end"),
+        (lambda all_of: [*all_of, ("IMPACT", 2.0)], "end"),
+        (lambda all_of: [*all_of, ("STICK", 1.8)], "end"),
+        (lambda all_of: [*all_of[:8], ("LIFT_OFF", 1.3545)], "LIFT_OFF"),
+        (lambda all_of: [(kind, 1.02 * t) for kind, t in all_of], "IMPACT 1"),
+        (lambda all_of: [], "missed 5 IMPACT"),
+    ],
+)
+def test_other_bounces_are_wrong(change: Any, words: str) -> None:
+    one = benchmark.problem("hit.settle")
+    events = change(every_impact(one, 22))
+    states = one.exact(one.output_times)
+    (score,) = benchmark.run(lambda *_: benchmark.Result(states, events=events), problems=one)
+    assert score.answer == "wrong" and words in score.reason, score
+
+
+# ----------------------------------------------------------------------- each answer
+
+
+def test_the_disc_has_rolled_exactly_forty_metres() -> None:
+    """The question of roll.circle is where it is, not whether it turned: 32 m is wrong."""
+
+    def mine(one: Any, t: Any, share: float) -> Any:
+        return one.exact(t) * [share, 1, share, share, 1, share]
+
+    found = benchmark.run(mine, problems="roll.circle", ladder=[1.0, 0.9999, 1.001, 0.8])
+    assert [score.answer for score in found] == ["right", "right", "wrong", "wrong"]
+    assert "x is 32 at 20 s, right 40" in found[-1].reason
+
+
+@pytest.mark.parametrize(("column", "word"), [(0, "x"), (2, "theta")])
+def test_a_body_that_lies_neither_rocks_nor_moves(column: int, word: str) -> None:
+    def mine(one: Any, t: Any, size: float) -> Any:
+        states = one.exact(t)
+        states[:, column] += size * np.sin(t)
+        return states
+
+    found = benchmark.run(mine, problems="rest.lie", ladder=[0.5, 0.05, 0.001])
+    assert [score.answer for score in found] == ["wrong", "wrong", "right"]
+    assert word in found[0].reason
+
+
+def test_the_law_is_told_only_where_one_is_nearest_by_far() -> None:
+    """Between two laws there is none; each law itself is named."""
+    one = benchmark.problem("law.which")
+    motions = {"stronge": one.states, **one.laws}
+    places = np.rint(one.times * 100).astype(int)
+
+    def score(states: Any) -> benchmark.Score:
+        result = benchmark.Result(states, t=one.output_times[places])
+        (found,) = benchmark.run(lambda *_: result, problems=one)
+        return found
+
+    for law, states in motions.items():
+        known = score(states)
+        assert known.answer == "right" and f"nearest to {law}" in known.reason
+        for other, its in motions.items():
+            if other != law:
+                between = score(0.5 * (states + its))
+                assert between.answer == "wrong" and "no law" in between.reason
+                assert score(0.98 * states + 0.02 * its).answer == "right"
+
+
+def test_a_body_that_never_slips_does_not_slide_all_the_way() -> None:
+    (score,) = benchmark.run(
+        lambda one, t, _: np.outer(np.ones(t.size), [0, 1, 0, 0, 0, 0]), problems="slide.slope"
+    )
+    assert score.answer == "wrong" and "missed 1 SLIP" in score.reason
+
+
+# ----------------------------------------------------------------------- times of events
+
+NO_TIMES = [math.nan, math.inf, -math.inf]
+
+
+@pytest.mark.parametrize("bad", NO_TIMES)
+@pytest.mark.parametrize("name", sorted(IDS - set(NO_EVENTS)))
+def test_a_time_that_is_no_number_is_refused_by_name(name: str, bad: float) -> None:
+    one = benchmark.problem(name)
+    events = known_events(one)
+    events[-1] = (events[-1][0], bad)
+    result = benchmark.Result(one.exact(one.output_times), events=events)
+    said = rf"t of events of {name} must be finite, got {bad} in row {len(events) - 1}"
+    with pytest.raises(ValueError, match=said):
+        benchmark.run(lambda *_: result, problems=name)
+    with pytest.raises(ValueError, match=said):
+        benchmark.score({name: result})
+
+
+def written(folder: Path, one: Any, events: list[tuple[str, float]]) -> None:
+    rows = np.column_stack([one.output_times, one.exact(one.output_times)])
+    head = "t,x,z,theta,x_dot,z_dot,omega"
+    np.savetxt(folder / f"{one.id}.csv", rows, "%.17g", ",", header=head, comments="")
+    text = "".join(f"{kind},{t}\n" for kind, t in events)
+    (folder / f"{one.id}.events.csv").write_text(f"kind,t\n{text}")
+
+
+@pytest.mark.parametrize("bad", ["nan", "inf", "-inf", ""])
+def test_a_time_that_is_no_number_is_refused_in_files(
+    bad: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one = benchmark.problem("hit.drop_stick")
+    written(tmp_path, one, [("IMPACT", bad)])  # type: ignore[list-item]
+    with pytest.raises(ValueError, match=r"t of hit.drop_stick must be .*, got .* in row 2 of hit"):
+        benchmark.score(tmp_path)
+    assert main(["benchmark", "score", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert "hit.drop_stick" in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("off", [1000.0, -5.0, 0.1, -0.02])
+def test_a_wrong_time_is_wrong_in_python_files_and_command(
+    off: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one = benchmark.problem("slide.stick")
+    given = [("STICK", one.events[0].t + off)]
+    (score,) = benchmark.run(
+        lambda *_: benchmark.Result(one.exact(one.output_times), events=given), problems=one
+    )
+    written(tmp_path, one, given)
+    (by_files,) = benchmark.score(tmp_path, problems=one.id)
+    for each in (score, by_files):
+        assert each.answer == "wrong" and not each.passed
+        assert each.events["times"]["STICK"] == pytest.approx(abs(off))
+        assert "STICK 1 at" in each.reason and "right 1.4466" in each.reason
+    assert main(["benchmark", "score", str(tmp_path), "--problem", one.id]) == 1
+    assert "wrong: slide.stick" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", sorted(IDS - set(NO_EVENTS)))
+def test_times_are_judged_by_the_stated_share(name: str) -> None:
+    """2 % of sqrt(L/g), or a thousandth of the condition, 10 % at most."""
+    one = benchmark.problem(name)
+    known = known_events(one)[: 5 if name == "hit.settle" else None]
+    rest = known_events(one)[len(known) :]
+    for k, event in enumerate(one.events[: len(known)]):
+        allowed = min(max(0.02, 1e-3 * event.condition), 0.1) / one.scales[5]
+        for share, answer in ((0.99, "right"), (-0.99, "right"), (1.01, "wrong"), (-1.01, "wrong")):
+            moved = [(kind, t + share * allowed * (k == i)) for i, (kind, t) in enumerate(known)]
+            result = benchmark.Result(one.exact(one.output_times), events=[*moved, *rest])
+            (score,) = benchmark.run(lambda *_, it=result: it, problems=one)
+            assert score.answer == answer, (event, share, score)

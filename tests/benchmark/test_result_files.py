@@ -1,0 +1,88 @@
+"""Files of problems and results: written over nothing, and read as they must be."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.limits import files_of_at_most
+from rolling_ellipse import Trajectory, WorkPrecision, benchmark
+
+IDS = [one.id for one in benchmark.problems()]
+
+
+def test_files_written_and_scored(tmp_path: Path) -> None:
+    """The exact answers are perfect, written with synonyms by 17 digits; missing ones are said."""
+    benchmark.export(tmp_path)
+    assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [18, 18, 15]
+    assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
+    for one in benchmark.problems():
+        t = one.output_times[: 51 if one.id == "roll.rock" else None]
+        rows = np.column_stack([t, one.exact(t)])
+        header = "t,x,z,theta,vx,vz,omega"
+        np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
+    benchmark.export(tmp_path)  # leaves the results
+    (tmp_path / "roll.thin.csv").write_text("")
+    found = benchmark.score(tmp_path)
+    unlike = [(score.problem, score.answer) for score in found if not score.passed]
+    assert unlike == [("roll.rock", "failed"), ("roll.thin", "not supported")]
+    short = found[IDS.index("roll.rock")]
+    assert found.wrong == ["roll.rock"] and short.answer == "failed" and short.digits > 12
+    assert short.reason == "ends at 0.5 s; 39 of 41 given times are missing"
+    assert len(found.to_dataframe()) == 18
+
+
+def test_a_cut_file_is_refused_by_its_last_row(tmp_path: Path) -> None:
+    """As a full disk leaves it: within a number the row is shorter, or another number."""
+    one = benchmark.problem("slide.stick")
+    benchmark.export(tmp_path)
+    rows = np.column_stack([one.output_times, one.exact(one.output_times)])
+    header = "t,x,z,theta,x_dot,z_dot,omega"
+    path = tmp_path / "slide.stick.csv"
+    np.savetxt(path, rows, "%.17g", ",", header=header, comments="")
+    text = path.read_text()
+    path.write_text(text[: text.rindex("\n5,") + 20])
+    with pytest.raises(ValueError, match=r"of slide\.stick must be a number, got '' in row 502 of"):
+        benchmark.score(tmp_path)
+
+
+def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
+    """All is written, or nothing: an own file, a link to it, a dangling one, a folder, a pipe."""
+    mine, place = tmp_path / "mine", tmp_path / "place"
+    for name in ("README.txt", "roll.rock.json", "roll.rock.csv", "hit.settle.sdf"):
+        for make in (
+            lambda path: path.write_text("mine"), lambda path: path.symlink_to(mine),
+            lambda path: path.symlink_to(tmp_path / "nowhere"), lambda path: path.mkdir(),
+            os.mkfifo,
+        ):  # fmt: skip
+            place.mkdir()
+            mine.write_text("mine")
+            make(place / name)
+            if name.endswith(".csv") and (place / name).is_file():
+                benchmark.export(place)  # a table of results
+            else:
+                with pytest.raises(ValueError, match=f"folder must not have another {name}, got"):
+                    benchmark.export(place)
+                assert [path.name for path in place.iterdir()] == [name]
+            assert mine.read_text() == "mine" and not (tmp_path / "nowhere").exists()
+            shutil.rmtree(place)
+
+
+def test_a_full_disk_leaves_no_cut_file(tmp_path: Path) -> None:
+    with files_of_at_most(3000), pytest.raises(OSError, match="large"):
+        benchmark.export(tmp_path)
+    whole = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    written = benchmark.export(tmp_path)  # goes on
+    assert len(whole) + len(written) == len([*tmp_path.iterdir()])
+    for name, content in whole.items():
+        assert (tmp_path / name).read_bytes() == content
+
+
+def test_pipes_are_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "slide.stick.csv")
+    with pytest.raises(ValueError, match=r"results must be files, got 'slide\.stick\.csv'"):
+        benchmark.score(tmp_path)
+    for load in (Trajectory.load, WorkPrecision.load):
+        with pytest.raises(ValueError, match="it is a pipe"):
+            load(tmp_path / "slide.stick.csv")
