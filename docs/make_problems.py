@@ -126,22 +126,39 @@ def answer(data: Any) -> str:
     if "over" in right:
         turned = "exceeds" if right["over"] else "never exceeds"
         word = "It passes over the tip" if right["over"] else "It never passes over the tip"
-        if data["scene"]["a"] == data["scene"]["b"]:
-            word = "It has, as the last state shows"
         return f"{word}. A simulator is right if abs(theta) {turned} pi/2.\n"
+    if "last" in right:
+        return (
+            f"It has: x = {right['last']['x']} m at the end. A simulator is right if its last x is "
+            "this to 0.01 L.\n"
+        )
+    if "always" in right:
+        return "It stays. A simulator is right if x stays 0 to 0.01 L, and theta to 0.01.\n"
     if "law" in right:
         return (
             f"Any of {', '.join(right['law'])} is right; the score names the law whose states are\n"
-            "nearest, and by which factor. States below are by Stronge's law, the package's own.\n"
+            "nearest, and by which factor, which has to be above 3. States below are by Stronge's\n"
+            "law, the package's own.\n"
         )
     if "status" in right:
         return (
             "Neither sliding nor flight can go on, and rolling would need another velocity: the\n"
             "package ends the motion with the status JAMMED. This problem is shown, not scored.\n"
         )
+    if "end" in right:
+        return (
+            f"They end at {right['end']} s. A simulator is right if it has the first "
+            f"{len(right['events'])} of these events,\n"
+            "which follow flights higher than 0.002 L, and if its last event, IMPACT or STICK, is\n"
+            "at the time of the last one: impacts between may be as many as it resolves. A\n"
+            "[time](../benchmark.md#a-score) has a tolerance.\n"
+        )
     if not right["events"]:
         return "No event takes place. A simulator is right if it has none.\n"
-    return "A simulator is right if it has these events, in this order:\n"
+    return (
+        "A simulator is right if it has these events, in this order, each at its\n"
+        "[time](../benchmark.md#a-score):\n"
+    )
 
 
 def compared(data: Any) -> list[tuple[Any, float]]:
