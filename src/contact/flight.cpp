@@ -71,6 +71,17 @@ class Gap {
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
     }
 
+    // The time of a contact, given the neighbours between which the gap closes. The centre is then
+    // put at h: the later one would always lift it, by 1e-16 of its energy. Where the body turns by
+    // more than 1e-8 between them, the gap also bends by a rounding or more, and the later one is
+    // the contact; so it is if the earlier one is the start of the flight.
+    double closes(const Bracket& between) const {
+        constexpr double small_turn = 1e-8;
+        const auto [low, high] = between;
+        if (low == 0 || std::abs(flight_.start.omega) * (high - low) > small_turn) return high;
+        return std::abs(value(low)) < std::abs(value(high)) ? low : high;
+    }
+
     // The first root after t of the parabola with the gap's value and two derivatives there.
     std::optional<RootGuess> root_about(double t) const {
         const double bend = flight_.gravity.into + at(t).ddh * square(flight_.start.omega);
@@ -232,7 +243,8 @@ double first_touch(const Flight& flight, const Gap& gap) {
         if (now.convex) {
             if (before < 0) {
                 const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
-                if (gap.value(lowest) <= 0) return bisect_root(now.begin, lowest, value).high;
+                if (gap.value(lowest) <= 0)
+                    return gap.closes(bisect_root(now.begin, lowest, value));
                 // A tip that passes below a centre this low touches the ground, even if rounding
                 // leaves a positive gap for a body that spins fast.
                 const double tip = curvature.tip_time(now);
@@ -240,7 +252,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
             }
         } else if (after < 0 && gap.value(end) <= 0) {
             const double from = before > 0 ? bisect_root(now.begin, end, rate).high : now.begin;
-            return bisect_root(from, end, value, gap.root_about(from)).high;
+            return gap.closes(bisect_root(from, end, value, gap.root_about(from)));
         }
         const Curvature::Interval next = curvature.after(now);
         // The body spins so fast that an interval, or half a convex one, is below an ulp of time.
