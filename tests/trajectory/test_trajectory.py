@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.contact import random_scenes
 from oracles.numbers import EPS
 from oracles.trajectory import MATRICES, SCENES, VECTORS
 from rolling_ellipse import Mode, Scene, Status, Trajectory, ValidityWarning, simulate
+from rolling_ellipse._ask.printing import brief
 
 each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 
@@ -245,3 +247,15 @@ def test_names_of_any_kind_of_text_become_plain() -> None:
     told = dataclasses.replace(motion, message=Mine("message"), reason=Mine("reason"), **how)
     assert pickle.loads(pickle.dumps(told)) == told
     assert pickle.loads(pickle.dumps(motion)) == motion
+
+
+def test_events_have_the_angle_and_place_that_they_print() -> None:
+    """Both are the same before and after an event: only velocities change there."""
+    seen = set()
+    for scene in random_scenes(80, 5):
+        for event in rl.simulate(scene, 3.0, raise_on_failure=False).events:
+            seen.add(event.kind)
+            assert (event.theta, event.x) == (event.state_before.theta, event.state_before.x)
+            assert (event.theta, event.x) == (event.state_after.theta, event.state_after.x)
+            assert f"theta = {brief(event.theta)} rad, x = {brief(event.x)} m" in repr(event)
+    assert len(seen) >= 6

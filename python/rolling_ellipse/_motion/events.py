@@ -50,6 +50,8 @@ class Event(FieldsOnly):
         energy lost in it.
     energy_before, energy_after : float
         Kinetic and potential energy of the two states [J].
+    theta, x : float
+        Angle [rad] and centre [m] at the event, the same before and after it.
     """
 
     t: float
@@ -59,10 +61,19 @@ class Event(FieldsOnly):
     energy_before: float
     energy_after: float
 
+    @property
+    def theta(self) -> float:
+        """Angle of the body at the event [rad]."""
+        return self.state_after.theta
+
+    @property
+    def x(self) -> float:
+        """Place of the centre at the event [m]."""
+        return self.state_after.x
+
     def _row(self) -> Row:
         """Return the event as a table row, with the columns of `_HEAD`."""
-        after = self.state_after
-        numbers = (f"{self.t:.9g}", self.kind.name, brief(after.theta), brief(after.x))
+        numbers = (f"{self.t:.9g}", self.kind.name, brief(self.theta), brief(self.x))
         return (*numbers, self._change())
 
     def _change(self) -> str:
@@ -74,10 +85,9 @@ class Event(FieldsOnly):
         return change
 
     def __repr__(self) -> str:
-        after = self.state_after
         return (
-            f"<Event {self.kind.name} at t = {self.t:.9g} s, theta = {brief(after.theta)} rad, "
-            f"x = {brief(after.x)} m: {self._change()}>"
+            f"<Event {self.kind.name} at t = {self.t:.9g} s, theta = {brief(self.theta)} rad, "
+            f"x = {brief(self.x)} m: {self._change()}>"
         )
 
 
