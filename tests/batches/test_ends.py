@@ -57,3 +57,38 @@ def test_a_motion_without_its_end_has_its_exception() -> None:
     assert found.status.tolist() == ["COMPLETED", "MAX_EVENTS"] and list(found.errors) == [(1,)]
     assert isinstance(found.errors[1,], rl.IntegrationError) and np.isnan(found.theta[1])
     assert seen == [(2, 2)]
+
+
+def test_most_events_are_those_of_simulate() -> None:
+    """A motion with more events ends before its time; they are counted up to then."""
+    found = rl.ends(SCENES, 4.0, max_events=2)
+    for k, scene in enumerate(SCENES):
+        motion = rl.simulate(scene, [4.0], max_events=2, raise_on_failure=False)
+        assert found.status[k] == motion.status.name and found.events[k] == len(motion.events)
+        assert np.isnan(found.theta[k]) == (motion.t.size == 0)
+    over = np.flatnonzero(found.status == "MAX_EVENTS").tolist()
+    assert len(over) > 5 and set(found.events[over]) == {2}
+    for k in over:
+        error = found.errors[k,]
+        assert isinstance(error, rl.IntegrationError) and len(error.trajectory.events) == 2
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])
+def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
+    """A disc dropped from a height bounces with e^n of its speed; the first rebound below the rest
+    speed and all that follow end in one event."""
+    e, speed, g = 0.6, 3.0, 9.81
+    disc = rl.Scene(1.0, 1.0, z=1.0 + speed**2 / (2 * g), friction=0.0, restitution=e, gravity=g)
+    rest_speed = share * np.sqrt(g)
+    impacts = 1 + np.flatnonzero(speed * e ** np.arange(1, 60) < rest_speed)[0]
+    found = rl.ends([disc], 10.0, rest_speed=rest_speed)
+    assert found.events[0] == impacts + 1
+    kinds = [event.kind.name for event in rl.simulate(disc, 10.0, rest_speed=rest_speed).events]
+    assert kinds == ["IMPACT"] * impacts + ["REST"]
+
+
+def test_a_time_after_all_is_refused_with_a_reason() -> None:
+    with pytest.raises(
+        ValueError, match=r"^t must be finite \[s\], since most motions .* got inf$"
+    ):
+        rl.ends(SCENES, np.inf)

@@ -29,6 +29,7 @@ from .many import solved, worker_error
 Codes = npt.NDArray[np.int32]
 _NAMES = {code: each.name for code, each in STATUSES.items()} | {-1: "REFUSED"}
 _FAILED = -1, *(code for code, each in STATUSES.items() if each not in AT_AN_END)
+_ENDLESS = "finite [s], since most motions go on for ever and have no last state"
 _NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((4, 0), np.int32)}
 
 
@@ -43,7 +44,10 @@ class Ends(FieldsOnly):
     mode, first : ndarray of int8
         Codes of `Mode` at the end, and of the `EventKind` of the first event; -1: none.
     events : ndarray of int32
-        Numbers of events; 0 for rolling that is proved.
+        Numbers of events, ``len(motion.events)`` of `simulate`; 0 for rolling that is proved. Of a
+        body that settles in ever smaller bounces these are the impacts down to the first rebound
+        slower than `rest_speed`, and one event at the end of all bounces that are left, which are
+        infinitely many: a smaller `rest_speed` counts more of them.
     status : ndarray of str
         Names of `Status`, or REFUSED.
     errors : dict
@@ -101,7 +105,8 @@ def ends(
     *,
     workers: Any = 1,
     progress: bool | Callable[[int, int | None], Any] = False,
-    rest_speed: float | None = None,
+    max_events: int = DEFAULTS.max_events,
+    rest_speed: float | None = DEFAULTS.rest_speed,
 ) -> Ends:
     """Return only the ends of many motions, with the bits of `simulate`.
 
@@ -114,18 +119,22 @@ def ends(
         those of a mapping.
     workers, progress
         As of `simulate_many`.
+    max_events : int
+        Most events of a motion before it ends with the status MAX_EVENTS, as of `simulate`.
     rest_speed : float, optional
         As of `simulate` [m/s].
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong.
+        If an argument is wrong. A time is finite: most motions never come to an end, and have no
+        last state.
     WorkerError
         If a worker was lost.
     """
-    how = replace(DEFAULTS, rest_speed=rest_speed)
+    how = replace(DEFAULTS, max_events=max_events, rest_speed=rest_speed)
     times = array("t", t)
+    require("t", _ENDLESS, times, times != math.inf)
     require("t", "finite and not negative [s]", times, (times >= 0) & (times < math.inf))
     _core.validate_settings(how.core, float(times.max(initial=0.0)))
     wanted = asked(scenes, t=times)
@@ -162,7 +171,10 @@ def _error(scene: Scene, request: _Request, place: int) -> Exception:
     """Return the exception that `simulate` raises for a scene."""
     t = request.times[0 if request.times.size == 1 else place]
     try:
-        found = simulate(scene, [t], rest_speed=request.settings.rest_speed, raise_on_failure=False)
+        found = simulate(
+            scene, [t], max_events=request.settings.max_events,
+            rest_speed=request.settings.rest_speed, raise_on_failure=False,
+        )  # fmt: skip
     except ValueError as error:  # a time beyond what a double resolves
         return error
     return IntegrationError(found)
