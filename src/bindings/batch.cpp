@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
+#include "outcome/outcome.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -230,6 +231,18 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     return py::dict("states"_a = states, "codes"_a = codes);
 }
 
+// The friction that each scene requires to roll for ever, or to lie still.
+Array friction_table(const Array& scenes, bool to_rest, int workers) {
+    const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
+    Array needed = vector(n);
+    double* const to = needed.mutable_data();
+    run_each(n, workers, [&](py::ssize_t i, const auto&) {
+        const Scene scene = scene_in(scenes.data(i, 0), most_energy);
+        to[i] = to_rest ? friction_to_rest(scene) : required_friction(scene);
+    });
+    return needed;
+}
+
 }  // namespace
 
 void bind_batch(py::module_& m) {
@@ -240,6 +253,7 @@ void bind_batch(py::module_& m) {
         "t_end"_a);
     m.attr("COLUMNS") = columns();
     m.def("ends_table", ends_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
+    m.def("friction_table", friction_table, "scenes"_a, "to_rest"_a, "workers"_a);
     m.def("simulate_table", simulate_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
 }
 

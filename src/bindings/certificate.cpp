@@ -113,6 +113,7 @@ void bind_certificate(py::module_& m) {
         "outcome", [](const Scene& scene) { return outcome(scene, SignalWatch()); },
         py::call_guard<GilRelease>(), "scene"_a);
     m.def("required_friction", required_friction, "scene"_a);
+    m.def("friction_to_rest", friction_to_rest, "scene"_a);
     m.def("sticking_friction", sticking_friction, "scene"_a);
     m.def("press_to", press_to, "scene"_a, "distance"_a, "omega"_a);
     m.def("speed_to_the_tip", py::vectorize([](Scene scene, double theta) {

@@ -184,4 +184,11 @@ double required_friction(const Scene& scene) {
     return std::max(in_the_blow, *found.largest_friction_needed);
 }
 
+// The contact leads the centre by h' at a height h, and |h'|/h is at most |a^2 - b^2|/(2 a b).
+double friction_to_rest(const Scene& scene) {
+    const auto [a, b] = scene.axes();
+    const double needed = std::tan(std::abs(scene.slope));
+    return needed <= std::abs((a - b) * (a + b)) / (2 * a * b) ? needed : infinity;
+}
+
 }  // namespace rolling_ellipse

@@ -43,6 +43,10 @@ double speed_to_the_tip(const Scene& scene);
 // whatever the friction of the scene; infinite where no finite one does.
 double required_friction(const Scene& scene);
 
+// The least friction coefficient with which a body can lie still on the slope of the scene,
+// whatever its start; infinite where the slope is steeper than any contact leads its centre.
+double friction_to_rest(const Scene& scene);
+
 // The speeds and friction coefficients at which the motion on level ground changes its kind. Speeds
 // are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2]. A speed
 // or friction is infinite, and its angle absent, where the change never happens.

@@ -1,6 +1,7 @@
 """`outcome`, `required_friction` and `blow_to` agree with motions, formulas and bisection."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -152,6 +153,35 @@ def test_required_friction_is_what_blow_and_motion_need() -> None:
                 changed = replace(scene, friction=found * (1 + change))
                 assert certify(changed).validity is worst, scene
     assert min(by_the_blow, by_the_motion, never) > 20
+
+
+@pytest.mark.parametrize("to", ["roll", "rest"])
+def test_required_friction_of_arrays_has_the_bits_of_scenes(to: Any) -> None:
+    """Bodies that roll, slide or fly, struck or not, on slopes or not; any layout and workers."""
+    rng = np.random.default_rng(4)
+    for start in ({}, {"x_dot": rng.normal(size=7)}, {"z": 4.0}, {"impulse": 1}):
+        given: dict[str, Any] = {
+            "a": rng.uniform(0.5, 3, (6, 1)), "b": rng.uniform(0.5, 3, (6, 7)).T.copy().T,
+            "theta": rng.uniform(-4, 4, (6, 1)), "omega": rng.choice([0.0, 0.5, 1.0], 7),
+            "slope": rng.choice([0.0, 0.0, 0.1, -0.3], 14)[::2], "inertia": 1.5,
+        } | start  # fmt: skip
+        if "impulse" in start:
+            given["impulse"] = Impulse(rng.normal(size=7), -3.0, dx=0.2, dz=0.0)
+        found = required_friction(given, to=to)
+        assert isinstance(found, np.ndarray) and found.shape == (6, 7)
+        for workers in (2, ThreadPoolExecutor(2)):
+            assert np.array_equal(found, required_friction(given, to=to, workers=workers))
+        for i, j in np.ndindex(6, 7):
+            own: dict[str, Any] = {
+                name: float(np.broadcast_to(values, (6, 7))[i, j])
+                for name, values in given.items()
+                if name != "impulse"
+            }
+            if "impulse" in start:
+                own["impulse"] = Impulse(float(given["impulse"].jx[j]), -3.0, dx=0.2, dz=0.0)
+            assert found[i, j] == required_friction(Scene(**own), to=to), own
+    alone = required_friction({"a": 2.0, "b": 1.0, "omega": 1.0}, to=to)
+    assert type(alone) is float and required_friction({"a": [], "b": 1.0}).shape == (0,)  # type: ignore[union-attr]
 
 
 def test_required_friction_where_it_is_known() -> None:

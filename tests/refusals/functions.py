@@ -105,6 +105,8 @@ REFUSALS: list[Row] = [
     *wrong(rl.certify, {}, scene=[None, 1, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5]),
     *wrong(rl.period, {}, scene=[None, 1, AIR, scenes.slope]),
     *wrong(rl.required_friction, {"scene": ROLLING}, scene=[None], to=["slide", None]),
+    *wrong(rl.required_friction, {"scene": AXES}, to=["slide"], workers=WORKERS),
+    ("scenes['b'][1]", lambda _: rl.required_friction({"a": 2.0, "b": [1.0, -1.0]})),
     *wrong(rl.rolling_equation, {}, scene=[None]),
     *(("y", lambda _, y=y: rl.rolling_equation(ROLLING)(0.0, y)) for y in (1.0, [1.0], [1.0] * 4)),
     *wrong(Scene.from_density, {**AXES, "density": 1.0, "thickness": 0.1},

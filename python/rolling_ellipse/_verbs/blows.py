@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._ask.check import broadcast, choice, number, shown
+from .._ask.check import FloatArray, broadcast, choice, number, shaped, shown
 from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
 from .._core import Mode, Outcome
 from ..geometry import support
+from .batches.asked import SceneGrid
 from .certify import certify
+from .workers import Columns, shared
 
 _SPEEDS = 2048  # number of speeds tried above the one that just reaches the tip
 _FASTEST = 1e3  # largest excess of these speeds, over the speed that just reaches the tip
@@ -79,7 +82,17 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     return np.array(codes, dtype=np.int8).reshape(shape)
 
 
-def required_friction(scene: Scene, *, to: Literal["roll", "rest"] = "roll") -> float:
+@overload
+def required_friction(
+    scene: Scene, *, to: Literal["roll", "rest"] = "roll", workers: Any = 1
+) -> float: ...
+@overload
+def required_friction(
+    scene: Mapping[str, Any], *, to: Literal["roll", "rest"] = "roll", workers: Any = 1
+) -> float | FloatArray: ...
+def required_friction(
+    scene: Scene | Mapping[str, Any], *, to: Literal["roll", "rest"] = "roll", workers: Any = 1
+) -> float | FloatArray:
     """Return the least coefficient of friction with which the ground holds the rolling for ever.
 
     It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
@@ -91,25 +104,51 @@ def required_friction(scene: Scene, *, to: Literal["roll", "rest"] = "roll") -> 
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or mapping
+        A mapping has the names of Scene's arguments, and numbers or arrays that broadcast, as of
+        `simulate_many`.
     to : {"roll", "rest"}
         "rest": the friction with which the body, whatever its start, can lie still on its slope:
         tan(slope), or infinite where it is steeper than ``|a^2 - b^2|/(2 a b)``, the largest lead
         of the contact over the height of the centre.
+    workers : int or executor
+        As of `flow`, for the scenes of a mapping.
 
     Returns
     -------
-    float
+    float or ndarray
+        For a mapping with arrays an array of their common shape, with the bits of single scenes.
         Infinite if no finite coefficient is enough: the blow lifts the body, or it is in the air;
         it slides by its velocities; N vanishes; or it is not a circle and runs down a slope for
         ever. Infinite friction may hold some of these: see `certify`. 0 if any positive coefficient
         is enough: without friction a moving contact slides.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is wrong; of an array the number is named with its place.
+
+    Examples
+    --------
+    >>> required_friction({"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}).round(3)
+    array([0.055, 0.206])
     """
-    require_scene(scene)
-    if choice("to", to, ("roll", "rest")) == "rest":
-        a, b, needed = scene.a, scene.b, math.tan(abs(scene.slope))
-        return needed if needed <= abs((a - b) * (a + b)) / (2 * a * b) else math.inf
-    return _core.required_friction(scene.core)
+    rests = choice("to", to, ("roll", "rest")) == "rest"
+    if not isinstance(scene, Mapping):
+        core = require_scene(scene).core
+        return _core.friction_to_rest(core) if rests else _core.required_friction(core)
+    grid = SceneGrid(scene)
+    needed = shared(workers, _frictions_to_rest if rests else _frictions_to_roll)
+    found: float | FloatArray = shaped(needed(grid.total, [grid.table()]), grid.shape)
+    return found
+
+
+def _frictions_to_roll(_: int, columns: Columns, threads: int) -> FloatArray:
+    return _core.friction_table(columns[0], False, threads)
+
+
+def _frictions_to_rest(_: int, columns: Columns, threads: int) -> FloatArray:
+    return _core.friction_table(columns[0], True, threads)
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:

@@ -117,7 +117,7 @@ class SceneGrid:
         for begin, size in sizes(1):
             if begin >= self.total:
                 break
-            self._require_valid(begin, self._table(begin, size))
+            self._require_valid(begin, self.table(begin, size))
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -138,9 +138,11 @@ class SceneGrid:
         for index, (begin, size) in enumerate(sizes(samples)):
             if begin >= self.total:
                 return
-            yield Chunk(index, begin, self._table(begin, size))
+            yield Chunk(index, begin, self.table(begin, size))
 
-    def _table(self, begin: int, size: int) -> FloatArray:
+    def table(self, begin: int = 0, size: int | None = None) -> FloatArray:
+        """Return the scenes from an index on as a table, with a row of numbers for each."""
+        size = self.total if size is None else size
         at = np.arange(begin, min(begin + size, self.total))
         index = np.unravel_index(at, self.shape) if self.shape else ()
         table = np.empty((at.size, WIDTH))
