@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot
 from rolling_ellipse import Fit, Impulse, Mode, Scene, Trajectory, fit_motion, geometry, simulate
-from rolling_ellipse._motion.sensitivity import value_of
+from rolling_ellipse._motion.inputs import value_of
 
 SIGMA = {"x": 5e-4, "z": 5e-4, "theta": 0.01}
 DISC = (0.035**2 + 0.025**2) / 4

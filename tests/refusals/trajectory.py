@@ -16,6 +16,8 @@ MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 TURNING = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 1e9])
 CONTACT = rl.simulate(scenes.jump, np.linspace(0.0, 2.0, 6))
 DROPPED = rl.simulate(Scene(2.0, 1.0, theta=0.5, z=2.5, restitution=0.0), 0.6)
+BOUNCED = rl.simulate(scenes.bounce, 6.0)
+CHAOS = Scene(1.0, 0.7, theta=0.7, z=2.0, omega=0.3, friction=0.0, restitution=1.0)
 FLAT = Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.3)
 AT_REST = rl.simulate(Scene(2.0, 1.0), 1.0)
 JAMMED = rl.simulate(Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0), 1.0)
@@ -72,6 +74,8 @@ REFUSALS: list[Row] = [
     *(("wrt", lambda _, motion=motion, wrt=wrt: motion.sensitivity(wrt)) for motion, wrt in (
         (rl.simulate(FLAT, 2.0), "theta"),  # settles on its side: what would it do beside it?
         (rl.simulate(DROPPED.scene, DROPPED.events[0].t), "theta"),  # ends in an impact
+        (rl.simulate(scenes.bounce, BOUNCED.events[5].t), "theta"),  # the last part does
+        (rl.simulate(CHAOS, 20.0), "theta"),  # changes grow too much
         (rl.simulate(FLAT, 2.0), "slope"),
         (NOISY, "theta"))),
     *(("motion", lambda _, motion=motion: motion.sensitivity("theta"))

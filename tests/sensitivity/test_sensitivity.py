@@ -9,8 +9,19 @@ import numpy as np
 import pytest
 from oracles import table
 from oracles.paths import ROOT
-from rolling_ellipse import Scene, Trajectory, flow, flow_jacobian, scenes, simulate
-from rolling_ellipse._motion.sensitivity import STATE, size_of
+from rolling_ellipse import (
+    Mode,
+    Scene,
+    Trajectory,
+    flow,
+    flow_jacobian,
+    scenes,
+    simulate,
+)
+from rolling_ellipse._motion import chain as chain_of_parts
+from rolling_ellipse._motion.differences import neighbours
+from rolling_ellipse._motion.inputs import STATE, size_of
+from sensitivity import bounces
 from sensitivity.chain import chain
 
 DROP = Scene(2.0, 1.0, theta=0.5, z=2.5, friction=0.3, restitution=0.5)
@@ -70,10 +81,11 @@ def test_drawn_scenes_agree_with_the_chain(seed: int) -> None:
 
 
 def test_motions_of_the_reference() -> None:
-    """94 of 106 motions are within 1e-10; the others magnify roundings, as `error` says.
+    """95 of 106 motions are within 1e-10; the others magnify roundings, as `error` says.
 
-    An estimate is of the order of the error, so that it bounds it up to a factor of 10. Derivatives
-    at bounds have one side. A flat drop has none by what tilts it, and a table on one side only.
+    The errors that are stated cover 99 of 100 columns, and are mostly within a factor of 100: one
+    of the two steps beside the best is farther off by 4 to 64 times, and a value is allowed eight
+    units. Derivatives at bounds have one side. A table that just holds its body has no derivative.
     """
     last = {row["name"]: row for row in table.rows("contact_reference")}
     good, refused, ratios = {name for name in last if name[:3] != "jam"}, [], []
@@ -89,11 +101,12 @@ def test_motions_of_the_reference() -> None:
             refused.append((row["name"], name))
             continue
         (error,) = off(scene, found.state[0], true, [name])
-        assert error < max(1e-10, 10 * found.error[0]) < 1e-5, row
+        assert error < 3 * found.error[0] < 1e-5, row
         ratios.append(error / found.error[0])
         good -= {row["name"]} if error > 1e-10 else set()
-    assert len(good) >= 94 and np.mean(np.array(ratios) > 1) < 0.1
-    assert {name for name, _ in refused} == {"rest-4", "hops-1"} and len(refused) == 5
+    assert len(good) >= 95 and np.mean(np.array(ratios) > 1) < 0.01
+    assert np.median(ratios) > 0.01
+    assert {name for name, _ in refused} == {"rest-4"} and len(refused) == 4
 
 
 def by_any_side(motion: Trajectory, name: str) -> Any:
@@ -131,9 +144,145 @@ def test_rolling_keeps_areas() -> None:
         state = simulate(scene, [t[k]], model="rolling").sensitivity(("theta", "omega")).state[0]
         assert np.abs(state[[2, 5, 0]] - found[k]).max() < 1e-10 * np.abs(found[k]).max()
     wide = flow_jacobian([[1.0], [2.0]], a=2.0, b=[1.0, 1.5, 2.0], theta=0.3, omega=1.0, wrt="t")
+    tilted = flow_jacobian([1.0, 2.0], a=2.0, b=1.0, theta=[[0.3], [0.4]], omega=0.5, wrt="theta")
+    assert tilted.shape == (2, 2, 3, 1)
     assert wide.shape == (2, 3, 3, 1)
     swings = flow([[1.0], [2.0]], a=2.0, b=[1.0, 1.5, 2.0], theta=0.3, omega=1.0)
     assert np.abs(wide[..., 0, 0] - swings[1]).max() < 1e-11
+
+
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+def test_rolling_on_slopes_agrees_with_the_chain() -> None:
+    """The slope is an argument and an input, also where it is 0 and for arrays."""
+    rng = np.random.default_rng(8)
+    wrt = ["a", "b", "gravity", "slope", "theta", "omega"]
+    a, b = rng.uniform(0.5, 2, (2, 20))
+    theta, omega, t = rng.uniform(-1.5, 1.5, 20), rng.uniform(-1, 1, 20), rng.uniform(0.2, 2, 20)
+    slope = rng.uniform(-0.4, 0.4, 20) * (rng.random(20) < 0.8)
+    given = {"a": a, "b": b, "theta": theta, "omega": omega, "slope": slope}
+    found = flow_jacobian(t, **given, wrt=wrt)
+    for k in range(20):
+        one: dict[str, Any] = {name: float(values[k]) for name, values in given.items()}
+        assert np.array_equal(found[k], flow_jacobian(t[k], **one, wrt=wrt))
+        motion = simulate(Scene(**one), [t[k]], model="rolling")
+        true = chain(motion, wrt)[0][0]
+        mine = true.copy()
+        mine[[2, 5, 0]] = found[k]  # theta, omega, x
+        assert off(motion.scene, mine, true, wrt).max() < 1e-8
+
+
+# --------------------------------------------------------------------- motions of many events
+
+CHAOS = Scene(1.0, 0.7, theta=0.7, z=2.0, omega=0.3, friction=0.0, restitution=1.0)
+OF_BOUNCES = [STATE.index(name) for name in bounces.STATE]
+
+
+def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
+    """Errors of the last state of bounces over its largest entry."""
+    unit = units(scene)[OF_BOUNCES, None]
+    least = [1 / size_of(scene, name) for name in wrt]
+    return np.abs((found - true) / unit).max(axis=0) / np.fmax(
+        np.abs(true / unit).max(axis=0), least
+    )
+
+
+def test_parts_agree_with_the_whole() -> None:
+    """In all modes, by all inputs, within the sum of both errors."""
+    modes, seen = set(), 0
+    for seed in range(40):
+        motion, wrt = drawn(np.random.default_rng(seed))
+        if len(motion.events) <= chain_of_parts.EVENTS:
+            continue
+        parts = chain_of_parts.chained(motion, tuple(wrt), 0)
+        assert parts is not None
+        starts = [part.scene.initial_state.mode for part, _ in chain_of_parts._parts(motion)[1:]]
+        modes |= set(starts)
+        for k, name in enumerate(wrt):
+            whole, _ = neighbours(motion, name, 0)
+            apart = np.abs(whole.value - parts.value[..., k]).max(axis=0)
+            assert (apart <= whole.error + parts.error[:, k]).all()
+            seen += bool(starts)
+    assert {Mode.ROLLING, Mode.SLIDING} <= modes and seen > 40
+
+
+def test_derivatives_that_grow() -> None:
+    """They are those of the motion's own arcs in 60 digits, up to a growth of 1e12; the exact
+    motion parts from it by roundings that grow, and the error covers that. Then they are refused.
+
+    At 14 s the exact motion has dtheta/dtheta0 = -8.851e8. The product of six parts, each with
+    an error of some 1e-12, is within 1e-10.
+    """
+    wrt = ["theta", "a"]
+    for t, true in ((14.0, -8.851e8), (18.0, -8.763e11)):
+        motion = simulate(CHAOS, [1.0, t])
+        known = motion.sensitivity(wrt)
+        assert known.state[1, 2, 0] == pytest.approx(true, rel=1e-3)
+        last = known.state[1][OF_BOUNCES]
+        (own, own_times), (exact, times) = (
+            bounces.bounces(motion, wrt, own=x) for x in (True, False)
+        )
+        assert relative(CHAOS, last, own, wrt).max() < 1e-10
+        assert (relative(CHAOS, last, exact, wrt) < known.error).all()
+        largest = np.abs(times).max(axis=0)
+        assert (np.abs(known.event_times - own_times).max(axis=0) < 1e-10 * largest).all()
+        off_by = np.abs(known.event_times - times).max(axis=0) / largest
+        assert (off_by < known.event_times_error).all()
+        assert known.error.max() < 1e-13 * abs(true)
+    with pytest.raises(ValueError, match=r"'theta': changes grow .* times, and from 1e\+13 times"):
+        simulate(CHAOS, [20.0]).sensitivity("theta")
+    early = simulate(CHAOS, [20.0]).sol(14.0).sensitivity("theta")
+    assert early.state[0, 2, 0] == pytest.approx(-8.851e8, rel=1e-3)
+
+
+def test_errors_of_bounces_are_covered() -> None:
+    """Of random bodies without friction, elastic or not, against 60 digits from the start."""
+    rng = np.random.default_rng(6)
+    shares: list[float] = []
+    while len(shares) < 40:
+        scene, t = bounces.scene_of(rng), float(rng.uniform(2, 8))
+        motion = simulate(scene, [t])
+        gaps = np.diff([0, *(event.t for event in motion.events), t])
+        if not 4 <= len(motion.events) <= 12 or gaps.min() < 1e-3:
+            continue
+        wrt = ["theta", "gravity"]
+        known = motion.sensitivity(wrt)
+        true, times = bounces.bounces(motion, wrt, own=False)
+        shares += [*(relative(scene, known.state[0][OF_BOUNCES], true, wrt) / known.error)]
+        unit = units(scene)[0] / units(scene)[3]
+        least = [1 / size_of(scene, name) for name in wrt]
+        largest = np.fmax(np.abs(times / unit).max(axis=0), least)
+        off_by = np.abs((known.event_times - times) / unit).max(axis=0) / largest
+        shares += [*(off_by / known.event_times_error)]
+    assert np.max(shares) < 1.5 and np.mean(np.array(shares) > 1) < 0.03
+    assert np.median(shares) > 1e-3
+
+
+def test_event_times_do_not_depend_on_the_samples() -> None:
+    """A body that slides on ice, where a slope makes and ends slips; in 40 digits the first REVERSE
+    moves by -0.00998485024303 per radian of slope."""
+    ice = Scene(
+        5.588108666592639, 1.0, inertia=8.05673961741194, friction=5.463150523067873e-09,
+        theta=-2.847479703823904, omega=-3.5083007800939634,
+    )  # fmt: skip
+    few, many = (simulate(ice, t).sensitivity("slope") for t in ([1.25], np.linspace(0, 1.25, 101)))
+    assert np.array_equal(few.event_times, many.event_times)
+    assert abs(few.event_times[0, 0] + 0.00998485024303) < 1e-14 + few.event_times_error[0] / 30
+    assert few.event_times_error[0] < 1e-10
+    motions = [drawn(np.random.default_rng(seed)) for seed in range(5)]
+    for motion, wrt in [*motions, (simulate(CHAOS, [0.1, 9.0]), ["theta"])]:
+        alone = motion.sol(motion.t_end).sensitivity(wrt)
+        assert np.array_equal(alone.event_times, motion.sensitivity(wrt).event_times)
+
+
+def test_the_message_of_other_events() -> None:
+    """An ending is no event that a neighbour has in place of another one."""
+    landing = simulate(DROP, 1.0).events[0].t
+    with pytest.raises(ValueError, match=r"there is no IMPACT to \w+ at t = 0\.\d+ s$"):
+        simulate(DROP, landing).sensitivity("theta")
+    with pytest.raises(
+        ValueError, match=r"there is one more event, IMPACT to \w+, by t = 0\.\d+ s$"
+    ):
+        simulate(DROP, np.nextafter(landing, 0)).sensitivity("theta")
 
 
 def test_a_forecast_is_true_to_second_order() -> None:

@@ -2,54 +2,38 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from .._ask.check import FloatArray, choice, number, whole
 from .._ask.printing import brief, text_table
 from .._ask.records import FieldsOnly, cached_property
-from .._ask.scene import Scene
-from .._ask.settings import GIVEN, Settings
+from .._ask.settings import GIVEN
 from .._core import Mode
+from .chain import EVENTS, chained
+from .differences import (
+    FINE,
+    RATES,
+    RULES,
+    WORST,
+    columns,
+    error_of_method,
+    knots_of,
+    moved,
+    neighbours,
+    settings_of,
+    size,
+)
+from .inputs import INPUTS, STATE, distinct, size_of, units_of
 from .status import Status
 from .trajectory import Trajectory
 
-STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
-_RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
-_BLOW = ("jx", "jz", "dx", "dz")
-INPUTS = (
-    "a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution", "theta", "omega",
-    "x", "z", "x_dot", "z_dot", *_BLOW, "t",
-)  # fmt: skip
-STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in turn, over the natural size of the input
-WORST = 1e-3  # relative error above which there is no derivative
-_FINE, _GROWN = 1e-8, 8.0  # an error after which one that many times larger ends the trials
+_FARTHEST = 1e13  # growth from which on a motion in doubles has parted from the exact one
 _NEAREST = 1e-6  # first distance of the search for other events, and where it ends
-
-# By side: places over the step, and weights of sixth order (Fornberg [1])
-_FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
-RULES = {
-    0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),
-    1: _FORWARD,
-    -1: (-_FORWARD[0], -_FORWARD[1]),
-}
-
-
-def differenced(values: FloatArray, step: Any, side: int = 0) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives from values at the places of a rule (first axis), and their rounding.
-
-    Values are taken to be off by up to eight roundings, as the package promises.
-    """
-    _, weights = RULES[side]
-    rounding = 8 * np.finfo(float).eps * np.abs(weights).sum() * np.abs(values).max(axis=0)
-    shares = [weight * value for weight, value in zip(weights.tolist(), values, strict=True)]
-    found: FloatArray = sum(shares, np.zeros(())) / step  # in the same order for one and for many
-    return found, rounding / step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,11 +50,12 @@ class Sensitivity(FieldsOnly):
     state : ndarray, shape (n, 6, k)
         Derivatives of x, z, theta, x_dot, z_dot, omega at the samples; just after an event at it.
     event_times : ndarray, shape (m, k)
-        Derivatives of the times of the m events.
-    error : ndarray, shape (k,)
-        Estimated error of each column of `state` over its largest entry (or over one unit of the
-        state for the natural size of the input, if that is more). Units of the state are L, L, 1,
-        sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b). Errors of a method with steps count.
+        Derivatives of the times of the m events. They do not depend on the samples.
+    error, event_times_error : ndarray, shape (k,)
+        Estimated error of each column of `state` and of `event_times` over its largest entry (or
+        over one unit for the natural size of the input, if that is more). Units of the state are L,
+        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b), and sqrt(L/g) is that of time.
+        Errors of a method with steps count, and the growth of roundings along the motion.
     """
 
     trajectory: Trajectory
@@ -79,6 +64,7 @@ class Sensitivity(FieldsOnly):
     state: FloatArray
     event_times: FloatArray
     error: FloatArray
+    event_times_error: FloatArray
 
     def at(self, t: float) -> FloatArray:
         """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as of `state`.
@@ -100,7 +86,7 @@ class Sensitivity(FieldsOnly):
         added = np.zeros(len(self.wrt))
         for name, change in changes.items():
             added[self.wrt.index(choice("changes", name, self.wrt))] = number(name, change)
-        found: FloatArray = _columns(self.trajectory, STATE) + self.state @ added
+        found: FloatArray = columns(self.trajectory, STATE) + self.state @ added
         return found
 
     @cached_property
@@ -127,9 +113,11 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
 
     The motion is solved again at six or seven values of each input, and differences of sixth order
     [1]_ are taken. The time between two events is stretched to that of the motion, so that states
-    of the same arc are compared; what the motion does during that shift is subtracted. The best of
-    23 steps, each half of the one before, is that with the least difference from the one
-    before and the least rounding.
+    of the same arc are compared; what the motion does during that shift is subtracted. Of 23 steps,
+    each half of the one before, each state takes the one that agrees best with the steps before and
+    after it, and has the least rounding. Where that is not enough for a motion of many events, it
+    is done for parts of three events, by the states at their starts, and multiplied by the chain
+    rule: along the arcs of the motion as it was computed.
 
     Parameters
     ----------
@@ -147,7 +135,8 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     ------
     ValueError
         If a name is unknown, repeated, or not a number of the scene; the motion starts at rest or
-        does not reach its end; or there is no derivative, as where neighbours have other events.
+        does not reach its end; there is no derivative, as where neighbours have other events; or
+        changes grow more than 1e13 times, so that the motion in doubles is no longer the exact one.
 
     References
     ----------
@@ -166,178 +155,110 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
         raise ValueError(
             "motion must not start at rest, where derivatives differ, got REST at t = 0 s"
         )
-    states, times, errors = zip(*(_column(motion, name, side) for name in names), strict=True)
+    value, error = _derivatives(motion, names, side)
+    n, units = len(motion.t), units_of(motion.scene)
     return Sensitivity(
-        motion, names, side, np.stack(states, -1), np.stack(times, -1), np.array(errors)
-    )
+        motion, names, side, np.swapaxes(value[:, :n], 0, 1) * units[:, None],
+        value[0, n:] * (units[0] / units[3]),
+        _relative(motion, names, value[:, :n], error[:n]),
+        _relative(motion, names, value[:, n:], error[n:]),
+    )  # fmt: skip
 
 
-def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
-    """Return one or more names out of valid ones, each once, or raise ValueError."""
-    several = isinstance(names, Iterable) and not isinstance(names, str)
-    found = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
-    if not found or len(set(found)) < len(found):
-        raise ValueError(f"{argument} must be one or more names, each once, got {found}")
-    return found
+def _derivatives(
+    motion: Trajectory, names: tuple[str, ...], side: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives as of `neighbours` by k inputs, (6, n + m, k), and errors, (n + m, k).
 
-
-def changed(scene: Scene, values: dict[str, float]) -> Scene:
-    """Return the scene with other values of inputs, also of its impulse."""
-    blow: dict[str, Any] = {name: value for name, value in values.items() if name in _BLOW}
-    others: dict[str, Any] = {name: value for name, value in values.items() if name not in _BLOW}
-    if blow and scene.impulse is not None:
-        others["impulse"] = dataclasses.replace(scene.impulse, **blow)
-    return scene.replace(**others)
-
-
-def value_of(scene: Scene, name: str) -> float:
-    """Return the value of an input other than "t", or raise ValueError if a scene has none."""
-    if name in _BLOW and scene.impulse is None:
-        raise ValueError(f"wrt must be inputs of the scene, got {name!r} without an impulse")
-    value = getattr(scene.impulse if name in _BLOW else scene, name)
-    if value is None and name == "inertia":
-        return scene.mass * scene.gyration2
-    if value is None and scene.z is not None:  # a velocity in the air
-        return 0.0
-    if value is None:
-        raise ValueError(f"wrt must be inputs of the scene, got {name!r}, which follows rolling")
-    if math.isinf(value):
-        raise ValueError(f"wrt must be finite inputs, got {name!r}, which is infinite")
-    return float(value)
-
-
-def size_of(scene: Scene, name: str) -> float:
-    """Return the natural size of an input: its value, or the unit of its kind if that is more."""
-    length, _, one, speed, _, spin = _units(scene).tolist()
-    push = scene.mass * speed
-    units = {
-        "slope": one, "restitution": one, "omega": spin, "x": length, "z": length,
-        "x_dot": speed, "z_dot": speed, "jx": push, "jz": push, "dx": length, "dz": length,
-        "friction": 1e-3,
-    }  # fmt: skip
-    alone = {"theta": one, "t": 1 / spin}
-    return float(alone.get(name) or max(abs(value_of(scene, name)), units.get(name, 0.0)))
-
-
-def _column(motion: Trajectory, name: str, side: int) -> tuple[FloatArray, FloatArray, float]:
-    """Return derivatives of states and of event times, and the error of the best of the steps."""
-    if name == "t":
-        return _columns(motion, _RATES), np.zeros(len(motion.events)), 0.0
-    size, units = size_of(motion.scene, name), _units(motion.scene)
-    settings = dataclasses.replace(motion.settings, model=motion.model)
-
-    def relative(off: FloatArray, state: FloatArray) -> FloatArray:
-        largest = max(np.abs(state / units).max(initial=0.0), 1 / size)
-        found: FloatArray = (off / units).max(axis=1, initial=0.0) / largest
-        return found
-
-    cause: ValueError | None = None
-    problem, least, best, last = "", math.inf, None, np.array(math.inf)
-    for step in (size * STEPS).tolist():
-        try:
-            state, times, rounding = _differences(motion, settings, name, side, step)
-        except ValueError as refusal:  # no such scene, or other events
-            if best is None:
-                problem, cause = str(refusal), refusal
-            continue
-        off = relative(np.abs(state - last) + rounding, state)
-        last, error = state, float(off.max(initial=0.0))
-        if best is None or error < least:
-            best, least, cause = (state, times, step), error, None
-            place = motion.t[off.argmax()]
-            problem = f"steps agree to {error:.1g} only at t = {place:.6g} s"
-        elif least < _FINE and error > _GROWN * least:
-            break
-    if best is None or not least < WORST:
-        raise ValueError(
-            f"wrt must be inputs with a derivative, got {name!r}: {problem}"
-        ) from cause
-    state, times, step = best
-    if motion.method != "exact":
-        off = state - _differences(motion, _finer(settings), name, side, step)[0]
-        least += float(relative(np.abs(off), state).max(initial=0.0))
-    return state, times, least
-
-
-def _differences(
-    motion: Trajectory, settings: Settings, name: str, side: int, step: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return derivatives of states at samples and of event times, and rounding of the former.
-
-    Neighbours are compared at equal shares of the arcs between events.
+    Events and the end of the motion decide whether it is taken by parts, whatever its samples are.
     """
-    near = [_moved(motion, settings, name, step * place) for place in RULES[side][0].tolist()]
-    knots, moved = _knots(motion), np.array([_knots(each) for each in near])
-    arc = np.searchsorted(knots[:-1], motion.t, side="right") - 1
-    length = knots[arc + 1] - knots[arc]
-    share = np.divide(motion.t - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
-    begin, end = moved[:, arc], moved[:, arc + 1]
-    within = np.where(arc < len(knots) - 2, np.nextafter(end, begin), end)  # before the next event
-    times = np.clip(begin + share * (end - begin), begin, within)
-    states = [_columns(each.sol(t), STATE) for each, t in zip(near, times, strict=True)]
-    drift = _columns(motion, _RATES) * (times - motion.t)[..., None]
-    state, rounding = differenced(np.array(states) - drift, step, side)
-    return state, differenced(moved, step, side)[0][1:-1], rounding
+    n = len(motion.t)
+    whole = motion.sol(np.append(motion.t, motion.t_end))
+    value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
+    error, others = np.zeros((2, *value.shape[1:]))  # of the steps, and of the motion
+    problems: list[ValueError | None] = [None] * len(names)
+    for k, name in enumerate(names):
+        if name == "t":
+            value[:, : n + 1, k] = (columns(whole, RATES) / units_of(motion.scene)).T
+        else:
+            best, problems[k] = neighbours(whole, name, side)
+            value[..., k], error[:, k] = best.value, best.error
+            if motion.method != "exact" and not problems[k]:
+                others[:, k] = error_of_method(whole, name, side, best)
+    off = np.fmax(*(_relative(motion, names, value[:, at], error[at]) for at in _ends(n)))
+    rough, taken = np.flatnonzero(~(off <= FINE)), np.array([], int)
+    if rough.size and len(motion.events) > EVENTS:
+        some = tuple(names[k] for k in rough)
+        if (parts := chained(whole, some, side)) is not None:
+            total = parts.error + parts.parted
+            by_parts = (_relative(motion, some, parts.value[:, at], total[at]) for at in _ends(n))
+            better = np.fmax(*by_parts) < off[rough]
+            taken = rough[better]
+            value[..., taken], error[:, taken] = parts.value[..., better], parts.error[:, better]
+            others[:, taken] = parts.parted[:, better]
+    worst = _relative(motion, names, value[:, :n], error[:n])
+    for k, name in enumerate(names):
+        if not worst[k] < WORST:
+            place = motion.t[error[:n, k].argmax()]
+            only = f"steps agree to {worst[k]:.1g} only at t = {place:.6g} s"
+            problem = None if k in taken else problems[k]
+            raise _without_derivative(name, problem or only) from problem
+        if k in taken:
+            _require_near(motion, name, size(value[:, :n, k]) * size_of(motion.scene, name))
+    return np.delete(value, n, axis=1), np.delete(error + others, n, axis=0)
 
 
-def _moved(motion: Trajectory, settings: Settings, name: str, change: float) -> Trajectory:
-    """Return the motion from a changed input, by the same model; ValueError for other events."""
-    scene = changed(motion.scene, {name: value_of(motion.scene, name) + change})
-    moved = Trajectory.computed(scene, settings, np.array([motion.span]))
-    for (known, t), (other, _) in zip(_order(motion), _order(moved), strict=False):
-        if known != other:
-            at = f"with a change of {change:.2g} there is {other} in place of {known}"
-            raise ValueError(f"{at} at t = {t:.6g} s")
-    return moved
+def _ends(n: int) -> tuple[slice, slice]:
+    """Return the rows of the end and of the events behind n samples."""
+    return slice(n, n + 1), slice(n + 1, None)
 
 
-def _finer(settings: Settings) -> Settings:
-    """Return settings with which a method with steps is several times as accurate."""
-    step = None if settings.step is None else settings.step / 2
-    return dataclasses.replace(settings, rtol=settings.rtol / 8, atol=settings.atol / 8, step=step)
+def _require_near(motion: Trajectory, name: str, growth: FloatArray) -> None:
+    """Raise ValueError where changes of an input have grown so much that doubles are no guide."""
+    if (far := growth > _FARTHEST).any():
+        first = motion.t[far].min()
+        raise _without_derivative(
+            name,
+            f"changes grow {growth.max():.2g} times, and from {_FARTHEST:.0e} times on (at t = "
+            f"{first:.6g} s) the motion in doubles is not the exact one",
+        )
+
+
+def _without_derivative(name: str, reason: object) -> ValueError:
+    return ValueError(f"wrt must be inputs with a derivative, got {name!r}: {reason}")
+
+
+def _relative(
+    motion: Trajectory, names: tuple[str, ...], value: FloatArray, error: FloatArray
+) -> FloatArray:
+    """Return errors (r, k) over the largest entries of vectors (6, r, k), shape (k,)."""
+    least = [1.0 if name == "t" else 1 / size_of(motion.scene, name) for name in names]
+    largest = np.maximum(np.abs(value).max(axis=(0, 1), initial=0.0), least)
+    found: FloatArray = error.max(axis=0, initial=0.0) / largest
+    return found
 
 
 def _distance(motion: Trajectory, name: str, side: int) -> float:
     if name == "t":
-        events = np.append(_knots(motion)[1:-1], math.inf)
+        events = np.append(knots_of(motion)[1:-1], math.inf)
         return float((events[np.searchsorted(events, motion.t)] - motion.t).min(initial=math.inf))
     farthest = size_of(motion.scene, name)
-    settings = dataclasses.replace(motion.settings, model=motion.model)
-
-    def same(change: float) -> bool:
-        try:
-            return bool(_moved(motion, settings, name, change))
-        except ValueError:
-            return False
 
     def reach(sign: int) -> float:
         near, far = 0.0, _NEAREST * farthest
-        while near < farthest and same(sign * far):
+        while near < farthest and _same_events(motion, {name: sign * far}):
             near, far = far, min(2 * far, farthest)
         while far - near > _NEAREST * max(far, _NEAREST * farthest):
             middle = (near + far) / 2
-            near, far = (middle, far) if same(sign * middle) else (near, middle)
+            near, far = (
+                (middle, far) if _same_events(motion, {name: sign * middle}) else (near, middle)
+            )
         return near
 
     return min(map(reach, (side,) if side else (-1, 1)))
 
 
-def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return what neighbours share, with times: start, events with the next mode, ending."""
-    events = [(f"{e.kind.name} to {e.state_after.mode.name}", e.t) for e in motion.events]
-    start = motion.scene.initial_state.mode.name
-    return [(start, 0.0), *events, (motion.status.name, motion.t_end)]
-
-
-def _knots(motion: Trajectory) -> FloatArray:
-    return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
-
-
-def _columns(motion: Trajectory, names: tuple[str, ...]) -> FloatArray:
-    return np.stack([getattr(motion, name) for name in names], axis=1)
-
-
-def _units(scene: Scene) -> FloatArray:
-    length = max(scene.a, scene.b)
-    speed = math.sqrt(scene.gravity * length)
-    return np.array([length, length, 1.0, speed, speed, speed / length])
+def _same_events(motion: Trajectory, changes: dict[str, float]) -> bool:
+    with suppress(ValueError):  # no such scene, or other events
+        return bool(moved(motion, settings_of(motion), changes))
+    return False

@@ -14,8 +14,8 @@ import numpy as np
 from .._ask.check import FloatArray, array, choice, positive, require
 from .._ask.printing import Row, html_table, required, text_table
 from .._ask.scene import Scene, require_scene
+from .._motion.inputs import INPUTS, changed, distinct, size_of, value_of
 from .._motion.samples import vector
-from .._motion.sensitivity import INPUTS, changed, distinct, size_of, value_of
 from .._motion.trajectory import Trajectory
 from .simulate import sample_times, simulate
 

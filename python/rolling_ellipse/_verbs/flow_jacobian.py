@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from .._ask.check import FloatArray, array, common_shape
-from .._motion.sensitivity import RULES, STEPS, WORST, differenced, distinct
+from .._motion.differences import RULES, STEPS, WORST, Best, differenced, size
+from .._motion.inputs import distinct
 from .flow import flow
 
-_FREE = ("t", "a", "b", "theta", "omega", "gravity", "gyration2")
+_FREE = ("t", "a", "b", "theta", "omega", "gravity", "slope", "gyration2")
 
 
 def flow_jacobian(
@@ -23,20 +24,23 @@ def flow_jacobian(
     omega: Any,
     gravity: Any = 9.81,
     gyration2: Any = None,
+    slope: Any = 0.0,
     wrt: str | Iterable[str] = ("theta", "omega"),
     workers: Any = 1,
 ) -> FloatArray:
     """Return the derivatives of `flow` with respect to some of its arguments.
 
-    They are differences of sixth order, by the best of twelve steps as in `Trajectory.sensitivity`.
-    Steps shrink with the time, which magnifies changes. All arguments broadcast.
+    They are differences of sixth order; each element takes the best of twelve steps, as in
+    `Trajectory.sensitivity`. Steps shrink with the time, which magnifies changes. All arguments
+    broadcast.
 
     Parameters
     ----------
-    t, a, b, theta, omega, gravity, gyration2, workers
+    t, a, b, theta, omega, gravity, gyration2, slope, workers
         As of `flow`. Without `gyration2` the body stays a uniform disc as `a` and `b` change.
     wrt : str or iterable of str
-        Names of arguments, k of them: "t", "a", "b", "theta", "omega", "gravity", "gyration2".
+        Names of arguments, k of them: "t", "a", "b", "theta", "omega", "gravity", "slope",
+        "gyration2".
 
     Returns
     -------
@@ -51,6 +55,7 @@ def flow_jacobian(
     """
     names = distinct("wrt", wrt, _FREE if gyration2 is not None else _FREE[:-1])
     given = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
+    given |= {"slope": slope}
     given |= {} if gyration2 is None else {"gyration2": gyration2}
     known = {name: array(name, value) for name, value in given.items()}
     shape = common_shape(known, slice(None))
@@ -59,24 +64,24 @@ def flow_jacobian(
     spin = np.sqrt(known["gravity"] / length)
     units = np.stack([np.broadcast_to(unit, shape) for unit in (1.0, spin, length)])
     magnified = 1 + np.abs(known["t"]) * np.maximum(spin, np.abs(known["omega"]))
-    sizes = known | {"theta": 1.0, "t": 1 / spin, "omega": np.maximum(np.abs(known["omega"]), spin)}
+    sizes = known | {"theta": 1.0, "slope": 1.0, "t": 1 / spin}
+    sizes["omega"] = np.maximum(np.abs(known["omega"]), spin)
     columns = []
     for name in names:
-        best, last, error = np.zeros((3, *shape)), np.array(np.inf), np.full(shape, np.inf)
+        least = magnified / sizes[name]
+        best = Best((3, *shape), least)
         for share in STEPS[::2]:
-            step = np.broadcast_to(share * sizes[name] / magnified, shape)
-            moved = (known | {name: known[name] + place * step} for place in RULES[0][0].tolist())
-            found = np.array([flow(**one, workers=workers) for one in moved])
-            column, rounding = differenced(found, step)
-            off = ((np.abs(column - last) + rounding) / units).max(axis=0)
-            largest = np.maximum(np.abs(column / units).max(axis=0), magnified / sizes[name])
-            best = np.where(off / largest < error, column, best)
-            last, error = column, np.minimum(off / largest, error)
+            step = np.broadcast_to(share / least, shape)
+            places = known[name] + np.multiply.outer(RULES[0][0], step)
+            found = [flow(**known | {name: at}, workers=workers) for at in places]
+            values = np.array(found) / units
+            best.take(*differenced(values, places - known[name]), share)
+        error = best.error / np.maximum(size(best.value), least)
         if not (error < WORST).all():
             place = [int(k) for k in np.unravel_index(int(np.argmax(error)), shape)]
             raise ValueError(
                 f"wrt must be inputs with a derivative, got {name!r} at {place}, where steps agree "
                 f"to {error.max():.1g} only"
             )
-        columns.append(best)
+        columns.append(best.value * units)
     return np.moveaxis(np.array(columns), (0, 1), (-1, -2))

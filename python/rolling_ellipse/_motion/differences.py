@@ -1,0 +1,205 @@
+"""Derivatives of a motion by differences of its neighbours, by the best of many steps."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray
+from .._ask.settings import Settings
+from .inputs import STATE, changed, size_of, units_of, value_of
+from .status import Status
+from .trajectory import Trajectory
+
+RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
+STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in turn, over the natural size of the input
+WORST = 1e-3  # relative error above which there is no derivative
+FINE = 1e-8  # relative error below which a better step is not needed
+_GROWN = 8.0  # an error that is so many times the least one ends the trials
+_UNITS = 8  # errors of the states and times of a motion, as the package promises
+
+_END = "no event"  # in place of one
+
+# By side: places over the step, and weights of sixth order (Fornberg [1])
+_FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
+RULES = {
+    0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),
+    1: _FORWARD,
+    -1: (-_FORWARD[0], -_FORWARD[1]),
+}
+
+
+def differenced(
+    values: FloatArray, moved: Any, side: int = 0, scale: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives from values at the places of a rule (first axis), and their rounding.
+
+    `moved` has the changes of the input that were made: neighbours are at the nearest doubles. A
+    value is off by the promised units: roundings of its own, and of an input of size `scale`.
+    """
+    weights = RULES[side][1].tolist()
+    # In the same order for one and for many
+    rise = sum((w * value for w, value in zip(weights, values, strict=True)), np.zeros(()))
+    step = sum((w * change for w, change in zip(weights, moved, strict=True)), np.zeros(()))
+    moves = step != 0  # a step below a rounding of the input does not
+    found: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
+    unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(found))
+    rounding = _UNITS * sum(map(abs, weights)) * unit
+    return found, np.divide(rounding, np.abs(step), out=np.full(rise.shape, np.inf), where=moves)
+
+
+def size(values: FloatArray) -> FloatArray:
+    """Return the largest component of vectors along the first axis."""
+    found: FloatArray = np.abs(values).max(axis=0)
+    return found
+
+
+class Best:
+    """Vectors of derivatives by smaller and smaller steps, and for each the best with its error.
+
+    The error is the distance from the vector by the step before or after, whichever is farther,
+    and the rounding: with large steps the one before is farther off, with small ones the one after.
+    The trials of a vector end when its error has grown: vectors do not depend on each other.
+
+    Attributes
+    ----------
+    value : ndarray, shape (d, ...)
+    error, step : ndarray, shape (...)
+        Infinite and 0 until three steps have been taken.
+    """
+
+    def __init__(self, shape: tuple[int, ...], least: Any) -> None:
+        self.value, self._least = np.zeros(shape), least  # `least` is the size that counts as small
+        self.error, self.step = np.full(shape[1:], np.inf), np.zeros(shape[1:])
+        self._done = np.zeros(shape[1:], bool)
+        self._last: tuple[FloatArray, FloatArray, Any] | None = None
+        self._apart = np.full(shape[1:], np.inf)  # distance of the last from the one before it
+
+    def take(self, value: FloatArray, rounding: FloatArray, step: Any) -> bool:
+        """Take the derivatives by the next step; whether the trials of all vectors have ended."""
+        if self._last is not None:
+            last, error, its_step = self._last
+            apart = size(value - last)
+            error = error + np.maximum(apart, self._apart)
+            better = ~self._done & (error < self.error)
+            self.value = np.where(better, last, self.value)
+            self.step = np.where(better, its_step, self.step)
+            self.error = np.where(better, error, self.error)
+            fine = self.error < FINE * np.maximum(size(self.value), self._least)
+            self._done |= fine & (error > _GROWN * self.error)
+            self._apart = apart
+        self._last = value, size(rounding), step
+        return bool(self._done.all())
+
+
+def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueError | None]:
+    """Return derivatives of the states at n samples and of the times of m events by an input.
+
+    They are vectors in natural units, shape (6, n + m), those of times (dt, 0, ...). If an error
+    is infinite there is the reason, too.
+    """
+    scale = size_of(motion.scene, name)
+    best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)
+    problem: ValueError | None = None
+    for step in (scale * STEPS).tolist():
+        try:
+            value, rounding = _differences(motion, settings_of(motion), name, side, step)
+        except ValueError as refusal:  # no such scene, or other events
+            problem = refusal
+            continue
+        if best.take(value, rounding, step):
+            break
+    return best, None if np.isfinite(best.error).all() else problem
+
+
+def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> FloatArray:
+    """Return how far the vectors of `neighbours` are from those of a finer method with steps."""
+    settings, step = settings_of(motion), float(best.step[size(best.value).argmax()])
+    finer = dataclasses.replace(
+        settings, rtol=settings.rtol / 8, atol=settings.atol / 8,
+        step=None if settings.step is None else settings.step / 2,
+    )  # fmt: skip
+    rough, fine = (_differences(motion, how, name, side, step)[0] for how in (settings, finer))
+    return size(fine - rough)
+
+
+def settings_of(motion: Trajectory) -> Settings:
+    """Return the settings of a motion with its own model in place of "auto"."""
+    return dataclasses.replace(motion.settings, model=motion.model)
+
+
+def _differences(
+    motion: Trajectory, settings: Settings, name: str, side: int, step: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the derivatives of `neighbours` by one step, and their rounding.
+
+    Neighbours are compared at equal shares of the arcs between events.
+    """
+    value = value_of(motion.scene, name)
+    changes = [value + place * step - value for place in RULES[side][0].tolist()]
+    near = [moved(motion, settings, {name: change}) for change in changes]
+    knots, ends = knots_of(motion), np.array([knots_of(each) for each in near])
+    times = at_shares(motion.t, knots, ends)
+    states = [columns(each.sol(t), STATE) for each, t in zip(near, times, strict=True)]
+    drift = columns(motion, RATES) * (times - motion.t)[..., None]
+    units = units_of(motion.scene)
+    n, m = len(motion.t), len(motion.events)
+    vectors = np.zeros((len(near), len(STATE), n + m))
+    vectors[:, :, :n] = np.swapaxes((np.array(states).reshape(-1, n, 6) - drift) / units, 1, 2)
+    vectors[:, 0, n:] = ends[:, 1:-1] * (units[3] / units[0])
+    return differenced(vectors, changes, side, size_of(motion.scene, name))
+
+
+def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> FloatArray:
+    """Return times that are at the same shares of the same arcs between other knots.
+
+    Knots are along the last axis; a time at an event stays at it, and one before stays before.
+    """
+    arc = np.searchsorted(knots[:-1], times, side="right") - 1
+    length = knots[arc + 1] - knots[arc]
+    share = np.divide(times - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
+    begin, end = others[..., arc], others[..., arc + 1]
+    within = np.where(arc < len(knots) - 2, np.nextafter(end, begin), end)
+    found: FloatArray = np.clip(begin + share * (end - begin), begin, within)
+    return found
+
+
+def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:
+    """Return the motion from changed inputs, by the same model; ValueError for other events."""
+    values = {name: value_of(motion.scene, name) + change for name, change in changes.items()}
+    other = Trajectory.computed(changed(motion.scene, values), settings, np.array([motion.span]))
+    if difference := unlike(motion, other):
+        by = ", ".join(f"{change:.2g}" for change in changes.values())
+        raise ValueError(f"with a change of {by} {difference}")
+    return other
+
+
+def unlike(motion: Trajectory, other: Trajectory) -> str:
+    """Return the first difference between the arcs of two motions in words, or nothing."""
+    for (known, t), (mode, _) in zip(_order(motion), _order(other), strict=False):
+        if known != mode:
+            if mode == _END:
+                return f"there is no {known} at t = {t:.6g} s"
+            instead = f"one more event, {mode}, by" if known == _END else f"{mode}, not {known}, at"
+            return f"there is {instead} t = {t:.6g} s"
+    return ""
+
+
+def _order(motion: Trajectory) -> list[tuple[str, float]]:
+    """Return what neighbours share, with times: start, events with the next mode, and the end."""
+    events = [(f"{e.kind.name} to {e.state_after.mode.name}", e.t) for e in motion.events]
+    start = f"a start in {motion.scene.initial_state.mode.name}"
+    ended = motion.status in (Status.COMPLETED, Status.VALIDITY_LOST)
+    end = _END if ended else f"an end by {motion.status.name}"
+    return [(start, 0.0), *events, (end, motion.t_end)]
+
+
+def knots_of(motion: Trajectory) -> FloatArray:
+    """Return the times between which the motion obeys one law: start, events, end."""
+    return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
+
+
+def columns(motion: Trajectory, names: tuple[str, ...]) -> FloatArray:
+    return np.stack([getattr(motion, name) for name in names], axis=1)
