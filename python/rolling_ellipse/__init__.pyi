@@ -7,6 +7,7 @@ from . import impacts as impacts
 from . import report as report
 from . import scenes as scenes
 from ._ask.categories import CompletenessWarning as CompletenessWarning
+from ._ask.categories import ExtrapolationWarning as ExtrapolationWarning
 from ._ask.categories import StabilityWarning as StabilityWarning
 from ._ask.categories import ValidityWarning as ValidityWarning
 from ._ask.impulse import Impulse as Impulse

@@ -62,6 +62,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "integration error": integration_error,
     "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
     "completeness warning": lambda: rl.CompletenessWarning("in flight"),
+    "extrapolation warning": lambda: rl.ExtrapolationWarning("beyond its distance"),
     "stability warning": lambda: rl.StabilityWarning("smaller steps"),
     "worker error": lambda: rl.WorkerError("scenes 3 to 5 got lost"),
     "work-precision": raced,

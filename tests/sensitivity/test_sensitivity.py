@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from contextlib import suppress
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from oracles import table
 from oracles.paths import ROOT
 from rolling_ellipse import (
+    ExtrapolationWarning,
     Mode,
     Scene,
     Trajectory,
@@ -283,6 +285,33 @@ def test_the_message_of_other_events() -> None:
         ValueError, match=r"there is one more event, IMPACT to \w+, by t = 0\.\d+ s$"
     ):
         simulate(DROP, np.nextafter(landing, 0)).sensitivity("theta")
+
+
+def test_a_forecast_beyond_its_distance_warns() -> None:
+    motion = simulate(DROP, [0.3, 1.0])
+    known = motion.sensitivity(("theta", "friction", "t"))
+    for name, distance in zip(known.wrt, known.distance.tolist(), strict=True):
+        for sign in (1, -1):
+            known.forecast(**{name: 0.999 * sign * distance})  # a warning would be an error
+            with pytest.warns(ExtrapolationWarning, match=f"{name} changes by .* beyond"):
+                known.forecast(**{name: 1.001 * sign * distance})
+    upwards = motion.sensitivity("theta", side=1)
+    upwards.forecast(theta=1e-3)
+    with pytest.warns(ExtrapolationWarning, match="not towards side = 1"):
+        upwards.forecast(theta=-1e-3)
+
+
+def test_a_forecast_of_changes_that_are_too_large_together_warns() -> None:
+    """Theta and omega turn the body to another angle at its landing, together twice as far."""
+    known = simulate(DROP, [0.3, 1.0]).sensitivity(("theta", "omega"))
+    theta, omega = (0.9 * known.distance).tolist()
+    together = []
+    for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            known.forecast(theta=signs[0] * theta, omega=signs[1] * omega)
+        together += [str(each.message) for each in caught]
+    assert together and all("theta, omega change together" in text for text in together)
 
 
 def test_a_forecast_is_true_to_second_order() -> None:

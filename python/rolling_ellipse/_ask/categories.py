@@ -11,3 +11,7 @@ class StabilityWarning(UserWarning):
 
 class CompletenessWarning(UserWarning):
     """Warning: the results of a search are not proved to be complete."""
+
+
+class ExtrapolationWarning(UserWarning):
+    """Warning: a forecast reaches beyond the change at which the order of events changes."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
+from .._ask.categories import ExtrapolationWarning
 from .._ask.check import FloatArray, choice, number, whole
 from .._ask.printing import brief, text_table
 from .._ask.records import FieldsOnly, cached_property
@@ -78,6 +80,9 @@ class Sensitivity(FieldsOnly):
     def forecast(self, **changes: float) -> FloatArray:
         """Return the states at the samples to first order in changes, shape (n, 6).
 
+        An ExtrapolationWarning is issued if a change is larger than its `distance` or not towards
+        its `side`, or if all together lead to other events.
+
         Parameters
         ----------
         **changes : float
@@ -86,6 +91,12 @@ class Sensitivity(FieldsOnly):
         added = np.zeros(len(self.wrt))
         for name, change in changes.items():
             added[self.wrt.index(choice("changes", name, self.wrt))] = number(name, change)
+        if beyond := self._beyond(added):
+            warnings.warn(
+                f"{beyond}: the events of such a motion are others, and a forecast is a guess",
+                ExtrapolationWarning,
+                stacklevel=2,
+            )
         found: FloatArray = columns(self.trajectory, STATE) + self.state @ added
         return found
 
@@ -98,6 +109,22 @@ class Sensitivity(FieldsOnly):
         The impacts of a body that settles are counted down to those at the `rest_speed`.
         """
         return np.array([_distance(self.trajectory, name, self.side) for name in self.wrt])
+
+    def _beyond(self, added: FloatArray) -> str:
+        """Return which changes are too large for a forecast, in words, or nothing."""
+        given = {name: float(x) for name, x in zip(self.wrt, added, strict=True) if x}
+        for name, change in given.items():
+            if self.side * change < 0 and name != "t":
+                return f"{name} changes by {change:.3g}, which is not towards side = {self.side}"
+            farthest = float(self.distance[self.wrt.index(name)])
+            if abs(change) > farthest:
+                return (
+                    f"{name} changes by {change:.3g}, which is beyond its distance {farthest:.3g}"
+                )
+        given.pop("t", None)
+        if len(given) > 1 and not _same_events(self.trajectory, given):
+            return f"{', '.join(given)} change together beyond their distance"
+        return ""
 
     def __repr__(self) -> str:
         sizes = np.abs(self.state).max(axis=(0, 1), initial=0.0)
