@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from rolling_ellipse import course
@@ -278,17 +279,31 @@ def slip() -> Figure:
     left.text(end + 0.02, 0.2, "rolls", color=GREY)
     left.set(xlabel="t [s]", xlim=(0, 1.2), ylim=(0, 3.1))
     left.set_title("speeds of a disc [m/s]", loc="left", fontsize="medium")
-    mu = np.linspace(0.23, 1.2, 80)
-    speeds = [rl.thresholds(A, B, friction=m).slip_speed for m in mu]
-    lift = rl.thresholds(A, B).contact_loss_speed
-    right.plot(mu, speeds, color=INK)
-    right.axhline(lift, color=PLUM, lw=1, ls="--")
-    right.text(1.2, lift + 0.03, "rolling needs N < 0", color=PLUM, ha="right", va="bottom")
-    right.text(0.75, 10.2, "rolls for ever", color=BLUE)
-    right.text(0.3, 10.9, "slips", color=ORANGE)
-    right.set(xlabel="μ", xlim=(0.2, 1.2), ylim=(9.6, 11.6))
-    right.set_title("speed when flat [rad/s]", loc="left", fontsize="medium")
+    first_events(right)
     return figure
+
+
+def first_events(ax: Axes) -> None:
+    """The proved outcome of rolling at each point, and the ends of the windows that slip."""
+    mu, speed = np.linspace(0.1, 0.8, 281), np.linspace(0.02, 12.4, 310)
+    outcomes = rl.classify(**BODY, omega=speed[:, None], friction=mu)
+    kinds = [rl.Outcome.ROCKS, rl.Outcome.ROLLS_OVER, rl.Outcome.SLIPS]
+    shades = ListedColormap(["#ffffff", SKY, "#f7dfc0"])
+    ax.pcolormesh(mu, speed, np.argmax([outcomes == kind for kind in kinds], axis=0), cmap=shades,
+                  vmin=0, vmax=2, shading="nearest", rasterized=True)  # fmt: skip
+    windows = [rl.thresholds(A, B, friction=m).slip_windows for m in mu]
+    ax.plot(mu, [w[-1][0] for w in windows], color=INK)
+    m, low, high = np.transpose([(m, *w[0]) for m, w in zip(mu, windows, strict=True) if w[1:]])
+    ax.plot([*m, *m[::-1]], [*low, *high[::-1]], color=INK)
+    lift = rl.thresholds(A, B).contact_loss_speed
+    ax.axhline(lift, color=PLUM, lw=1, ls="--")
+    ax.text(0.79, lift + 0.06, "rolling needs N < 0", color=PLUM, ha="right", va="bottom")
+    ax.text(0.5, 7.5, "rolls for ever", color=INK, ha="center")
+    ax.text(0.55, 2.4, "rocks", color=INK, ha="center")
+    ax.text(0.12, 4.2, "slips", color=ORANGE)
+    ax.text(0.12, 10.6, "slips", color=ORANGE)
+    ax.set(xlabel="μ", xlim=(0.1, 0.8), ylim=(0, 12.4))
+    ax.set_title("speed when flat [rad/s]", loc="left", fontsize="medium")
 
 
 def flight() -> Figure:

@@ -175,6 +175,10 @@ def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
     }[name]
 
 
+def _thresholds(of: Scene) -> dict[str, Any]:
+    return _core.thresholds(of.a, of.b, of.gravity, of.gyration2, of.friction)
+
+
 _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "geometry": lambda s, d, name: getattr(geometry, name)(s.theta, a=s.a, b=s.b),
     "core": lambda s, d, name: getattr(_core, name)(s.core),
@@ -182,8 +186,8 @@ _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "simulate": lambda s, d, name: getattr(simulate(s, 0.0), name)[0],
     "quarter": lambda s, d, name: getattr(simulate(s, [_core.period(s.core) / 4]), name)[0],
     "state": lambda s, d, name: getattr(s.initial_state, name),
-    "thresholds": lambda s, d, name: _core.thresholds(
-        s.a, s.b, s.gravity, s.gyration2, s.friction)[name],
+    "thresholds": lambda s, d, name: _thresholds(s)[name],
+    "above": lambda s, d, name: _thresholds(s)[name][-1][0],
     "least": lambda s, d, name: _core.roll_over_speed(s.core) / abs(
         s.replace(impulse=Impulse(jz=-1.0, dx=d["dx"])).initial_state.omega),
     "event": lambda s, d, name: getattr(simulate(s, 5.0).events[0], name),

@@ -65,6 +65,14 @@ Body valid_body(double a, double b, double gravity, std::optional<double> gyrati
     return found;
 }
 
+py::tuple pairs(const std::vector<SpeedRange>& ranges) {
+    py::tuple found(ranges.size());
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        found[i] = py::make_tuple(ranges[i].lower, ranges[i].upper);
+    }
+    return found;
+}
+
 py::dict thresholds_by_name(double a, double b, double gravity, std::optional<double> gyration2,
                             double friction) {
     const Body of = valid_body(a, b, gravity, gyration2);
@@ -74,8 +82,9 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     found["roll_over_speed"] = t.roll_over_speed;
     found["contact_loss_speed"] = t.contact_loss_speed;
     found["contact_loss_angle"] = t.contact_loss_angle;
-    found["slip_speed"] = t.slip_speed;
+    found["slip_speed"] = t.slip_speed();
     found["slip_angle"] = t.slip_angle;
+    found["slip_windows"] = pairs(t.slip_windows);
     found["friction_to_roll_over"] = t.friction_to_roll_over;
     found["painleve_friction"] = t.painleve_friction;
     found["painleve_angle"] = t.painleve_angle;
@@ -94,9 +103,7 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
         const GilRelease release;
         found = lift_off(of, friction, slip_speed, painleve_friction, SignalWatch());
     }
-    py::list jams;
-    for (const auto& [lower, upper] : found.jam_speeds) jams.append(py::make_tuple(lower, upper));
-    return py::make_tuple(found.speed, py::tuple(jams));
+    return py::make_tuple(found.speed, pairs(found.jam_speeds));
 }
 
 }  // namespace

@@ -47,6 +47,12 @@ double required_friction(const Scene& scene);
 // whatever its start; infinite where the slope is steeper than any contact leads its centre.
 double friction_to_rest(const Scene& scene);
 
+// Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
+struct SpeedRange {
+    double lower;
+    double upper;
+};
+
 // The speeds and friction coefficients at which the motion on level ground changes its kind. Speeds
 // are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2]. A speed
 // or friction is infinite, and its angle absent, where the change never happens.
@@ -54,25 +60,26 @@ struct Thresholds {
     double roll_over_speed;                // above it the body turns over
     double contact_loss_speed = infinity;  // from it on rolling would need N < 0 somewhere
     std::optional<double> contact_loss_angle;
-    double slip_speed = infinity;  // from it on rolling needs more friction than there is
-    std::optional<double> slip_angle;
+    // Between these speeds rolling needs more friction than there is somewhere: none for a circle,
+    // one, or two, see outcome/onset.hpp. The last one has no upper end.
+    std::vector<SpeedRange> slip_windows;
+    std::optional<double> slip_angle;     // where friction first fails at the least of these speeds
     double friction_to_roll_over;         // max |F|/N of rolling at the roll-over speed
     double painleve_friction = infinity;  // least mu for which sliding may jam
     std::optional<double> painleve_angle;
     double rocking_rate;  // angular frequency of small rocking [rad/s]
     double tip_rate;      // growth rate of falling from the tip [1/s]
+
+    // The least speed at which rolling needs more friction than there is.
+    double slip_speed() const {
+        return slip_windows.empty() ? infinity : slip_windows.front().lower;
+    }
 };
 
 Thresholds thresholds(const Body& body, double friction);
 
 // The roll-over speed alone, physics (44): it needs no search.
 double roll_over_speed(const Body& body);
-
-// Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
-struct SpeedRange {
-    double lower;
-    double upper;
-};
 
 struct LiftOff {
     double speed = infinity;  // the least speed with which the body leaves the ground

@@ -4,120 +4,12 @@
 
 #include "contact/slide.hpp"
 #include "numerics/bisect.hpp"
+#include "outcome/onset.hpp"
 #include "outcome/outcome.hpp"
 #include "proof/certificate.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-// A position of rolling, by its angle and the height of its centre.
-struct Position : ShapePlace {
-    double angle;      // phi, the angle from the flat position
-    double over_flat;  // h - S, its height over the flat position
-};
-
-Position position(const Shape& shape, double sin2, double cos2) {
-    const ShapePlace at = place_at(shape, sin2, cos2);
-    return {at, std::atan2(std::sqrt(sin2), std::sqrt(cos2)),
-            shape.c2 * sin2 / (at.h + shape.short_axis)};
-}
-
-// Energy over the flat position, H - S, of a motion with omega^2 at a position: physics (26).
-double energy_over_flat(const Position& at, double omega2) {
-    return 0.5 * at.inertia() * omega2 + at.over_flat;
-}
-
-// The least value of a quantity (energy or friction) at which a law breaks, and the angle there.
-struct Onset {
-    double value = infinity;
-    std::optional<double> angle;
-
-    void lower_to(double lower, double at) {
-        if (lower < value) *this = {lower, at};
-    }
-};
-
-// The energy H - S from which on N of rolling vanishes somewhere, physics (46): at H = h - r/p,
-// with r = normal_at_rest, p = normal_moving; the least such H is a root of h' p^2 - r' p + r p'.
-Onset contact_loss(const Shape& shape) {
-    const EnergyRange range = separatrix_range(shape);
-    const ForcePolynomials p = force_polynomials(range);
-    const Polynomial<4>& moving = p.normal_moving;
-    std::vector<double> places = roots_on_unit_interval(
-        bernstein(range.width * (moving * moving) - derivative(p.normal_at_rest) * moving +
-                  p.normal_at_rest * derivative(moving)));
-    places.push_back(1.0);
-    Onset onset;
-    for (const double x : places) {
-        const double over_flat = range.width * x;
-        const double under_tip = range.width * (1 - x);
-        const double h = shape.short_axis + over_flat;
-        const Position at = position(shape, over_flat * (h + shape.short_axis) / shape.c2,
-                                     under_tip * (1 + h) / shape.c2);
-        if (at.normal_part >= 0) continue;
-        onset.lower_to(energy_over_flat(at, -at.kh / at.normal_part), at.angle);
-    }
-    return onset;
-}
-
-// The least omega^2 at which rolling needs |F| >= mu N at a position, physics (47):
-//     |h'| |omega^2 (D - h rho) - h| = mu (kh + omega^2 normal_part),  rho h = S^2/h^2.
-double slip_omega2(const Shape& shape, const Position& at, double friction) {
-    const double dh = std::sqrt(at.dh2);
-    if (at.h * dh >= friction * at.kh) return 0.0;
-    const double inertial = dh * (at.inertia() - square(shape.short_axis / at.h));
-    double least = infinity;
-    for (const double side : {-1.0, 1.0}) {
-        const double slope = side * inertial - friction * at.normal_part;
-        const double omega2 = (friction * at.kh + side * at.h * dh) / slope;
-        if (omega2 >= 0) least = std::min(least, omega2);
-    }
-    return least;
-}
-
-// The lowest position in which a body at rest needs |F| = mu N: h |h'| = mu (k^2 + h^2), a
-// quadratic equation in y = h^2 - B, physics (48).
-Onset slip_at_rest(const Shape& shape, double friction) {
-    const double b = shape.short_axis;
-    const double mu2 = square(friction);
-    const double flat_inertia = shape.gyration2 + square(b);
-    const double half = shape.c2 - 2 * mu2 * flat_inertia;
-    const double discriminant = square(half) - 4 * (1 + mu2) * mu2 * square(flat_inertia);
-    if (half <= 0 || discriminant < 0) return {};
-    const double y = 2 * mu2 * square(flat_inertia) / (half + std::sqrt(discriminant));
-    const Position at = position(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
-    return {at.over_flat, at.angle};
-}
-
-// The least energy of slipping over all positions: either at a turning point, or the minimum from a
-// scan, even in ln tan phi, and golden section around the best.
-Onset slip(const Shape& shape, double friction) {
-    if (std::isinf(friction)) return contact_loss(shape);
-    constexpr int scan = 512;
-    constexpr double first = -24.0;  // least ln tan phi: near the flat forces change over (b/a)^2
-    constexpr double last = 20.0;    // largest ln tan phi: near the tip forces change over 1/mu
-    const auto energy_at = [&](double log_tan) {
-        const double tan2 = std::exp(2 * log_tan);
-        const Position at = position(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
-        return Onset{energy_over_flat(at, slip_omega2(shape, at, friction)), at.angle};
-    };
-    constexpr double step = (last - first) / scan;
-    double best = first;
-    double least = energy_at(first).value;
-    for (int i = 1; i <= scan; ++i) {
-        const double here = first + step * i;
-        const double value = energy_at(here).value;
-        if (!(value < least)) continue;
-        best = here;
-        least = value;
-    }
-    const auto is_below_upper = [&](double left, double right) {
-        return !(energy_at(left).value > energy_at(right).value);
-    };
-    const Onset moving = energy_at(golden_section(best - step, best + step, is_below_upper));
-    const Onset at_rest = slip_at_rest(shape, friction);
-    return at_rest.value < moving.value ? at_rest : moving;
-}
 
 // The least friction with which sliding may jam, mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h
 // h')^2: stationary where -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
@@ -159,6 +51,13 @@ bool reaches_the_tip(const Scene& scene, const State& start) {
     const double h = geometry(scene.axes(), start.theta).h;
     const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
     return square(start.z_dot) >= 2 * scene.gravity * to_tip;
+}
+
+// The speed when passing the flat position of a motion with an energy over it, in units of the long
+// semi-axis: physics (44).
+double flat_speed(const Body& body, const FlatView& at, double over_flat) {
+    const double flat_inertia = body.gyration2 + square(at.short_axis);
+    return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia);
 }
 
 // Fate of a body that rolls over the flat position, before it passes the tip.
@@ -274,7 +173,6 @@ double roll_over_speed(const Body& body) {
 
 Thresholds thresholds(const Body& body, double friction) {
     const FlatView at = flat_view(body.axes(), 0.0);
-    const double unit = at.long_axis;
     const Shape shape = rolling_ellipse::shape(body, at);
     const double flat_inertia = body.gyration2 + square(at.short_axis);
     const double tip_inertia = body.gyration2 + square(at.long_axis);
@@ -284,21 +182,26 @@ Thresholds thresholds(const Body& body, double friction) {
     result.roll_over_speed = roll_over_speed(body);
     result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
-    if (at.c2 == 0) return result;
+    if (at.c2 == 0) {
+        if (friction > 0) return result;
+        result.slip_windows = {{0.0, infinity}};
+        result.slip_angle = 0.0;
+        return result;
+    }
 
-    const auto flat_speed = [&](const Onset& onset) {  // physics (44)
-        return std::sqrt(2 * body.gravity * unit * onset.value / flat_inertia);
-    };
     const auto theta_of = [&](std::optional<double> angle) {
         if (angle && body.a < body.b) angle = half_pi - *angle;
         return angle;
     };
     const Onset loss = contact_loss(shape);
-    result.contact_loss_speed = flat_speed(loss);
+    result.contact_loss_speed = flat_speed(body, at, loss.value);
     result.contact_loss_angle = theta_of(loss.angle);
-    const Onset slipping = slip(shape, friction);
-    result.slip_speed = flat_speed(slipping);
-    result.slip_angle = theta_of(slipping.angle);
+    const std::vector<SlipWindow> windows = slip_windows(shape, friction);
+    for (const SlipWindow& window : windows) {
+        result.slip_windows.push_back(
+            {flat_speed(body, at, window.start.value), flat_speed(body, at, window.end)});
+    }
+    result.slip_angle = theta_of(windows.front().start.angle);
     const EnergyRange separatrix = separatrix_range(shape);
     result.friction_to_roll_over =
         force_extremes(separatrix, force_polynomials(separatrix)).most_friction.needed();

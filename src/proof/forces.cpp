@@ -40,18 +40,20 @@ ShapePlace place_at(const Shape& shape, double sin2, double cos2) {
 }
 
 EnergyRange energy_range(const RollingStart& start) {
-    const EnergyHeight& height = start.height;
     const FlatView& at = start.view;
     const double unit = at.long_axis;
-    EnergyRange range{};
-    static_cast<Shape&>(range) = shape(start.body, at);
-    range.libration = height.over_tip < 0;
+    const Shape body = shape(start.body, at);
+    return energy_range(body, start.height.over_flat / unit, start.height.over_tip / unit);
+}
+
+EnergyRange energy_range(const Shape& shape, double over_flat, double over_tip) {
+    EnergyRange range = separatrix_range(shape);
+    range.libration = over_tip < 0;
     if (range.libration) {
-        range.width = height.over_flat / unit;
-        range.tip_gap = -height.over_tip / unit;
+        range.width = over_flat;
+        range.tip_gap = -over_tip;
     } else {
-        range.width = (at.long_axis - at.short_axis) / unit;
-        range.energy_gap = height.over_tip / unit;
+        range.energy_gap = over_tip;
     }
     return range;
 }

@@ -50,6 +50,9 @@ struct EnergyRange : Shape {
 
 EnergyRange energy_range(const RollingStart& start);
 
+// The same for an energy by its heights H - S over the flat position and H - 1 over the tip.
+EnergyRange energy_range(const Shape& shape, double over_flat, double over_tip);
+
 // The range of a rotation with the energy of the separatrix, H = 1.
 EnergyRange separatrix_range(const Shape& shape);
 

@@ -330,13 +330,15 @@ void print_bodies() {
 void print_outcomes() {
     for (const double b : {0.01, 0.5, 1.0, 1.5, 20.0}) {
         const Body body{1.0, b, uniform_disc_gyration2(1.0, b), 9.81};
-        for (const double friction : {0.1, 0.6, 1.5, infinity}) {
+        for (const double friction : {0.1, 0.4, 0.6, 1.5, infinity}) {
             const Thresholds at = thresholds(body, friction);
+            const bool has_two = at.slip_windows.size() > 1;
             print("thresholds",
                   {body.a, body.b, body.gravity, body.gyration2, friction, at.roll_over_speed,
-                   at.contact_loss_speed, or_nan(at.contact_loss_angle), at.slip_speed,
-                   or_nan(at.slip_angle), at.friction_to_roll_over, at.painleve_friction,
-                   or_nan(at.painleve_angle), at.rocking_rate, at.tip_rate});
+                   at.contact_loss_speed, or_nan(at.contact_loss_angle), at.slip_speed(),
+                   or_nan(at.slip_angle), has_two ? at.slip_windows[0].upper : infinity,
+                   has_two ? at.slip_windows[1].lower : infinity, at.friction_to_roll_over,
+                   at.painleve_friction, or_nan(at.painleve_angle), at.rocking_rate, at.tip_rate});
             std::string codes = "classify ";
             for (int i = 0; i < 16; ++i) {
                 for (int j = 0; j < 16; ++j) {

@@ -93,7 +93,7 @@ Numbers judgements(double omega) {
             static_cast<double>(level.reason.size() + slope.reason.size()),
             static_cast<double>(classify(body, 0.6, 0.1, omega)),
             static_cast<double>(outcome(on_slope(scene_of(omega), 0.1), [] {})),
-            thresholds(body, 0.6).slip_speed,
+            thresholds(body, 0.6).slip_speed(),
             lift.speed,
             period(scene_of(omega))};
 }

@@ -182,7 +182,10 @@ def outcomes_through_python(records: list[Record]) -> Iterator[Record]:
             "slip_angle", "friction_to_roll_over", "painleve_friction", "painleve_angle",
             "rocking_rate", "tip_rate",
         )  # fmt: skip
-        yield Record("thresholds", (), (*body, *(or_nan(getattr(known, name)) for name in names)))
+        numbers = [or_nan(getattr(known, name)) for name in names]
+        gaps = [(one[1], next_[0]) for one, next_ in pairwise(known.slip_windows)]
+        numbers[5:5] = gaps[0] if gaps else (math.inf, math.inf)
+        yield Record("thresholds", (), (*body, *numbers))
         codes = rl.classify(
             a=a, b=b, theta=theta[:, None], omega=omega, friction=friction, gravity=gravity,
             gyration2=gyration2,

@@ -84,6 +84,13 @@ def motion(
     return Motion(a, b, gyration2, gravity, lift)
 
 
+def passing_flat(a: float, b: float, gyration2: float, gravity: float, omega: ArrayLike) -> Motion:
+    """Motions of one body that pass the flat position at these speeds [rad/s]."""
+    speeds = np.atleast_1d(np.asarray(omega, np.longdouble))
+    lift = (gyration2 + np.longdouble(min(a, b)) ** 2) * speeds**2 / 2
+    return Motion(*np.broadcast_arrays(*map(np.longdouble, (a, b, gyration2, gravity)), lift))
+
+
 def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
     """|omega| at a reduced angle [rad/s]; 0 where the motion does not reach it."""
     h, slope, *_ = outline(moving.a, moving.b, sine, cosine)

@@ -33,12 +33,7 @@ def flat_of(shape: Shape) -> float:
 
 def rolling(shape: Shape, gyration2: float, omega: Any) -> oracles.rolling.Motion:
     """Motions that pass the flat position at these speeds [rad/s]."""
-    lying = oracles.rolling.motion(
-        *shape, gyration2, GRAVITY, flat_of(shape), np.atleast_1d(np.longdouble(0))
-    )
-    lift = (gyration2 + np.longdouble(min(shape)) ** 2) * np.atleast_1d(omega) ** 2 / 2
-    wide = np.broadcast_arrays(*lying, lift)
-    return oracles.rolling.Motion(wide[0], wide[1], wide[2], wide[3], lift)
+    return oracles.rolling.passing_flat(*shape, gyration2, GRAVITY, omega)
 
 
 def forces_at(moving: Any, shape: Shape, theta: float | None) -> oracles.rolling.Forces:

@@ -40,6 +40,9 @@ def of_result(value: Any, finite: bool) -> Finds:
     elif isinstance(value, rl.Thresholds):
         yield from _not_negative(value, "roll_over_speed", "contact_loss_speed", "slip_speed",
                                  "friction_to_roll_over", "painleve_friction")  # fmt: skip
+        speeds = [end for window in value.slip_windows for end in window]
+        if speeds != sorted(speeds) or value.slip_speed != min(speeds, default=math.inf):
+            yield "broken", "slip_windows do not ascend from slip_speed"
     elif isinstance(value, rl.InitialState):
         yield from _not_negative(value, "reaction_z")
 

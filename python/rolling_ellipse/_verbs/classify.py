@@ -24,7 +24,8 @@ class Thresholds(FieldsOnly, Listed):
 
     Speeds are ``|omega|`` when passing the flat position [rad/s]; angles are theta in [0, pi/2]
     [rad], None if the speed or coefficient before it is infinite (it never happens).
-    `lift_off_speed` and `jam_speeds` are computed when first asked for, in some milliseconds.
+    `lift_off_speed` and `jam_speeds` are computed when first asked for, in some milliseconds, or
+    in up to a tenth of a second for a body that may jam.
 
     Attributes
     ----------
@@ -33,7 +34,14 @@ class Thresholds(FieldsOnly, Listed):
     contact_loss_speed, contact_loss_angle : float
         From this speed on rolling would need the ground to pull (N < 0), first at this angle.
     slip_speed, slip_angle : float
-        From this speed on rolling needs more than the given friction, first at this angle.
+        The least speed at which rolling needs more than the given friction, first at this angle:
+        the start of the first of `slip_windows`. Larger speeds may hold again.
+    slip_windows : tuple of (float, float)
+        Ranges of speed, ascending, in which rolling needs more than the given friction somewhere on
+        its way: one or two, the last one up to inf; none for a circle with friction. Between two
+        of them the body rolls for ever: too fast to stop where it would slip from rest, and too
+        slow to slip in motion. The ends are found by a scan over the angles; the proof of `certify`
+        then excludes that rolling fails at an angle that the scan has missed.
     lift_off_speed : float
         The least speed at which a body of the given friction leaves the ground: it slips first,
         and then N reaches 0 before it passes the tip. At all larger speeds it leaves, too, except
@@ -56,9 +64,9 @@ class Thresholds(FieldsOnly, Listed):
 
     _units: ClassVar[dict[str, str]] = {
         "roll_over_speed": "rad/s", "contact_loss_speed": "rad/s", "contact_loss_angle": "rad",
-        "slip_speed": "rad/s", "slip_angle": "rad", "lift_off_speed": "rad/s",
-        "jam_speeds": "rad/s", "painleve_angle": "rad", "rocking_rate": "rad/s",
-        "tip_rate": "1/s",
+        "slip_speed": "rad/s", "slip_angle": "rad", "slip_windows": "rad/s",
+        "lift_off_speed": "rad/s", "jam_speeds": "rad/s", "painleve_angle": "rad",
+        "rocking_rate": "rad/s", "tip_rate": "1/s",
     }  # fmt: skip
 
     roll_over_speed: float
@@ -66,6 +74,7 @@ class Thresholds(FieldsOnly, Listed):
     contact_loss_angle: float | None
     slip_speed: float
     slip_angle: float | None
+    slip_windows: tuple[tuple[float, float], ...]
     lift_off_speed: float
     jam_speeds: tuple[tuple[float, float], ...]
     friction_to_roll_over: float
@@ -171,8 +180,8 @@ def thresholds(
     a, b, gravity, gyration2 : float
         As of `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
     friction : float
-        Coefficient of friction for `slip_speed` and `lift_off_speed`; if infinite, the slip speed
-        is the contact loss speed.
+        Coefficient of friction for the speeds that slip, lift off or jam; if infinite, the slip
+        speed is the contact loss speed.
 
     Returns
     -------

@@ -1,0 +1,142 @@
+"""`slip_windows` are the speeds at which rolling needs more than the friction: all, and only these.
+
+The oracle samples |F|/N over the angles in long doubles; the package takes ends of windows from a
+scan over the angles at which the law is linear in omega^2, and proves them by polynomials.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import oracles.rolling
+from rolling_ellipse import Outcome, Scene, Validity, certify, outcome, simulate, thresholds
+
+GRAVITY = 3.7
+Windows = tuple[tuple[float, float], ...]
+
+
+class Body(NamedTuple):
+    a: float
+    b: float
+    gyration2: float
+    friction: float
+
+    def windows(self) -> Windows:
+        a, b, gyration2, friction = self
+        found = thresholds(a, b, gyration2=gyration2, friction=friction, gravity=GRAVITY)
+        assert found.slip_speed == found.slip_windows[0][0]
+        return found.slip_windows
+
+    def scene(self, omega: float) -> Scene:
+        a, b, gyration2, friction = self
+        flat = 0.0 if a >= b else math.pi / 2
+        return Scene(
+            a, b, inertia=gyration2, gravity=GRAVITY, friction=friction, theta=flat, omega=omega
+        )
+
+
+def friction_at_rest(a: float, b: float, gyration2: float) -> float:
+    """The least friction with which a body at rest slips at no angle: max h |h'| / (k^2 + h^2)."""
+    theta = np.linspace(0, math.pi / 2, 4001)
+    h2 = (a * np.sin(theta)) ** 2 + (b * np.cos(theta)) ** 2
+    lead = abs(a * a - b * b) * np.sin(theta) * np.cos(theta)  # h |h'|
+    return float(np.max(lead / (gyration2 + h2)))
+
+
+def bodies(count: int, seed: int, decades: float) -> Iterator[Body]:
+    """Random bodies; friction of every second one is a little too low for a body at rest."""
+    rng = np.random.default_rng(seed)
+    for i in range(count):
+        size, aspect = 10 ** rng.uniform(-1, 1), 10 ** rng.uniform(-decades, decades)
+        a, b = size, size * aspect
+        gyration2 = max(a, b) ** 2 * 10 ** rng.uniform(-4, 1)
+        friction = 10 ** rng.uniform(-3, 2)
+        if i % 2:
+            friction = friction_at_rest(a, b, gyration2) * (1 - 10 ** rng.uniform(-6, -0.3))
+        yield Body(a, b, gyration2, float(friction))
+
+
+def ends(windows: Windows) -> list[float]:
+    return [end for window in windows for end in window if 0 < end < math.inf]
+
+
+def is_inside(windows: Windows, omega: Any) -> Any:
+    return np.any([(low < omega) & (omega < high) for low, high in windows], axis=0)
+
+
+def test_windows_by_samples_of_the_needed_friction() -> None:
+    """At 150 speeds, to 1e-8 from the ends, rolling needs too much friction inside windows only."""
+    two = 0
+    for body in bodies(60, 11, decades=1.5):
+        windows = body.windows()
+        two += len(windows) == 2
+        beside = [end * (1 + by) for end in ends(windows) for by in (-1e-8, 1e-8)]
+        around = np.geomspace(ends(windows)[0] / 5, ends(windows)[-1] * 5, 150 - len(beside))
+        speeds = np.concatenate([beside, around])
+        a, b, gyration2, friction = body
+        motions = oracles.rolling.passing_flat(a, b, gyration2, GRAVITY, speeds)
+        needs_more = oracles.rolling.extremes(motions).needed > friction
+        assert np.array_equal(needs_more, is_inside(windows, speeds)), body
+    assert two >= 15
+
+
+def test_windows_agree_with_certify_and_outcome() -> None:
+    """Rolling is proved invalid inside windows, and valid outside; undecided beside an end only."""
+    rng = np.random.default_rng(12)
+    two = 0
+    for body in bodies(500, 13, decades=3):
+        windows = body.windows()
+        two += len(windows) == 2
+        edges = ends(windows)
+        speeds = [end * (1 + by) for end in edges for by in (-1e-3, -1e-9, 1e-9, 1e-3)]
+        speeds += [*np.geomspace(edges[0] / 10, edges[-1] * 10, 4), *rng.uniform(0, edges[-1], 2)]
+        for omega in map(float, speeds):
+            inside = bool(is_inside(windows, omega))
+            scene = body.scene(omega)
+            validity, first = certify(scene).validity, outcome(scene)
+            if validity is Validity.EDGE:
+                assert min(abs(omega / end - 1) for end in edges) < 1e-8, (body, omega)
+                continue
+            assert validity is (Validity.INVALID if inside else Validity.VALID), (body, omega)
+            rolls = first in (Outcome.ROCKS, Outcome.ROLLS_OVER)
+            assert rolls != inside or first is Outcome.EDGE, (body, omega, first)
+    assert two >= 100
+
+
+def test_there_are_at_most_two_windows_and_the_last_is_unbounded() -> None:
+    for body in bodies(2000, 14, decades=3):
+        windows = body.windows()
+        edges = [end for window in windows for end in window]
+        assert len(windows) <= 2 and windows[-1][1] == math.inf
+        assert edges == sorted(edges) and len(set(edges)) == len(edges)
+        if len(windows) == 2:  # only a body that slips when released from rest has two
+            assert body.friction < friction_at_rest(*body[:3]) * (1 + 1e-5)
+
+
+def test_a_body_between_its_windows_rolls_for_ever() -> None:
+    """A 2:1 disc with friction 0.4 slips at 1.8 and at 4.6 rad/s, and not at 2.5 (it rocks) or 3.5
+    rad/s (it rolls over and over): the contact model confirms it by its events."""
+    (low, high), (again, _) = thresholds(2.0, 1.0, friction=0.4).slip_windows
+    assert low < 1.8 < high < 2.5 < 3.5 < again < 4.6
+    for omega, slips in ((1.0, False), (1.8, True), (2.5, False), (3.5, False), (4.6, True)):
+        scene = Scene(2.0, 1.0, friction=0.4, omega=omega)
+        motion = simulate(scene, 10.0, model="contact")
+        assert bool(motion.events) == slips, omega
+
+
+def test_windows_at_the_limits_of_friction() -> None:
+    """Without friction any moving body slips, a circle, too; a circle needs none if it has some."""
+    for a, b in ((2.0, 1.0), (1.0, 2.0), (1.3, 1.3)):
+        found = thresholds(a, b, friction=0.0)
+        assert found.slip_windows == ((0.0, math.inf),)
+        assert (found.slip_speed, found.slip_angle) == (0.0, 0.0 if a >= b else math.pi / 2)
+        assert certify(Scene(a, b, omega=1e-6, friction=0.0)).validity is Validity.INVALID
+        found = thresholds(a, b)
+        loss = found.contact_loss_speed
+        assert found.slip_windows == (((loss, math.inf),) if a != b else ())
+    assert thresholds(1.3, 1.3, friction=1e-300).slip_windows == ()
+    assert thresholds(1.3, 1.3, friction=1e-300).slip_speed == math.inf
+    for friction in (1e-300, 1e-150, 1e-12, 1e6):
+        ((low, _),) = thresholds(2.0, 1.0, friction=friction).slip_windows
+        assert 0 <= low <= thresholds(2.0, 1.0).contact_loss_speed
