@@ -60,6 +60,11 @@ double flat_speed(const Body& body, const FlatView& at, double over_flat) {
     return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia);
 }
 
+double contact_loss_speed(const Body& body) {
+    const FlatView at = flat_view(body.axes(), 0.0);
+    return flat_speed(body, at, contact_loss(shape(body, at)).value);
+}
+
 // Fate of a body that rolls over the flat position, before it passes the tip.
 enum class Fate { stays, leaves, jams };
 
@@ -139,26 +144,34 @@ double too_slow(const Body& body, const FlatView& at) {
 }
 
 // The least speed of lift-off, by steps of a factor: coarse without jams, since a body that leaves
-// the ground does so at any higher speed; fine with jams, since fates may alternate. At 50 times
-// the slip speed gravity is 2500 times weaker in units of omega^2 and no longer matters.
-LiftOff scanned(const Climb& climb, double low, bool may_jam) {
+// the ground does so at any higher speed; fine up to `high` with jams, since fates may alternate.
+LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
-    const int most_growths = may_jam ? 198 : 200;
+    const int most_growths = may_jam ? int(std::log(high / low) / std::log(growth)) + 1 : 200;
+    constexpr double known = 1e-5;   // share of a speed; closer to a change last digits decide
+    constexpr int most_changes = 8;  // in one step
     LiftOff found;
     Fate before = Fate::stays;
+    const auto change = [&](double at, Fate next) {
+        if (before == Fate::jams) found.jam_speeds.back().upper = at;
+        if (next == Fate::jams) found.jam_speeds.push_back({at, infinity});
+        if (next == Fate::leaves) found.speed = std::min(found.speed, at);
+        before = next;
+    };
     double speed = low;
     for (int i = 0; i <= most_growths; ++i) {
-        const double slower = speed;
+        double slower = speed;
         if (i > 0) speed *= growth;
         const Fate fate = climb.fate(speed);
-        if (fate == before) continue;
-        const auto is_changed = [&](double omega) { return climb.fate(omega) != before; };
-        const double change = i == 0 ? low : bisect(slower, speed, is_changed).high;
-        if (before == Fate::jams) found.jam_speeds.back().upper = change;
-        if (fate == Fate::jams) found.jam_speeds.push_back({change, infinity});
-        if (fate == Fate::leaves) found.speed = std::min(found.speed, change);
-        if (fate == Fate::leaves && !may_jam) break;
-        before = fate;
+        if (i == 0 && fate != before) change(low, fate);
+        for (int k = 0; fate != before; ++k) {
+            const auto is_changed = [&](double omega) { return climb.fate(omega) != before; };
+            const double at = bisect(slower, speed, is_changed).high;
+            slower = std::min(at * (1 + known), speed);
+            const Fate next = k < most_changes ? climb.fate(slower) : fate;
+            if (next != before) change(at, next);
+        }
+        if (before == Fate::leaves && !may_jam) break;
     }
     return found;
 }
@@ -219,8 +232,13 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const Units units = natural_units(level.body(), level.mass);
     const Scene scene = in_units(level, units);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
+    // At 50 times the speeds that weight decides gravity is 2500 times weaker in units of omega^2,
+    // and no longer matters. The slip speed may be far below them: that of a body that slips at
+    // rest.
+    const double weighty = std::max(roll_over_speed(body), contact_loss_speed(body)) * units.time;
+    const double high = 50 * std::max(low, weighty);
     const bool may_jam = std::isfinite(friction) && friction > painleve_friction;
-    LiftOff found = scanned(Climb{scene, checkpoint}, low, may_jam);
+    LiftOff found = scanned(Climb{scene, checkpoint}, low, high, may_jam);
     found.speed /= units.time;
     for (SpeedRange& jams : found.jam_speeds) {
         jams.lower /= units.time;

@@ -311,6 +311,23 @@ def test_jams_between_speeds_of_leaving(friction: float) -> None:
         assert leaves == (speed >= found.lift_off_speed and not jams), speed
 
 
+def test_jams_far_above_the_speed_that_slips_at_rest() -> None:
+    """A body that slips from rest at 0.24 rad/s jams at 16 to 17 rad/s, after it has left the
+    ground at lower speeds: the scan for jams goes on while weight matters, not to 50 times the slip
+    speed."""
+    body: dict[str, Any] = {"a": 10.0, "b": 1.0}
+    gyration2, friction = 0.108, 0.72
+    found = thresholds(**body, gyration2=gyration2, friction=friction)
+    assert found.lift_off_speed > 50 * known(found.slip_speed)
+    ((low, high),) = found.jam_speeds
+    for speed in (low * 0.999, low * 1.001, high * 0.999, high * 1.001):
+        scene = Scene(**body, inertia=gyration2, friction=friction, omega=speed)
+        motion = simulate(scene, 3.0, model="contact", max_events=8, raise_on_failure=False)
+        upwards = list(takewhile(on_its_way_up, motion.events))
+        kinds = {one.kind for one in upwards} & {EventKind.JAM, EventKind.LIFT_OFF}
+        assert kinds == {EventKind.JAM if low < speed < high else EventKind.LIFT_OFF}, speed
+
+
 def test_discs_do_not_jam_before_they_leave() -> None:
     for aspect in (1.2, 2.0, 5.0, 20.0):
         for friction in (1.3, 2.0, 50.0):

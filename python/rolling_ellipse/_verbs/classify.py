@@ -49,9 +49,10 @@ class Thresholds(FieldsOnly, Listed):
     jam_speeds : tuple of (float, float)
         Ranges of speed, ascending, in which the slide jams before it leaves the ground or passes
         the tip; inf ends an unbounded range. Empty up to `painleve_friction` and for infinite
-        friction; above, they are found by a scan in steps of 2 % up to 50 times the slip speed
-        (narrower ranges may be missed). Their ends are refined by bisection; they are known to
-        some 1e-5 where slides run into the point at which pressure and response vanish together.
+        friction; above, they are found by a scan in steps of 2 % up to 50 times the largest of the
+        other speeds (narrower ranges may be missed). Their ends are refined by bisection; they are
+        known to some 1e-5 where slides run into the point at which pressure and response vanish
+        together.
     friction_to_roll_over : float
         Largest ``|F/N|`` of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float
