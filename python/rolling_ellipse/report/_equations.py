@@ -218,7 +218,10 @@ def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
 
 
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return F, in lambda3 of eq 39, term by term as eq 40 prints it; right: `complete_f`."""
+    """Return F, in lambda3 of eq 39, term by term as eq 40 prints it [N m^5].
+
+    `complete_f` has the terms that it lost; with right equations F is 4 a^2 b^2 h' N.
+    """
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
@@ -240,9 +243,10 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def complete_f(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return F of eq 40 with every term, as eqs 33, 35, 37 and lambda2 of eq 39 give it.
+    """Return F of eq 40 with every term, as eq 37 gives it with lambda1, lambda2 and lambda4.
 
-    It has the signs of these equations, so that the difference from `eq_40` is the lost terms.
+    These have the signs of eq 39, so that the difference from `eq_40` is the lost terms. It is not
+    the right F.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)

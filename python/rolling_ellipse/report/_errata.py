@@ -19,9 +19,10 @@ from .._verbs.classify import thresholds
 from .._verbs.simulate import simulate
 from ..geometry import contact_angle, contact_distance, support_slope
 from . import _equations as equations
-from ._rows import CODE, EQ_32, consistent_rates, constraint_matrix
+from ._rows import CODE, EQ_32, MATRIX, consistent_rates, constraint_matrix, polar
 from ._simulate import simulate as follow
 
+_STATE = ("q", "q_ddot", "a", "b", "mass", "gravity")  # arguments of the equations of motion
 _BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
 
 
@@ -62,8 +63,8 @@ def _rolling(theta: float, **other: float) -> dict[str, Any]:
     """Return the arguments of all equations where a rolling body passes the angle theta."""
     body = _BODY | other
     motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # through all quadrants
-    omega = motion.at(motion.when(theta=theta)[0]).omega
-    there = simulate(Scene(**body, theta=theta, omega=omega), 0.0)
+    passing = motion.at(motion.when(theta=theta)[0])
+    there = simulate(Scene(**body, theta=theta, omega=passing.omega, x=passing.x), 0.0)
     columns = there.x_ddot, there.z_ddot, there.omega_dot, there.psi_ddot, there.r_ddot
     state = {"q": there.q[0], "q_dot": there.q_dot[0], "q_ddot": np.stack(columns, axis=-1)[0]}
     return {"theta": theta, "impulse": 48.0, "d": 1.5, **body, **state}
@@ -73,11 +74,14 @@ def _compared(
     printed: Callable[..., Any], right: Callable[..., Any], entry: Any = (), theta: float = 0.7,
     **other: float,
 ) -> Comparison:  # fmt: skip
-    """Compare an entry of what two functions return; they get the arguments that they take."""
+    """Compare an entry of what two functions return; they get the arguments that they take.
+
+    A function of any arguments gets those of the equations of motion.
+    """
     known = _rolling(theta, **other)
     values = []
     for function in (printed, right):
-        names = signature(function).parameters.keys() & known.keys()
+        names = signature(function).parameters.keys() & known.keys() or _STATE
         values.append(float(np.asarray(function(**{name: known[name] for name in names}))[entry]))
     return Comparison(*values)
 
@@ -99,10 +103,77 @@ def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: 
     return sign * constraint_matrix(q, a=a, b=b, printed=())[2, 3] * third
 
 
-def _fourth(power: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: Any) -> Any:
-    """Return lambda4 with the denominator 4 a^2 b^power."""
-    numerator = equations.lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    return numerator / (4 * a**2 * b**power)
+def _pull(equation: Callable[..., Any], **state: Any) -> Any:
+    """Return lambda2 cos(psi - theta) [N] with the multipliers of an equation."""
+    q = state["q"]
+    return equation(**state)[1] * np.cos(q[3] - q[2])
+
+
+def _divisor(q: Any, a: float, b: float) -> Any:
+    """Return 4 a^3 b^3 sin(2 psi) (a^2 - b^2), by which eqs 39 and 41 divide [m^8]."""
+    return 4 * (a * b) ** 3 * np.sin(2 * q[3]) * (a**2 - b**2)
+
+
+def _f(**state: Any) -> Any:
+    """Return the F that makes lambda3 = F/(4 a^3 b^3 sin(2 psi) (a^2 - b^2)) [N m^5]."""
+    third = equations.multipliers(**state)[2]
+    return third * _divisor(state["q"], state["a"], state["b"])
+
+
+def _f1(**state: Any) -> Any:
+    """Return the F1 that makes eq 41 right, 2 (...)^(3/2) F [N m^8]."""
+    return 2 * polar(state["q"][3], state["a"], state["b"]) ** 1.5 * _f(**state)
+
+
+def _eq_35(**state: Any) -> Any:
+    return equations.eqs_33_to_37(multipliers=equations.eq_39(**state), **state)[2]
+
+
+def _right_35(**state: Any) -> Any:
+    return equations.equations_of_motion(multipliers=equations.multipliers(**state), **state)[2]
+
+
+def _eq_37(**state: Any) -> Any:
+    """Return eq 37 with the multipliers of eq 39, the divisor of lambda4 and all terms of F."""
+    q, a, b = (state[name] for name in ("q", "a", "b"))
+    first, second, _, _ = equations.eq_39(**state)
+    third = equations.complete_f(**state) / _divisor(q, a, b)
+    fourth = equations.lambda4_numerator(**state) / (4 * a**2)
+    return equations.eqs_33_to_37(multipliers=[first, second, third, fourth], **state)[3]
+
+
+def _first_terms(**state: Any) -> Any:
+    """Return the part of eq 41 that the first terms of eq 42 are [N/m^8]."""
+    q, a, b = (state[name] for name in ("q", "a", "b"))
+    one, two, _, _ = equations.eq_39(**state)
+    lean = q[3] - q[2]
+    return (one * np.sin(lean) - two * np.cos(lean)) / _divisor(q, a, b)
+
+
+def _reach(q: Any, a: float, b: float) -> Any:
+    """Return |r_OC| [m]: C is on the ground, as O is."""
+    return abs(equations.contact_x(q, a=a, b=b))
+
+
+def _to_the_right(theta: float, a: float, b: float) -> Any:
+    return abs(support_slope(theta, a=a, b=b))
+
+
+def _to_the_origin(q: Any) -> Any:
+    return -q[0]
+
+
+def _no_part(q: Any) -> float:
+    return 0.0
+
+
+def _even_turning() -> Comparison:
+    """Compare f2 and f3 with the rates by the matrix as printed, where theta = t."""
+    axes = {"a": _BODY["a"], "b": _BODY["b"]}
+    q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **axes)
+    held = np.stack([equations.f2(q), equations.f3(q, **axes)])
+    rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **axes), q_dot)
+    return Comparison(float(np.max(np.abs(held))), float(np.max(np.abs(rates))))
 
 
 def _back_substitution() -> Comparison:
@@ -120,25 +191,36 @@ def _roll_over() -> Comparison:
 
 #: The comparison of each row of errata.json, by its place in the report.
 _COMPARISONS: dict[str, Callable[[], Comparison]] = {
-    "eqs 9, 10, f1": _both(equations.f1, partial(_rate, 0)),
+    "section 2.2, before eq 6": _both(contact_distance, _reach),
     "section 2.2, cases 1 and 2": _both(equations.case_lead, support_slope, theta=4.0),
+    "section 2.2, case 2 and Figure 8": _both(_to_the_right, support_slope, theta=5.5),
+    "eqs 9, 10, f1": _both(equations.f1, partial(_rate, 0)),
     "eq 32, df2, row 2": _row(1, ("df2", "tan")),
     "eq 32, df3": _row(2, EQ_32),
+    "eq 32, df4, code": _both(
+        constraint_matrix, partial(constraint_matrix, printed=()), (3, 3), theta=math.pi / 2
+    ),
     "eq 35, code a44": _row(3, CODE),
     "eq 37": _both(partial(_moment, -1), partial(_moment, 1)),
     "eq 38, f1 and f2": _both(equations.eq_38, equations.constraint_rates, 1),
     "eq 39, λ2": _both(equations.eq_39, equations.multipliers, 1),
     "eq 39, λ3": _both(equations.eq_39, equations.multipliers, 2, theta=math.pi / 2 - 1e-3),
-    "eq 39, λ4": _both(partial(_fourth, 2), partial(_fourth, 0), b=0.8),
-    "eqs 40, 42": _both(equations.eq_40, equations.complete_f),
-    "eq 32, df4, code": _both(
-        constraint_matrix, partial(constraint_matrix, printed=()), (3, 3), theta=math.pi / 2
+    "eq 39, λ4": _both(equations.eq_39, equations.multipliers, 3, b=0.8),
+    "eq 39, λ4, sign": _both(_eq_35, _right_35),
+    "eqs 39 to 42, g": _both(
+        partial(_pull, equations.eq_39), partial(_pull, equations.multipliers)
     ),
-    "appendix B": _both(equations.appendix_b_radius, contact_distance),
+    "eqs 40, 42": _both(equations.eq_40, _f),
+    "eq 41": _both(_eq_37, partial(equations.eq_41, complete=True)),
+    "eq 42, first terms": _both(_first_terms, _no_part),
+    "eq 42, factor": _both(equations.eq_42, _f1),
+    "section 3.4, point O": _both(_to_the_origin, support_slope),
     "eqs 45–48": _both(equations.eq_48, equations.struck_speed),
     "section 4.2.2, Figure 11": _back_substitution,
+    "section 4.2.2, θ = t": _even_turning,
     "section 4.2.2, Figure 12": _both(equations.eq_5, contact_angle, theta=2.0),
     "Figure 13": _roll_over,
+    "appendix B": _both(equations.appendix_b_radius, contact_distance),
 }
 _ERRATA = tuple(
     Erratum(**row, evaluate=_COMPARISONS[row["where"]])
