@@ -37,12 +37,23 @@ using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };
 
-// Bound of the rounding error of a number: coefficients of degree 10 pass some 60 additions and
-// products with errors of half an ulp each, and their parameters are rounded, too.
-inline double margin(Tracked number) {
-    constexpr double rounding_units = 64;
-    return rounding_units * epsilon * number.magnitude;
-}
+// A rounding is half an ulp, epsilon/2, of a number that is at most its magnitude. If a number
+// comes from at most this many of them on any way from the parameters, they sum to less than the
+// margin.
+//   * The law of rolling, degree 10, is the longest: counted along the lines of force_polynomials
+//     and grip_polynomial, with n + m + 1 + min(M, N) for the product of polynomials of degrees M,
+//     N with n, m roundings, it has 37.
+//   * A series of degree 24 (slides) has 25 in the powers of its reach, and those of its terms.
+//   * Bernstein's form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is 31
+//     for degree 10, 73 for degree 24.
+//   * Division at another place than the middle adds 3N: 30 for degree 10, the only one.
+// So there are 98 in the law, and 98 and those of its terms in the series. Division in the middle
+// adds N sums each time, up to 48 times; `divided` adds their roundings to the magnitude.
+// The parameters themselves are rounded: then the sign is that of a body and a start as close.
+constexpr double most_roundings = 128;
+
+// Bound of the rounding error of a number.
+inline double margin(Tracked number) { return most_roundings * (epsilon / 2) * number.magnitude; }
 
 inline Sign sign(Tracked number) {
     if (number.value > margin(number)) return Sign::positive;
@@ -169,6 +180,7 @@ Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
         parts.left.coefficients[level] = work[0];
         for (int i = 0; i < N - level; ++i) {
             work[i] = tracked(1 - at) * work[i] + tracked(at) * work[i + 1];
+            work[i].magnitude += std::abs(work[i].value) / most_roundings;  // one rounding more
         }
     }
     parts.left.coefficients[N] = work[0];
