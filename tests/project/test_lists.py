@@ -58,7 +58,7 @@ KINDS = {
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",)),
-    "a verb": Kind(of_room("_verbs")),
+    "a verb": Kind(of_room("_verbs"), ("tests/border/test_layout.py",)),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
     "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),
     "a field of Scene": Kind([field.name for field in fields(Scene)], (

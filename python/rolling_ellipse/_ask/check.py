@@ -109,11 +109,15 @@ def flag(name: str, value: Any) -> bool:
 
 
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a float64 array; it raises the errors of `number`."""
+    """Return ``value`` as a contiguous float64 array; it raises the errors of `number`.
+
+    NumPy's functions may differ in the last bits for another layout.
+    """
     found = _doubles(name, value)
     if found is None:
         raise TypeError(f"{name} must be a number or an array of numbers, got {shown(value)}")
-    return found
+    layout = found.flags
+    return found if layout.c_contiguous and layout.aligned else copied(found)
 
 
 def _doubles(name: str, value: Any) -> FloatArray | None:

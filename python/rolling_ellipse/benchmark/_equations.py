@@ -87,11 +87,15 @@ class Dae(FieldsOnly):
 
     def states(self, y: Any) -> FloatArray:
         """Return x, z, theta, x_dot, z_dot, omega of y, shape (..., 6) for (..., n)."""
-        return np.asarray(y)[..., [0, 1, 2, 5, 6, 7]]
+        return array("y", y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
         """Return F, shape (n,) or (m, n): q' and M v' less their right sides, the constraints."""
-        scene, y, yp = self.problem.scene, np.asarray(y).T, np.asarray(yp).T
+        if np.ndim(y) == 1:
+            return self.residual(t, np.array([y]), np.array([yp]))[0]
+        # The layout and the number of states are the same to each operation below
+        y, yp = (np.array(np.transpose(one), order="C") for one in (y, yp))
+        scene = self.problem.scene
         a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
         z, theta, psi, r, _, _, theta_t, psi_t, r_t = y[1:10]
         sin, cos, turn = np.sin(psi - theta), np.cos(psi - theta), psi_t - theta_t
@@ -110,13 +114,12 @@ class Dae(FieldsOnly):
             theta_t * (r * sin * turn - r_t * cos), turn * (2 * r_t * sin + r * cos * turn),
             -r_2 * psi_t**2, -psi_2 * theta_t**2,
         ])  # fmt: skip
-        along, pull = "ij...,j...->i...", "ij...,i...->j..."
-        rates, bent = np.einsum(along, g, y[5:10]), bent + np.einsum(along, g, yp[5:10])
+        rates, bent = np.sum(g * y[5:10], axis=1), bent + np.sum(g * yp[5:10], axis=1)
         held = [z - r * cos, r - r_c, psi - psi_c, *rates, *bent]
         masses = scene.mass * np.array([1, 1, scene.gyration2, 0, 0])
         fall = scene.gravity * np.array([np.sin(scene.slope), -np.cos(scene.slope), 0, 0, 0])
-        pushed = (masses * (yp[5:10].T - fall)).T - np.einsum(pull, g, y[10:14])
-        moved = yp[:5] - y[5:10] - np.einsum(pull, g[18 - len(y) :], y[14:])
+        pushed = (masses * (yp[5:10].T - fall)).T - np.sum(g * y[10:14, None], axis=0)
+        moved = yp[:5] - y[5:10] - np.sum(g[18 - len(y) :] * y[14:, None], axis=0)
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
@@ -264,13 +267,14 @@ class Ode:
         """Return the support function h, its derivative, and the radius of curvature."""
         a, b = self.problem.scene.a, self.problem.scene.b
         sin, cos = self.xp.sin(y[2]), self.xp.cos(y[2])
-        h = self.xp.sqrt((a * sin) ** 2 + (b * cos) ** 2)
-        return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / h**3
+        up, along = a * sin, b * cos  # products: a power of a number differs from that of an array
+        h = self.xp.sqrt(up * up + along * along)
+        return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / (h * h * h)
 
     def _weight(self, y: Any) -> Any:
         """Return the acceleration of the free contact into the ground."""
         h, _, radius = self._geometry(y)
-        return self._gravity[1] + (radius - h) * y[5] ** 2
+        return self._gravity[1] + (radius - h) * y[5] * y[5]
 
     def _slip(self, y: Any) -> Any:
         return self.side * (y[3] - self._geometry(y)[0] * y[5])
@@ -290,9 +294,9 @@ class Ode:
             pull = -scene.friction * self.side
             normal = self._weight(y) / (1 + (o * o + pull * h * o) / k2)
             return -(h * pull + o) * normal / k2, normal, pull * normal
-        spin_up = (h * down - o * (into + radius * omega**2)) / (k2 + h * h + o * o)
+        spin_up = (h * down - o * (into + radius * omega * omega)) / (k2 + h * h + o * o)
         normal = self._weight(y) + o * spin_up
-        return spin_up, normal, h * spin_up + o * omega**2 - down
+        return spin_up, normal, h * spin_up + o * omega * omega - down
 
 
 def first_arc(problem: Problem, xp: Any) -> Ode:

@@ -14,7 +14,7 @@ import numpy as np
 from .._ask.check import FloatArray, choice, coordinates, finite, flag, number, require_together
 from .._ask.scene import Impulse, Scene
 from ..geometry import support_slope
-from ._rows import masses, polar, rows
+from ._rows import along, masses, polar, polar_cube, pull, rows
 
 __all__ = [
     "appendix_b_r_x", "appendix_b_radius", "case_lead", "case_sign", "complete_f",
@@ -106,14 +106,14 @@ def eqs_33_to_37(
     inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, coordinates("q_ddot", q_ddot)
     one, two, three, four = np.moveaxis(_multipliers(multipliers), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
-    tangent = np.tan(theta)
+    tangent2 = np.square(np.tan(theta))
     lever = one * r * cosine - two * r * sine
     return _last(
         body.mass * ddot[..., 0] - one,
         body.mass * ddot[..., 1] - two + body.mass * body.gravity,
-        inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
-        lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
-        one * sine - two * cosine + 2 * three * polar(psi, body.a, body.b) ** 1.5,
+        inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent2),
+        lever + three * squeeze + four * (body.a**4 * tangent2 / body.b**2 + body.b**2),
+        one * sine - two * cosine + 2 * three * polar_cube(psi, body.a, body.b),
     )
 
 
@@ -125,10 +125,9 @@ def equations_of_motion(
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
-    pull = np.einsum("...ij,...i->...j", matrix, _multipliers(multipliers))
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
     forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces: + in eqs 36, 37
-    return masses(body) * ddot + weight + forces * pull
+    return masses(body) * ddot + weight + forces * pull(matrix, _multipliers(multipliers))
 
 
 def _multipliers(values: Any) -> FloatArray:
@@ -156,7 +155,7 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
-    return np.einsum("...ij,...j->...i", matrix, coordinates("q_dot", q_dot))
+    return along(matrix, coordinates("q_dot", q_dot))
 
 
 # -------------------------------------------------------------------- section 3.3 of the report
@@ -189,7 +188,7 @@ def lambda4_numerator(
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
-    return -body.mass * np.cos(theta) ** 2 * (turning + levers)
+    return -body.mass * np.square(np.cos(theta)) * (turning + levers)
 
 
 def multipliers(
@@ -226,7 +225,7 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
-    c2, t2 = np.cos(theta) ** 2, np.tan(theta) ** 2
+    c2, t2 = np.square(np.cos(theta)), np.square(np.tan(theta))
     return (
         b**6 * spin * c2 + a**6 * spin * c2 + a**4 * b**2 * t2 + a**2 * b**4 * spin * c2
         - 4 * a**2 * b**2 * r * cosine * x
@@ -253,7 +252,7 @@ def complete_f(
     x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
     numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    turned = body.a**4 * np.tan(theta) ** 2 + body.b**4
+    turned = body.a**4 * np.square(np.tan(theta)) + body.b**4
     return -4 * (body.a * body.b) ** 2 * lever - turned * numerator
 
 
@@ -270,7 +269,7 @@ def eq_41(
     _, psi, _, _, _ = state(q)
     arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
     if complete:
-        spread = 2 * polar(psi, body.a, body.b) ** 1.5 * complete_f(q, q_ddot, **arguments)
+        spread = 2 * polar_cube(psi, body.a, body.b) * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
     return _head(q, q_ddot, body) - _squeezed(spread, psi, body)
@@ -285,7 +284,7 @@ def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     _, psi, _, _, _ = state(q)
-    factor = 2 * body.a**2 * np.cos(psi) ** 2 + 2 * body.b**2 * np.sin(psi)
+    factor = 2 * body.a**2 * np.square(np.cos(psi)) + 2 * body.b**2 * np.sin(psi)
     terms = complete_f(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     return _head(q, q_ddot, body) - factor * terms
 

@@ -20,7 +20,7 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
-from ._rows import masses, rows
+from ._rows import along, masses, pull, rows
 
 if TYPE_CHECKING:
     from ._simulate import Start
@@ -90,9 +90,8 @@ class PrintedMotion:
         they are right.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
-        pull = np.einsum("nij,ni->nj", matrix, self.multipliers)
-        motion = masses(body) * self.q_ddot - _weight(body) - pull
-        return np.concatenate([motion, np.einsum("nij,nj->ni", matrix, self.q_dot)], axis=1)
+        motion = masses(body) * self.q_ddot - _weight(body) - pull(matrix, self.multipliers)
+        return np.concatenate([motion, along(matrix, self.q_dot)], axis=1)
 
     def __repr__(self) -> str:
         names = ", ".join(self.printed) or "none"
@@ -122,7 +121,7 @@ def accelerations(
     system[..., 5:, :5] = matrix
     right = np.zeros((*q.shape[:-1], 9))
     right[..., :5] = _weight(body)
-    right[..., 5:] = -np.einsum("...ij,...j->...i", rate, q_dot)
+    right[..., 5:] = -along(rate, q_dot)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:

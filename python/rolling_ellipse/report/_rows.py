@@ -25,7 +25,23 @@ def masses(body: Scene) -> FloatArray:
 
 def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
     """Return (a b/r)^2 [m^2], r the radius of the ellipse at the angle psi, real or complex."""
-    return (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
+    return np.square(b * np.sin(psi)) + np.square(a * np.cos(psi))
+
+
+def polar_cube(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
+    """Return (a b/r)^3 [m^3], as of `polar`; a power of 3/2 differs for numbers and arrays."""
+    square = polar(psi, a, b)
+    return square * np.sqrt(square)
+
+
+def along(matrix: npt.NDArray[Any], q_dot: FloatArray) -> npt.NDArray[Any]:
+    """Return matrix times q_dot, (..., 4): terms are added in order, for one and many states."""
+    return np.sum(matrix * q_dot[..., None, :], axis=-1)
+
+
+def pull(matrix: npt.NDArray[Any], multipliers: FloatArray) -> npt.NDArray[Any]:
+    """Return the transposed matrix times the multipliers, (..., 5), as `along`."""
+    return np.sum(matrix * multipliers[..., :, None], axis=-2)
 
 
 def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
@@ -35,15 +51,17 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     # f1 as printed is d(x + r sin(psi - theta))/dt, not x_dot - h theta_dot
     frozen = (r * cosine, sine) if "f1" in printed else (0, 0)
     sign = -1 if "df2" in printed else 1
-    power, bend = (1, np.sin(psi) ** 2) if "df3" in printed else (1.5, np.sin(2 * psi))
+    lost = "df3" in printed
+    bend = np.square(np.sin(psi)) if lost else np.sin(2 * psi)
+    stretch = 2 * (polar if lost else polar_cube)(psi, a, b)
     squeeze = a * b * (a - b) * (a + b)
-    scale = 1 if "tan" in printed else np.cos(theta) ** 2
-    tangent2 = np.tan(theta) ** 2 if "tan" in printed else np.sin(theta) ** 2
+    scale = 1 if "tan" in printed else np.square(np.cos(theta))
+    tangent2 = np.square(np.tan(theta) if "tan" in printed else np.sin(theta))
     a44 = (1 if "a44" in printed else -1) * a * a * (tangent2 + scale)
     entries = (
         *(1, 0, -r * cosine, *frozen),
         *(0, 1, -sign * r * sine, sign * r * sine, -cosine),
-        *(0, 0, 0, -squeeze * bend, 2 * polar(psi, a, b) ** power),
+        *(0, 0, 0, -squeeze * bend, stretch),
         *(0, 0, a44, a**4 * tangent2 / b**2 + b * b * scale, 0),
     )
     matrix = np.empty((*q.shape[:-1], len(entries)), dtype=q.dtype)

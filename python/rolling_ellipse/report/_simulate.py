@@ -20,7 +20,7 @@ from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ..geometry import support, support_curvature, support_slope
 from ._motion import PrintedMotion, follow
-from ._rows import CODE, direction, masses, misprints, rows
+from ._rows import CODE, along, direction, masses, misprints, rows
 
 Equations = Literal["corrected", "printed"]
 Consistent = Literal["refuse", "project", "as_given"]
@@ -221,8 +221,7 @@ def _residuals(
     _, z, theta, psi, r = np.abs(q).T
     matrix = rows(q, body.a, body.b, printed)
     matrix /= matrix[:, range(4), (0, 1, 4, 3), None].copy()  # rows 3, 4 now give rates of f3, f4
-    velocity = np.einsum("...ij,...j->...i", matrix, q_dot)
-    sizes = np.einsum("...ij,...j->...i", np.abs(matrix), np.abs(q_dot))
+    velocity, sizes = along(matrix, q_dot), along(np.abs(matrix), np.abs(q_dot))
     terms = np.column_stack([z + r, 2 * r, theta + psi, sizes])
     return np.column_stack([position, velocity]), terms
 
