@@ -88,7 +88,8 @@ def mark(task: str, answer: float) -> Mark:
     Raises
     ------
     ValueError
-        If there is no such task, the answer is not finite, or the table of impacts lacks a column.
+        If there is no such task, the answer is not finite, or the table of impacts lacks a column
+        or has no answer.
     TypeError
         If the answer is not a number.
     ImportError
@@ -117,7 +118,9 @@ def measured_impacts() -> tuple[FloatArray, FloatArray]:
         table = np.genfromtxt(path, delimiter=",", names=True)
         if not {*names} <= {*(table.dtype.names or ())}:
             raise ValueError(f"{_FILE} must name a table of {', '.join(names)}, got {path!r}")
-    rows = np.stack([table[name] for name in names])
+    rows = np.stack([np.atleast_1d(table[name]) for name in names])
+    if not (rows.size and np.isfinite(rows).all()):
+        raise ValueError(f"{_FILE} must name a table of rows of finite numbers, got {path!r}")
     return rows[:4], rows[4:]
 
 
@@ -134,6 +137,9 @@ def _known(task: str, path: str | None) -> tuple[float, list[tuple[str, float]]]
         return float(_ANSWERS[kind](s, d, name))
 
     known = [("none", right := found({})), ("sign", -right)]
+    if not 0 < abs(right) < math.inf:
+        wanted = f"impacts with an answer to task {task}, which change the velocities"
+        raise ValueError(f"{_FILE} must name a table of {wanted}, got {path!r}")
     for scale in (math.pi / 180, 180 / math.pi):
         known += [("degrees", scale * right)] if "rad" in _TASKS[task].unit else []
         angles = {name: scale * v for name, v in data.items() if name in ("theta", "slope")}
@@ -167,12 +173,13 @@ def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
     law: dict[str, Any] = {"a": s.a, "b": s.b, "gyration2": s.gyration2, "friction": s.friction}
     off = -after + impacts.collide(theta, *before, **law, restitution=s.restitution)
     of = [impacts.kinetic_speed(*v, gyration2=s.gyration2) for v in (before, after, off)]
-    return {
-        "inertia": -np.sum((h * x + lead * z) * turn) / np.sum(turn**2) / s.gyration2,
-        "gap": np.median((lead * after[2] - after[1]) / (before[1] - lead * before[2])),
-        "energy": np.median(1 - (of[1] / of[0]) ** 2),
-        "error": np.median(of[2]),
-    }[name]
+    with np.errstate(divide="ignore", invalid="ignore"):  # rows of zeros have no answer
+        return {
+            "inertia": -np.sum((h * x + lead * z) * turn) / np.sum(turn**2) / s.gyration2,
+            "gap": np.median((lead * after[2] - after[1]) / (before[1] - lead * before[2])),
+            "energy": np.median(1 - (of[1] / of[0]) ** 2),
+            "error": np.median(of[2]),
+        }[name]
 
 
 def _thresholds(of: Scene) -> dict[str, Any]:

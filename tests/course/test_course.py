@@ -159,6 +159,25 @@ def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))
 
 
+@pytest.mark.parametrize("task", ["8.1", "8.2", "8.3", "8.4"])
+@pytest.mark.parametrize("kept", ["zero", "none", "unknown", "one"])
+def test_tables_of_impacts_without_an_answer(
+    kept: str, task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rows of zeros, no row, or a NaN are refused by a sentence; a single row has an answer."""
+    rows = np.vstack(course.measured_impacts()).T
+    table = {"zero": 0 * rows, "none": rows[:0], "unknown": rows * np.nan, "one": rows[:1]}[kept]
+    path, names = tmp_path / f"{kept}.csv", ",".join(course._DATA["impacts"])
+    np.savetxt(path, table, delimiter=",", header=names, comments="")
+    monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(path))
+    if kept == "one":
+        assert [each.shape for each in course.measured_impacts()] == [(4, 1), (3, 1)]
+        assert not course.mark(task, 1.0)
+    else:
+        with pytest.raises(ValueError, match="ROLLING_ELLIPSE_IMPACTS must name a table of"):
+            course.mark(task, 1.0)
+
+
 def test_the_sheets_have_the_tasks() -> None:
     make = runpy.run_path(str(ROOT / "docs/course/make.py"))
     for path, _ in zip(make["SHEETS"], make["POINTS"], strict=True):

@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
@@ -34,6 +35,7 @@ AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
 MASKED: Any = [[0.0, 0.0], np.ma.array([-1.0, -1.0], mask=[False, True]), [-1.0, -1.0], [0.0, 0.0]]
 TABLE = "ROLLING_ELLIPSE_IMPACTS"
+IMPACTS = "theta,x_dot,y_dot,omega,x_dot_after,y_dot_after,omega_after"
 TWO_IMPACTS: Any = np.zeros((3, 2))
 FILM: dict[str, Any] = {
     "t": [0.1, 0.2, 0.3], "x": [0.0, 0.1, 0.2], "scene": Scene(2.0, 1.0, omega=1.0),
@@ -50,6 +52,14 @@ DEEP.append(DEEP)
 
 def press(of: Scene, **options: Any) -> Any:
     return lambda _: rl.blow_to(of, **options)
+
+
+def marked_by(folder: Path, scale: float) -> Any:
+    """A mark of sheet 8 by scaled impacts."""
+    rows = scale * np.vstack(course.measured_impacts()).T
+    np.savetxt(folder / "seen.csv", rows, delimiter=",", header=IMPACTS, comments="")
+    with patch.dict("os.environ", {TABLE: str(folder / "seen.csv")}):
+        return course.mark("8.1", 1.0)
 
 
 REFUSALS: list[Row] = [
@@ -143,6 +153,7 @@ REFUSALS: list[Row] = [
     *wrong(course.mark, {"task": "1.1"}, answer=[*NOT_FINITE, "0.2", [0.2], None, 2j, (), {}]),
     (TABLE, patch.dict("os.environ", {TABLE: str(ROOT / "reference/slope_reference.csv")})(
         lambda _: course.measured_impacts())),
+    (TABLE, lambda folder: marked_by(folder, NAN)), (TABLE, lambda folder: marked_by(folder, 0.0)),
     # films
     *wrong(rl.fit_motion, FILM,
            t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN],
@@ -153,7 +164,8 @@ REFUSALS: list[Row] = [
     ("free", lambda _: rl.fit_motion(**FILM | {"x": [0.0, NAN, NAN]})),
     ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),
     *wrong(rl.Trajectory.from_arrays, SAMPLES,
-           t=[np.zeros(6), -np.arange(6.0), [0.0, 1.0], np.arange(6.0) - 1, "x"],
+           t=[np.zeros(6), -np.arange(6.0), [0.0, 1.0], np.arange(6.0) - 1, "x",
+              [0.0, 1e-320, 1.0, 2.0, 3.0, 4.0]],
            x=[np.zeros(5), np.full(6, NAN), "x"], z=[[0.0]], theta=[[INF] * 6], scene=[None]),
     ("trajectory", lambda _: rl.Trajectory.from_arrays(**SAMPLES).when(theta=1.0)),
 ]  # fmt: skip

@@ -84,7 +84,11 @@ class _Samples:
         span = np.ptp(self.t[places], axis=1)[:, None] + (near == 1)
         s = (self.t[places] - times[:, None]) / span
         powers = np.zeros((times.size, _NEAR, 3))
-        powers[:, :near] = np.linalg.solve(s[..., None] ** np.arange(near), self.tracks[places])
+        try:
+            powers[:, :near] = np.linalg.solve(s[..., None] ** np.arange(near), self.tracks[places])
+        except np.linalg.LinAlgError:
+            least = float(np.diff(self.t).min())
+            raise ValueError(f"t must not have almost equal times, got {least:g} s apart") from None
         (x, z, theta), (x_dot, z_dot, omega) = powers[:, 0].T, (powers[:, 1] / span).T
         x_ddot, z_ddot, _ = (2 * powers[:, 2] / span**2).T
         length, g, h = max(scene.a, scene.b), scene.gravity, support(theta, a=scene.a, b=scene.b)
