@@ -8,14 +8,11 @@ positive or whose ratio is outside [1e-3, 1e3].
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from . import _core
-from ._ask.check import FloatArray, broadcast, require, shaped
+from ._ask.check import FloatArray, evaluate, finite
 from ._ask.habits import understood
 
 __all__ = [
@@ -29,9 +26,7 @@ def __dir__() -> list[str]:
 
 
 def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -> Any:
-    shape, columns = broadcast(theta=theta, a=a, b=b)
-    require("theta", "finite", columns[0], np.isfinite(columns[0]))
-    return shaped(function(math.prod(shape), columns), shape)
+    return evaluate(function, theta=finite("theta", theta), a=a, b=b)
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:

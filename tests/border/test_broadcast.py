@@ -3,6 +3,7 @@
 The bits agree, scalars give floats, and the arrays that are given stay as they are.
 """
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -94,6 +95,14 @@ def test_the_layout_of_an_array_does_not_matter(name: str) -> None:
             assert not any(np.shares_memory(np.asarray(values), one) for one in found)
     for shape in ((0,), (0, 4), (1,), (1, 1)):
         assert {values.shape for values in answers(name, drawn(name, (), shape))} == {shape}
+
+
+@each_call
+def test_a_wrong_number_beside_an_empty_array_is_refused(name: str) -> None:
+    given = {key: float(values) for key, values in drawn(name, ()).items()}
+    for empty, wrong in itertools.permutations(given, 2):
+        with pytest.raises(ValueError, match=rf"^{wrong}(\[0\])? must be"):
+            answers(name, given | {empty: np.empty((2, 0)), wrong: np.nan})
 
 
 def test_coordinates_broadcast_before_their_last_axis() -> None:

@@ -342,12 +342,13 @@ def test_what_sticks_bounds_friction_from_below() -> None:
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("law", LAWS)
 def test_no_impacts_come_to_nothing(law: Any) -> None:
-    """An empty array gives empty results, whatever the other numbers are."""
-    found = impacts.collide(
-        theta=0.0, x_dot=0.0, z_dot=[], omega=-math.inf, a=2.0, b=1.0, friction=0.2,
-        restitution=0.5, law=law,
-    )  # fmt: skip
+    """An empty array gives empty results, beside which wrong numbers are refused."""
+    given: dict[str, Any] = {"theta": 0.0, "x_dot": 0.0, "z_dot": [], "friction": 0.2, "a": 2.0}
+    given |= {"b": 1.0, "restitution": 0.5, "law": law}
+    found = impacts.collide(**given, omega=0.0)
     assert [values.shape for values in found[:3]] == [(0,)] * 3
+    with pytest.raises(ValueError, match="omega must be a finite number"):
+        impacts.collide(**given, omega=-math.inf)
 
 
 DIE: dict[str, Any] = {"a": 0.035, "b": 0.025}

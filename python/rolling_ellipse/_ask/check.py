@@ -306,19 +306,32 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
     settings. A ``gyration2`` of None is that of uniform discs of semi-axes ``a`` and ``b``. An
-    error names an element of an array by its indices: ``a[3] must be ...``.
+    error names an element of an array by its indices: ``a[3] must be ...``. A wrong number beside
+    an empty array is refused, too.
     """
     given = {k: value for k, value in arguments.items() if k != "gyration2" or value is not None}
     shape, columns = broadcast(**given)
     known = dict(zip(given, columns, strict=True))
     if "gyration2" not in known:
         known["gyration2"] = uniform_disc(known["a"], known["b"])
-    columns = [known[name] for name in arguments]
+    columns, size = [known[name] for name in arguments], math.prod(shape)
     try:
-        found = function(math.prod(shape), columns, *settings)
+        if size == 0:
+            function(1, [_number_of(name, known) for name in arguments], *settings)
+        found = function(size, columns, *settings)
     except ValueError as error:
         raise ValueError(_with_indices(str(error), shape)) from None
     return shaped(found, shape)
+
+
+def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
+    """Return an argument, or one number that fits the others in place of an empty array."""
+    if known[name].size:
+        return known[name]
+    lengths = [*(known[axis] for axis in ("a", "b")), np.ones(1)]
+    length = next(each for each in lengths if each.size and 0 < each[0] < math.inf)
+    fits = {"a": length, "b": length, "gravity": np.ones(1), "gyration2": length**2}
+    return fits.get(name, np.zeros(1))
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
