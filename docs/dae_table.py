@@ -1,10 +1,11 @@
-"""The tables of benchmark_dae.md: SUNDIALS IDA on all forms, and the reference solution.
+"""The tables of benchmark_dae.md: SUNDIALS IDA and solve_dae on all forms, and the reference.
 
 make.py has the folder of `common` on the path.
 """
 
 import re
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import common
@@ -36,18 +37,28 @@ def tested(dae: benchmark.Dae, which: str) -> np.ndarray:
     return np.arange(len(dae.names)) < (5 if which == Q else len(dae.names))
 
 
-def solver():
-    """The function `solve` that the page shows."""
+def solver(library: str):
+    """The function `solve` that the page shows for a library."""
+    programs = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
     names: dict = {}
-    exec(re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)[1], names)
+    exec(next(each for each in programs if f"from {library}" in each), names)
     return names["solve"]
+
+
+def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tuple[str, str]:
+    """The largest error of a solution that reached its end, and what became of it."""
+    if not found.success:
+        reached = max(found.t, default=0.0)  # of the given times
+        return "", f"t = {reached:.2g} s: {found.message}"
+    off = np.abs(dae.states(states) - problem.exact(found.t)) / problem.scales
+    return f"{off.max():.1e}", "done"
 
 
 def ida() -> str:
     """Table of all runs."""
     lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
     lines += ["|---|---|---|---|---|---|---|---|---|"]
-    solve = solver()
+    solve = solver("sksundae")
     for name in NAMES:
         problem = benchmark.problem(name)
         times = np.append(0.0, scored(problem))
@@ -56,17 +67,30 @@ def ida() -> str:
             begun = time.perf_counter()
             found = solve(dae, times, rtol, tested(dae, which))
             seconds = time.perf_counter() - begun
-            t = found.t[-1]
-            off = np.abs(dae.states(found.y) - problem.exact(found.t)) / problem.scales
-            error, said = f"{off.max():.1e}", "done"
-            if not found.success:
-                error, said = "", f"t = {t:.2g} s: {found.message}"
+            error, said = outcome(problem, dae, found, found.y)
             row = name, form, rtol, which, error, found.nfev, found.njev, f"{seconds:.2g}", said
             lines.append(f"| {' | '.join(map(str, row))} |")
             print(lines[-1], flush=True)
     on = common.machine()
     versions = f"scikit-sundae {sksundae.__version__}, SUNDIALS {sksundae.SUNDIALS_VERSION}"
     return "\n".join(lines) + f"\n\n{versions}, on {on['processor']}, {on['date']}.\n"
+
+
+def radau() -> str:
+    """Table of the runs of solve_dae."""
+    lines = ["| problem | form | error | F | J | LU | outcome |", "|---|---|---|---|---|---|---|"]
+    solve = solver("solve_dae")
+    for name in ("roll.circle", "roll.roll", "brink.over"):
+        problem = benchmark.problem(name)
+        times = np.append(0.0, scored(problem))
+        for form in ("index1", "ggl", "index2", "index3"):
+            dae = problem.dae(form)
+            found = solve(dae, times[times <= 5], 1e-8)
+            error, said = outcome(problem, dae, found, np.transpose(found.y))
+            row = name, form, error, found.nfev, found.njev, found.nlu, said
+            lines.append(f"| {' | '.join(map(str, row))} |")
+            print(lines[-1], flush=True)
+    return "\n".join(lines) + f"\n\nsolve_dae {version('solve_dae')}.\n"
 
 
 def reference() -> str:

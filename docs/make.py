@@ -10,7 +10,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of docs/speed.md, many.md and benchmark.md, from those files
-    dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA
+    dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA and solve_dae
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
 works; its figures are not for keeping.
@@ -124,8 +124,8 @@ def text(quick: bool) -> None:
 def dae(quick: bool) -> None:
     import dae_table
 
-    for name, table in (("ida", dae_table.ida), ("reference", dae_table.reference)):
-        write_part(HERE / "benchmark_dae.md", name, table())
+    for made in (dae_table.ida, dae_table.radau, dae_table.reference):
+        write_part(HERE / "benchmark_dae.md", made.__name__, made())
 
 
 STEPS: dict[str, Callable[[bool], None]] = {

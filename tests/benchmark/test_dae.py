@@ -88,19 +88,53 @@ def test_the_index(name: str, form: str, least: str) -> None:
     assert max(found) == dae.index
 
 
+def program(library: str) -> Any:
+    """The function `solve` that the page shows for a library."""
+    pytest.importorskip(library)
+    names: dict[str, Any] = {}
+    programs = re.findall(r"```python\n(.*?)```", PAGE, re.S)
+    exec(next(each for each in programs if f"from {library}" in each), names)
+    return names["solve"]
+
+
+@pytest.mark.parametrize("form", ["index2", "ggl"])
+def test_solve_dae(form: str) -> None:
+    """The page's program, whose states are columns of a matrix, keeps its tolerance for a second;
+    the table has the whole motions."""
+    table = PAGE.partition("<!-- radau")[2].partition("<!-- end of radau")[0]
+    errors = [float(each) for each in re.findall(rf"\| {form} \| (\S+) \|.* done \|", table)]
+    assert len(errors) == 3 and max(errors) <= 1e-8
+    solve, one = program("solve_dae"), benchmark.problem("roll.roll")
+    dae, times = one.dae(form), one.times[one.times <= 1.0]
+    found = solve(dae, times, 1e-8)
+    assert found.success and found.t[-1] == times[-1] == 1.0
+    assert np.max(abs(dae.states(found.y.T) - one.exact(times)) / one.scales) < 1e-8
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_column_of_a_matrix_has_the_residual_of_its_copy(form: str) -> None:
+    """Also a row of many; einsum took its order of summation from the strides."""
+    dae, rng = benchmark.problem("roll.roll").dae(form), np.random.default_rng(4)
+    y, yp = rng.normal(size=(2, 300, len(dae.names)))
+    columns = np.asfortranarray(y).T, np.asfortranarray(yp).T
+    many = dae.residual(0.0, y, yp)
+    for k in range(300):
+        alone = dae.residual(0.0, y[k], yp[k])
+        assert np.array_equal(alone, dae.residual(0.0, *(each[:, k] for each in columns)))
+        assert np.array_equal(alone, many[k])
+
+
 def test_ida() -> None:
     """The page's program; its table has all problems, which take minutes."""
     errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)
     assert {row[:2] for row in errors} == {(name, form) for name in NAMES for form in FORMS[2:]}
     assert max(float(error) for *_, error in errors) <= 1e-8
-    pytest.importorskip("sksundae")
-    names: dict[str, Any] = {}
-    exec(PAGE.partition("```python\n")[2].partition("```")[0], names)
+    solve = program("sksundae")
     one = benchmark.problem("brink.over")
     times, states = one.times[one.times < one.horizon], one.states[one.times < one.horizon]
     for form in FORMS[2:]:
         dae = one.dae(form)
-        found = names["solve"](dae, times, 3e-14, ~dae.algebraic)
+        found = solve(dae, times, 3e-14, ~dae.algebraic)
         assert np.max(abs(dae.states(found.y) - states) / one.scales) < 1e-8
-    found = names["solve"](dae, times, 3e-14, np.ones_like(dae.algebraic))  # errors of multipliers
+    found = solve(dae, times, 3e-14, np.ones_like(dae.algebraic))  # errors of multipliers
     assert not found.success and found.t[-1] < 0.1
