@@ -47,8 +47,8 @@ double known_until(const SlopeFlow& flow) {
 // way, where the motion begins with a sum.
 bool is_short(const SlopeFlow& flow, double time) {
     constexpr double short_way = 0.1;  // [rad]
-    return (flow.climb || flow.pieces.empty()) &&
-           time * std::max(std::abs(flow.start.omega), flow.body.slowest) < short_way;
+    const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
+    return (flow.climb || flow.pieces.empty()) && time * speed < short_way;
 }
 
 // The place at which the series begin: the start, or the end of the sum of a climb.
@@ -58,7 +58,7 @@ SlopePlace begin(SlopeFlow& flow) {
     if (start.omega >= 0) return start;
     const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start);
     if (n < 1) return start;
-    flow.climb = slope_run(flow.body, start, flow.energy.start, n);
+    flow.climb = slope_run(flow.body, flow.energy, start, flow.energy.start, n);
     extend(*flow.climb, infinity);
     return place_after(*flow.climb, n);
 }
@@ -172,6 +172,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     flow.body = slope_body(body, slope);
     flow.start = first_place(flow.body, flat_view(body.axes(), theta), omega);
     flow.energy = energy_of(flow.body, flow.start);
+    flow.acceleration = acceleration_at(flow.body, flow.energy.at, flow.start.omega);
     flow.kind = MotionKind::rotation;
     const bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
     if (omega == 0 && balanced) flow.kind = MotionKind::rest;
@@ -193,7 +194,7 @@ bool grow(SlopeFlow& flow) {
         const Tracked w = energy_at(flow.body, flow.energy, from, here);
         const double at_least = w.value - 8 * epsilon * w.magnitude;
         if (may_run(flow.body, at_least, here, from) > 0) {
-            flow.run = slope_run(flow.body, from, w.value, most_half_turns);
+            flow.run = slope_run(flow.body, flow.energy, from, w.value, most_half_turns);
             return false;
         }
     }

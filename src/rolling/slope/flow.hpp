@@ -24,7 +24,7 @@ struct SlopeFlow {
     double x;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;  // acceleration of a circle
+    double acceleration;  // angular acceleration at the start; a circle keeps it
     SlopePlace start;
     SlopeEnergy energy;
     std::optional<SlopeRun> climb;

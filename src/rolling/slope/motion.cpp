@@ -241,12 +241,18 @@ SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const S
     return place;
 }
 
-// Physics (18, 20); RollingEquation has the same forces in SI units.
+// Physics (18).
+double acceleration_at(const SlopeBody& body, const Geometry& at, double omega) {
+    const double drive =
+        at.h * body.gravity.along - at.dh * (body.gravity.into + at.rho * square(omega));
+    return drive / inertia_about_contact(body.gyration2, at);
+}
+
+// Physics (20); RollingEquation has the same forces in SI units.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
     const double omega2 = square(place.omega);
-    const double drive = at.h * body.gravity.along - at.dh * (body.gravity.into + at.rho * omega2);
-    const double turning = drive / inertia_about_contact(body.gyration2, at);
+    const double turning = acceleration_at(body, at, place.omega);
     return {body.gravity.into + at.dh * turning + at.ddh * omega2,
             at.h * turning + at.dh * omega2 - body.gravity.along};
 }

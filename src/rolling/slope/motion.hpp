@@ -114,6 +114,9 @@ double time_of_tip(const SlopePiece& piece);
 // The place at the end of a piece, its omega from the energy where that is more accurate.
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece);
 
+// The angular acceleration at a place with this angular velocity.
+double acceleration_at(const SlopeBody& body, const Geometry& at, double omega);
+
 // The force of the ground on a body of unit mass, in units of the body, along x as seen with the
 // slope falling to growing angles.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& at);

@@ -109,5 +109,13 @@ struct PanelPlaces {
             panel.cos - panel.sin * tan};
 }
 
+// As `fall`, from the datum of a run.
+[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, Pack sin2, Pack cos2, Pack h) {
+    const Geometry& from = run.datum.at;
+    const double sin2_from = square(from.sin);
+    const Pack change = sin2_from + sin2 > 1.0 ? cos2 - square(from.cos) : sin2_from - sin2;
+    return run.body.c2 / (from.h + h) * change;
+}
+
 }  // namespace
 }  // namespace rolling_ellipse

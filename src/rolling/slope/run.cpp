@@ -47,17 +47,50 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Append the panel from low to high.
+// Append the panel from low to high, as far as it lies in the half turn from the start of the run.
+// The ends of the half turn keep their digits beside a tip.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
-    if (!(low < high)) return;
-    const auto coordinate = [&](double at) {
-        return std::asinh(std::tan(at - centre.at()) / centre.grade);
+    const double quarters = run.from.quarters - run.turns;
+    const double angle = run.heading * double(run.from.angle);
+    const double here = run.heading * quarters * half_pi + angle;
+    if (!(std::max(low, here) < std::min(high, here + pi))) return;
+    const auto coordinate = [&](double from_centre) {
+        return std::asinh(std::tan(from_centre) / centre.grade);
+    };
+    const auto end_of_half_turn = [&](double after) {
+        return (run.heading * quarters + after - centre.quarters) * half_pi +
+               (angle - centre.angle);
     };
     const double s = std::sin(centre.angle);
     const double c = std::cos(centre.angle);
     const bool tip = is_odd(centre.quarters);
-    run.panels.push_back({centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, centre.grade,
-                          coordinate(low), coordinate(high)});
+    run.panels.push_back(
+        {centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, centre.grade,
+         coordinate(low > here ? low - centre.at() : end_of_half_turn(0.0)),
+         coordinate(high < here + pi ? high - centre.at() : end_of_half_turn(2.0))});
+}
+
+// W over the tip in the height of `at`, but for the way along the slope. The height of the tip over
+// the centre is a product, exact for nearly round bodies, too.
+double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
+    return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
+}
+
+// The place where a run starts, or the nearest tip if W, counted from that place, would be a small
+// difference there. W at the tip is counted from the start of the motion: where that is beside
+// another tip, nothing is lost.
+Datum datum_of(const SlopeRun& run, const SlopeEnergy& start) {
+    constexpr double small = 0.0625;  // share of W that is left at the tip
+    const SlopeBody& body = run.body;
+    const double left = body.gain + std::abs(over_tip(body, run.energy, run.at));
+    if (left > small * run.energy) return {run.energy, 0.0, run.at};
+    const bool is_ahead = run.heading * run.at.sin * run.at.cos >= 0;
+    const double way =
+        path_from_tip(body.long_axis, body.short_axis, std::abs(run.at.cos), std::abs(run.at.sin));
+    const double path = is_ahead ? way : -way;
+    const double since_start = double(run.from.path + run.heading * path);
+    return {over_tip(body, start.start, start.at) + body.gravity.along * since_start, path,
+            geometry(body, 1.0, 0.0)};
 }
 
 // Append the next part. Its nodes are computed side by side.
@@ -75,25 +108,25 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     }
     const SlopeBody& body = run.body;
     const PartRule& rule = part_rule();
-    const double sin2_from = square(run.at.sin);
-    PartArray fallen;
+    PartArray falls;
     for (int i = 0; i < part_order; i += lanes) {
         const Pack v = part.middle + part.half * load(&rule.places[i]);
         const PanelPlaces at = places_at(panel, v);
         const Pack sin2 = at.sin * at.sin * at.over;
+        const Pack cos2 = at.cos * at.cos * at.over;
         const Pack h2 = body.short_axis2 + body.c2 * sin2;
         const Pack h = sqrt(h2);
         const Pack rate = part.half * at.tan_rate * at.over;
         store(h * rate, &part.advance[i]);
         store(rate * sqrt(0.5 * (body.d0 + body.d1 * sin2) / h2), &part.mass[i]);
-        store(body.c2 * (sin2_from - sin2) / (run.at.h + h), &fallen[i]);
+        store(fallen(run, sin2, cos2, h), &falls[i]);
     }
     part.path = run.path_ahead;
     const PartArray path = product(rule.integrals, part.advance);
     const double along = run.heading * body.gravity.along;
     for (int i = 0; i < part_order; ++i) {
-        part.level[i] =
-            run.energy + (along * (run.path_ahead + path[i]) + body.gravity.into * fallen[i]);
+        part.level[i] = run.datum.energy + (along * (run.path_ahead - run.datum.path + path[i]) +
+                                            body.gravity.into * falls[i]);
     }
     part.lasts = integral(node_times(run, part, 0.0));
     run.path_ahead += integral(part.advance);
@@ -104,9 +137,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
 }  // namespace
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from) {
-    // The height of the tip over the centre, as a product exact for nearly round bodies, too.
-    const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
-    double least = energy - body.gravity.into * to_tip;
+    double least = over_tip(body, energy, at);
     if (least < -body.gain) return 0.0;  // half a turn downhill gains no more
     if (from.omega > 0) {
         // The way down to the next unstable equilibrium is at least its angle times the short axis.
@@ -120,8 +151,8 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, const S
     return from.omega > 0 ? most_half_turns : std::min(std::floor(levels), most_half_turns);
 }
 
-SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
-                   double half_turns) {
+SlopeRun slope_run(const SlopeBody& body, const SlopeEnergy& start, const SlopePlace& from,
+                   double energy, double half_turns) {
     SlopeRun run{};
     run.body = body;
     run.from = from;
@@ -130,6 +161,7 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     run.half_turns = half_turns;
     run.energy = energy;
     run.at = geometry(body, from);
+    run.datum = datum_of(run, start);
     run.panels.reserve(usual_panels);
     run.parts.reserve(usual_parts);
 
@@ -139,8 +171,9 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     const double hill = body.equilibria ? body.equilibria->upright : 0.0;
     const Geometry top = geometry(body, 1.0, hill);
     const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
-    const double least = std::max(energy - lost + body.gravity.into * fall(body, run.at, top).value,
-                                  least_levels * body.gain);
+    const double fallen = fall(body, run.datum.at, top).value;
+    const double least =
+        std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
     // A grade is tanh of about the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = std::sqrt(body.d0 / (body.d0 + body.d1));
     // The singularities of the flat position may be nearer to the hill than its own.
@@ -148,15 +181,14 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
     const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));
 
-    const double here = run.heading * ((from.quarters - run.turns) * half_pi + double(from.angle));
     const auto centre = [&](int quarters) {
         return quarters % 2 == 0 ? Centre{double(quarters), 0.0, at_flat}
                                  : Centre{double(quarters), run.heading * hill, at_hill};
     };
     const auto add_between = [&](const Centre& left, const Centre& right) {
         const double split = left.at() + (right.at() - left.at()) / 2;
-        add_panel(run, left, std::max(here, left.at()), std::min(here + pi, split));
-        add_panel(run, right, std::max(here, split), std::min(here + pi, right.at()));
+        add_panel(run, left, left.at(), split);
+        add_panel(run, right, split, right.at());
     };
     constexpr double widest_gap = 2.0;  // an angle further from its centre is mapped too far away
     for (int i = -3; i < 5; ++i) {

@@ -55,6 +55,13 @@ struct RunPart {
     double lasts;       // time of the part in the first half turn
 };
 
+// A place from which W is counted.
+struct Datum {
+    double energy;  // W there, in the first half turn
+    double path;    // path ahead from the start of the run
+    Geometry at;
+};
+
 struct SlopeRun {
     SlopeBody body;
     SlopePlace from;
@@ -62,6 +69,7 @@ struct SlopeRun {
     double heading;                // +1 downhill, -1 uphill
     Geometry at;                   // geometry at `from`
     double energy;                 // W at `from`
+    Datum datum;                   // `from`, or a tip at which W is nearly used up
     double half_turns;             // largest number of half turns of the run
     std::vector<RunPanel> panels;  // of one half turn from `from`, in the direction of the motion
     std::vector<RunPart> parts;    // parts of the panels, as many as `extend` was asked for
@@ -74,8 +82,10 @@ struct SlopeRun {
     bool is_complete() const { return next_panel == panels.size(); }
 };
 
-// The run from a place: uphill for as many half turns as `may_run` allows, downhill for any number.
-SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
+// The run from a place of a motion: uphill for as many half turns as `may_run` allows, downhill for
+// any number. `energy` is W at the place.
+SlopeRun slope_run(const SlopeBody& body, const SlopeEnergy& start, const SlopePlace& from,
+                   double energy, double half_turns);
 
 // Adds parts until the first half turn is known up to a time since `from`, or is complete.
 void extend(SlopeRun& run, double since);

@@ -45,13 +45,6 @@ std::array<double, 5> inverse_about(const PartPolynomial& time) {
     return x;
 }
 
-// As `fall` from the begin of a run.
-[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, Pack sin2, Pack cos2, Pack h) {
-    const double sin2_from = square(run.at.sin);
-    const Pack change = sin2_from + sin2 > 1.0 ? cos2 - square(run.at.cos) : sin2_from - sin2;
-    return run.body.c2 / (run.at.h + h) * change;
-}
-
 // Places on a part: tangent of the angle from the panel's centre, path ahead, size of omega.
 struct PlacesOnPart {
     std::array<double, lanes> tan;
@@ -72,9 +65,9 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
     const Pack cos2 = at.cos * at.cos * at.over;
     const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
     const Pack ahead = run.heading * (part.path + value(of.path.integral, x));
-    const Pack energy =
-        run.energy + run.heading * of.half_turns * body.gain +
-        (body.gravity.along * ahead + body.gravity.into * fallen(run, sin2, cos2, h));
+    const Pack energy = run.datum.energy + run.heading * of.half_turns * body.gain +
+                        (body.gravity.along * (ahead - run.heading * run.datum.path) +
+                         body.gravity.into * fallen(run, sin2, cos2, h));
     store(at.tan, places.tan.data());
     store(ahead, places.ahead.data());
     store(h * sqrt(2 * energy / (body.d0 + body.d1 * sin2)), places.speed.data());
