@@ -27,10 +27,10 @@ def main() -> None:
         path.relative_to(ROOT).as_posix().removeprefix("notebooks/"): path.read_text("utf-8")
         for path in (*modules, *ROOT.glob("reference/*.csv"))
     }
-    with zipfile.ZipFile(sys.argv[1], "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+    with zipfile.ZipFile(sys.argv[1], "w") as archive:
         for name in sorted(files):
             # a ZipInfo has a fixed date
-            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED)
+            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 9)
 
 
 if __name__ == "__main__":

@@ -226,21 +226,23 @@ def follow(scene: Scene, times: list[float], road: Road) -> Iterator[tuple[Answe
         yield answer, abs(now - energy) / scale
 
 
-def units(scene: Scene, times: list[float]) -> list[list[float]]:
-    """The units of the answers at each time."""
-    with UNIT_ROAD.context():
-        answers = [answer for answer, _ in follow(scene, times, UNIT_ROAD)]
+def units(
+    scene: Scene, times: list[float], road: Road = UNIT_ROAD, part: float = UNIT_CHANGE
+) -> list[list[float]]:
+    """The units of the answers at each time, by changes of the inputs by a part of them."""
+    with road.context():
+        answers = [answer for answer, _ in follow(scene, times, road)]
         total = [[mpfr(0)] * len(Answer._fields) for _ in times]
         for name in Scene._fields:
             old = mpfr(getattr(scene, name))
-            change = UNIT_CHANGE if name == "theta0" else UNIT_CHANGE * old
+            change = part if name == "theta0" else part * old
             if name == "mass" or change == 0:  # k^2 changes with the mass as with the inertia
                 continue
             changed = scene._replace(**{name: old + change})
-            for i, (answer, _) in enumerate(follow(changed, times, UNIT_ROAD)):
+            for i, (answer, _) in enumerate(follow(changed, times, road)):
                 effects = (abs(new - was) for new, was in zip(answer, answers[i], strict=True))
                 total[i] = [sum(pair) for pair in zip(total[i], effects, strict=True)]
-        return [[float(one * ROUNDING / UNIT_CHANGE) for one in row] for row in total]
+        return [[float(one * ROUNDING / part) for one in row] for row in total]
 
 
 # ---------------------------------------------------------------- the scenes
