@@ -42,6 +42,7 @@ FILM: dict[str, Any] = {
     "free": "omega", "sigma": 0.1,
 }  # fmt: skip
 ENDLESS = Scene(2.0, 1.0, omega=1.0, friction=INF)
+ROWS = np.arange(1.0, 12.0)
 SAMPLES: dict[str, Any] = {
     "t": np.arange(6.0), "x": np.zeros(6), "z": np.ones(6), "theta": np.zeros(6),
     "scene": Scene(2.0, 1.0),
@@ -158,11 +159,13 @@ REFUSALS: list[Row] = [
     *wrong(rl.fit_motion, FILM,
            t=[[0.3, 0.2, 0.1], [-0.1, 0.1, 0.2], "x", NAN],
            x=[[0.0, 1.0], [[0.0] * 3], [0.0, INF, 0.0]], scene=[None, 1],
-           sigma=[0.0, -1.0, NAN, {"x": 0.0}, {"y": 1.0}], loss=["median", None],
+           sigma=[0.0, -1.0, NAN, 1e-300, 1e300, {"z": 1e300}, {"x": 0.0}, {"y": 1.0}],
+           loss=["median", None],
            free=["t", "mu", "z", "jx", ("omega", "omega"), (), ("omega", "x", "theta", "mass")]),
     ("free", lambda _: rl.fit_motion(**FILM | {"scene": ENDLESS, "free": "friction"})),
     ("free", lambda _: rl.fit_motion(**FILM | {"x": [0.0, NAN, NAN]})),
     ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),
+    ("t", lambda _: rl.fit_motion(1e18 * ROWS, z=9 - 0.05 * ROWS**2, scene=ENDLESS, free="omega")),
     *wrong(rl.Trajectory.from_arrays, SAMPLES,
            t=[np.zeros(6), -np.arange(6.0), [0.0, 1.0], np.arange(6.0) - 1, "x",
               [0.0, 1e-320, 1.0, 2.0, 3.0, 4.0]],

@@ -2,54 +2,32 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, choice, positive, require
-from .._ask.printing import Row, html_table, required, text_table
-from .._ask.scene import Scene, require_scene
-from .._motion.inputs import INPUTS, changed, distinct, size_of, value_of
-from .._motion.samples import vector
+from .._ask.check import FloatArray, array, choice
+from .._ask.printing import Row, html_table, text_table
+from .._ask.scene import Scene
+from .._motion.inputs import value_of
 from .._motion.trajectory import Trajectory
+from .films.conventions import fitting, free_fall, other_units, readings
+from .films.errors import near_guess, standard_errors
+from .films.film import Film, Unknowns, film_of, sigma_of, sizes_of
+from .films.judgement import TRACKER, counted, estimated, judged, widened
+from .films.search import Search, cost
 from .simulate import sample_times, simulate
 
 if TYPE_CHECKING:
     from .._pictures.fit import FitChart
 
-TRACKS = ("x", "z", "theta")
-_RATES = ("x_dot", "z_dot", "omega")
 _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
-_BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
-_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
-_GUESSES = {
-    "friction": (0.05, 0.1, 0.2, 0.4, 1.0),
-    "restitution": (0.2, 0.5, 0.8),
-    "inertia": (0.5, 1.0, 2.0),  # over the first guess
-    "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
-}
-_STAGES = (1.0,), (0.15, 0.3, 0.5, 0.7, 1.0)  # shares of the film that are fitted in turn
-_IMPOSSIBLE = 1e9  # residual of a scene that cannot be
-_LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
-_FAINT = 25.0  # rise of chi2 from which on a rival does not count
-_UNEVEN = 0.125  # share of a range over which residuals are not linear
-_FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
-_FIRST = 8  # frames from which the start is guessed
-_RIVALS = 3  # solutions with a coefficient held that are let go
-_NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
-_EXACT: dict[str, Any] = {
-    "xtol": 1e-10,
-    "ftol": 1e-10,
-    "gtol": 1e-10,
-    "max_nfev": 100,
-    "jac": "3-point",
-}
-_ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
+_ROUNDS = 3  # in which sigma and the fit are estimated in turns
+_FOREIGN = 1e3  # ratio of free fall to gravity of a film that lasts too long or short to be tried
+_LOWER = 0.01  # fall of the cost from a minimum to a rival that is a better one
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,7 +43,7 @@ class Fit:
     covariance : ndarray, shape (k, k)
         Covariance of the parameters in the order of `errors`, from the linearised residuals.
     chi2 : float
-        Sum of the squares of residuals over sigma.
+        Sum of the squares of residuals over sigma. It judges nothing where sigma is estimated.
     residuals : ndarray, shape (n, 3)
         Measured minus fitted x, z [m] and theta [rad], NaN where nothing was measured.
     sigma : ndarray, shape (3,)
@@ -73,8 +51,8 @@ class Fit:
     trajectory : Trajectory
         The fitted motion at the times of the film.
     message : str
-        Number of data, chi2 over the degrees of freedom, what the film cannot tell, and whether
-        the scene does not fit.
+        Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
+        film cannot tell; whether the scene does not fit the film, and the reading that fits.
     """
 
     scene: Scene
@@ -126,11 +104,23 @@ def fit_motion(
 ) -> Fit:
     """Fit parameters of a scene to a film: places and angles of the body at times.
 
-    Nonlinear least squares [1]_ by SciPy, from the scene itself, from a start guessed from the
-    first frames, and from other coefficients, each for the whole film and for longer and longer
-    parts of it. Then each parameter is moved by three errors, and further, with the others fitted
-    anew: an error grows to the change over the root of the rise of chi2 where that is more, as
-    beyond a threshold of friction or where another scene fits as well.
+    Angles are in radians, clockwise where x points to the right, and those of the semi-axis a
+    against the ground; z is the height of the centre over the ground, and t the time since the
+    start of the scene.
+
+    Nonlinear least squares [1]_ by SciPy, from the scene itself and from straight lines and
+    parabolas through the first frames, each with several coefficients, for longer and longer parts
+    of the film; then from places around the best solutions, since chi2 has many minima. Each
+    parameter is moved by three errors, and further, with the others fitted anew: an error grows to
+    the change over the root of the rise of chi2 where that is more, as beyond a threshold of
+    friction or where another scene fits as well. What the film cannot tell keeps its guess.
+
+    The residuals r of neighbouring frames are compared: where they are noise, the sum of r r' over
+    that of (r^2 + r'^2)/2, times the root of the number of pairs, is a normal number. Above 3.5 in
+    a track of eight pairs or more, or where chi2 of given deviations is five deviations above its
+    mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the largest
+    of those ratios of sums, which is an estimate only, and usual readings of other trackers are
+    tried. A film whose free fall is not that of the scene is not fitted where other units fit.
 
     Parameters
     ----------
@@ -144,228 +134,108 @@ def fit_motion(
     free : iterable of str
         The unknown parameters, named as for `Trajectory.sensitivity`.
     sigma : float or mapping, optional
-        Standard deviation of all data, or by the names x, z and theta. Default: equal for all in
-        units of max(a, b) and rad, estimated from the residuals.
+        Standard deviation of all data, or by the names x, z and theta, from 1e-15 to 1e15 times
+        max(a, b) or one radian. Those of other tracks are estimated from the residuals, in turns
+        with the fit.
     loss : {"linear", "soft_l1", "huber", "cauchy", "arctan"}
         As of `scipy.optimize.least_squares`; all but "linear" are for films with outliers.
+
+    Returns
+    -------
+    Fit
 
     Raises
     ------
     ValueError
-        If names are unknown or repeated, arrays do not fit together, sigma is not positive, there
-        are fewer data than unknowns, or no scene of the search moves until the last time.
+        If names are unknown or repeated, arrays do not fit together, sigma is out of range, there
+        are no more data than unknowns, or no scene of the search moves until the last time.
     ImportError
         If SciPy is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rolling_ellipse import Scene, fit_motion, simulate
+    >>> t = np.arange(1, 40) / 120
+    >>> seen = simulate(Scene(0.035, 0.025, z=0.06, restitution=0.6, friction=0.3), t)
+    >>> z = seen.z + np.random.default_rng(1).normal(0, 5e-4, t.size)
+    >>> guess = Scene(0.035, 0.025, z=0.05, restitution=0.5, friction=0.3)
+    >>> fit = fit_motion(t, z=z, scene=guess, free=("z", "restitution"))
+    >>> abs(fit.scene.restitution - 0.6) < 4 * fit.errors["restitution"]
+    True
 
     References
     ----------
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
     """
     choice("loss", loss, _LOSSES)
-    tracks = {"x": x, "z": z, "theta": theta}
-    search = _Search(sample_times(array("t", t)), tracks, scene, free, sigma, loss)
-    best = search.best(search.starts())
-    for _ in range(0 if sigma is not None else 1 if loss == "linear" else 3):
-        search.estimate(best)
-        best = search.solve(best.x)
-    rivals = sorted((search.solve(u, held=k) for k, u in search.others(best.x)), key=_cost)
-    rivals += [best, *(search.solve(one.x) for one in rivals[:_RIVALS])]
-    best = min(rivals, key=_cost)
-    best.x = search.own + search.turned(best.x - search.own)
-    errors, covariance = search.errors(best, rivals)
-    motion = simulate(search.made(best.x), search.t, raise_on_failure=False)
-    off = search.off(motion)
-    chi2 = float(np.nansum((off / search.sigma) ** 2))
-    by_name = dict(zip(search.names, errors.tolist(), strict=True))
+    unknowns = Unknowns(scene, free)
+    film = film_of(sample_times(array("t", t)), {"x": x, "z": z, "theta": theta})
+    count = int(film.known.sum())
+    if count <= len(unknowns.names):
+        raise ValueError(f"free must be fewer names than data, got {len(unknowns.names)}, {count}")
+    given = sigma_of(sigma, scene)
+    fall = free_fall(film, unknowns)
+    if units := other_units(film, fall, unknowns):
+        words = fitting(units, unknowns, given, loss)
+        if words or (fall is not None and not 1 / _FOREIGN < fall < _FOREIGN):
+            return _not_fitted(film, unknowns, _first_sigma(given, scene), fall, words)
+    search = Search(film, unknowns, _first_sigma(given, scene), loss)
+    minima = search.minima()
+    best = search.best(minima)
+    for _ in range(_ROUNDS if np.isnan(given).any() else 0):
+        search.sigma = estimated(search, best, given)
+        best = search.best([search.solve(best.x)])
+    search.sigma = estimated(search, best, given)
+    return _fit(search, search.solve(best.x, exact=True), minima, given)
+
+
+def _first_sigma(given: FloatArray, scene: Scene) -> FloatArray:
+    return np.where(np.isnan(given), TRACKER * sizes_of(scene), given)
+
+
+def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit:
+    """Return a minimum of chi2 with its errors and what its residuals say."""
+    unknowns, film = search.unknowns, search.film
+    rivals = [search.solve(one.x, within=one.within) for one in minima]
+    for _ in range(_ROUNDS):
+        errors, covariance, rivals = standard_errors(search, best, rivals)
+        lowest = min(rivals, key=cost)
+        if lowest.cost > best.cost - _LOWER:
+            break
+        best = search.best([lowest])
+    best = near_guess(search, best, errors)
+    best.x = unknowns.own + unknowns.turned(best.x - unknowns.own)
+    motion = simulate(unknowns.scene_at(best.x), film.t, raise_on_failure=False)
+    residuals, verdict = search.residuals(best.x), judged(search, best, given)
+    wider = widened(verdict) * unknowns.sizes
+    by_name = dict(zip(unknowns.names, (errors * wider).tolist(), strict=True))
+    lost = ", ".join(name for name, error in by_name.items() if math.isinf(error))
+    said = [counted(search, residuals, given)]
+    said += [f"the film cannot tell {lost}"] if lost else []
+    said += verdict.words
+    if verdict.doubtful and (words := fitting(readings(film), unknowns, given, search.loss)):
+        said += [f"it fits with {words}"]
     return Fit(
-        motion.scene, by_name, covariance, chi2, off, search.sigma, motion,
-        search.message(best, chi2, by_name),
+        motion.scene, by_name, covariance * np.outer(wider, wider), float(np.sum(residuals**2)),
+        film.off(motion), search.sigma, motion, f"{'; '.join(said)}.",
     )  # fmt: skip
 
 
-class _Search:
-    """A film, and the unknowns of its scene in their natural sizes."""
-
-    def __init__(
-        self, t: FloatArray, tracks: dict[str, Any], scene: Scene, free: Any, sigma: Any, loss: str
-    ) -> None:
-        self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
-        self.t, self.scene, self.loss = t, require_scene(scene), loss
-        self.names = distinct("free", free, INPUTS[:-1])
-        self.data = np.full((t.size, len(TRACKS)), math.nan)
-        for k, (name, track) in enumerate(tracks.items()):
-            if track is not None:
-                self.data[:, k] = vector(name, track, t.size)
-                require(
-                    name,
-                    "NaN or numbers below 1e100",
-                    self.data[:, k],
-                    ~(abs(self.data[:, k]) >= 1e100),
-                )
-        self.known = np.isfinite(self.data)
-        count = int(self.known.sum())
-        self.dof = count - len(self.names)
-        if self.dof < 1:
-            raise ValueError(f"free must be fewer names than data, got {len(self.names)}, {count}")
-        try:
-            own = np.array([value_of(scene, name) for name in self.names])
-        except ValueError as error:  # the scene has no such number
-            raise ValueError(f"free{str(error).removeprefix('wrt')}") from None
-        self.sizes = np.array([size_of(scene, name) for name in self.names])
-        self.sizes[np.array(self.names) == "friction"] = 1.0
-        bounds = [_bounds(*pair) for pair in zip(self.names, own, strict=True)]
-        self.own, (self.low, self.high) = own / self.sizes, np.array(bounds).T / self.sizes
-        length = max(scene.a, scene.b)
-        found = dict(zip(TRACKS, (length, length, 1.0), strict=True))
-        if isinstance(sigma, Mapping):
-            distinct("sigma", sigma, TRACKS)
-            found |= {name: positive("sigma", value) for name, value in sigma.items()}
-        elif sigma is not None:
-            found = dict.fromkeys(TRACKS, positive("sigma", sigma))
-        self.sigma = np.array(list(found.values()))
-        self.good = 0.0 if sigma is None else 1 + 3 * math.sqrt(2 / self.dof)  # chi2 / dof
-
-    def made(self, u: FloatArray) -> Scene:
-        return changed(self.scene, dict(zip(self.names, (u * self.sizes).tolist(), strict=True)))
-
-    def off(self, motion: Trajectory) -> FloatArray:
-        """Return measured minus computed tracks; angles modulo pi."""
-        off: FloatArray = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
-        off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
-        return off
-
-    def residuals(self, u: FloatArray) -> FloatArray:
-        found = np.full(self.known.sum(), _IMPOSSIBLE)
-        with suppress(ValueError):  # no such scene
-            motion = simulate(self.made(u), self.t, raise_on_failure=False)
-            if motion.t.size == self.t.size:
-                found = (self.off(motion) / self.sigma)[self.known]
-        return found
-
-    def starts(self) -> list[FloatArray]:
-        """Return the scene's own values, those of the first frames, and other coefficients."""
-        tracks, first = self.data.copy(), self.own * self.sizes
-        seen = self.known[:, 2]
-        tracks[seen, 2] = np.unwrap(tracks[seen, 2], period=math.pi)
-        for track, pair in zip(tracks.T, zip(TRACKS, _RATES, strict=True), strict=True):
-            rows = np.flatnonzero(np.isfinite(track))[:_FIRST]
-            if rows.size > 3:
-                powers = np.polynomial.polynomial.polyfit(self.t[rows], track[rows], 2)
-                for name, value in zip(pair, powers.tolist(), strict=False):
-                    first[np.array(self.names) == name] = value
-        u = self.own + self.turned(first / self.sizes - self.own)
-        return [self.own, u, *(other for _, other in self.others(u))]
-
-    def turned(self, u: FloatArray) -> FloatArray:
-        """Return changes of the unknowns, that of theta without half turns."""
-        half = math.pi / self.sizes
-        return np.where(np.array(self.names) == "theta", u - half * np.round(u / half), u)
-
-    def others(self, u: FloatArray) -> Iterator[tuple[int, FloatArray]]:
-        """Yield places of unknowns, and all values with another guess of that one."""
-        for k, name in enumerate(self.names):
-            if name == "theta" and self.known[:, 2].any():
-                continue
-            for guess in _GUESSES.get(name, ()):
-                other = u.copy()
-                other[k] = guess * (self.own[k] if name == "inertia" else 1 / self.sizes[k])
-                yield k, other
-
-    def solve(self, u: FloatArray, share: float = 1.0, held: int | None = None) -> Any:
-        """Return SciPy's solution for a share of the film, with one unknown held or none."""
-        low, high = self.low.copy(), self.high.copy()
-        u = np.clip(u, low + _LEAST, high - _LEAST)
-        if held is not None:
-            low[held], high[held] = u[held] - _LEAST, u[held] + _LEAST
-        used = np.nonzero(self.known)[0] < share * self.t.size
-
-        def residuals(u: FloatArray) -> FloatArray:
-            return np.where(used, self.residuals(u), 0.0)
-
-        how = _EXACT if held is None else _ROUGH
-        return self.least_squares(residuals, u, bounds=(low, high), loss=self.loss, **how)
-
-    def best(self, starts: list[FloatArray]) -> Any:
-        best: Any = None
-        for start in starts:
-            if self.residuals(start)[0] == _IMPOSSIBLE:
-                continue
-            for shares in _STAGES:
-                u = start
-                for share in shares:
-                    found = self.solve(u, share)
-                    u = found.x
-                best = found if best is None or found.cost < best.cost else best
-            if 2 * best.cost < self.good * self.dof:
-                break
-        if best is None:
-            raise ValueError("scene must move until the last time t, got one that does not")
-        return best
-
-    def spread(self, best: Any) -> float:
-        """Return chi2 over the degrees of freedom; by the median residual if there are outliers."""
-        if self.loss == "linear":
-            return 2 * float(best.cost) / self.dof
-        return float(_NORMAL * np.median(np.abs(self.residuals(best.x)))) ** 2
-
-    def estimate(self, best: Any) -> None:
-        self.sigma *= max(math.sqrt(self.spread(best)), _LEAST)
-
-    def steps_down(self, best: Any, k: int) -> float:
-        """Return twice the largest half, quarter, ... of the range that chi2 does not tell.
-
-        Linearised residuals do not tell restitution near 0, as a hop's height grows by its square.
-        """
-        reach, rise = self.high[k] - self.low[k], math.inf
-        while rise > 1 and reach > _LEAST:
-            reach, there = reach / 2, best.x.copy()
-            there[k] += reach if there[k] + reach < self.high[k] else -reach
-            rise = 2 * (self.solve(there, held=k).cost - best.cost)
-        return float(2 * reach)
-
-    def errors(self, best: Any, rivals: list[Any]) -> tuple[FloatArray, FloatArray]:
-        """Return standard errors and covariance; rivals are other solutions."""
-        _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
-        told = singular > _LEAST * singular[0]
-        inverse = np.divide(1.0, singular**2, out=np.zeros(len(told)), where=told)
-        covariance = (axes.T * inverse) @ axes
-        errors = np.sqrt(np.diag(covariance))
-        errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
-        for k, error in enumerate(errors.tolist()):
-            if _UNEVEN * (self.high[k] - self.low[k]) < error < math.inf:
-                errors[k] = self.steps_down(best, k)
-        wide = errors.copy()
-        for k, sign in itertools.product(range(len(errors)), (-1, 1)):
-            reach, rise = 3 * errors[k], 0.0
-            while rise < 4.5 and reach < _FAR:
-                there = best.x + sign * reach / errors[k] ** 2 * covariance[k]
-                other = self.solve(there, held=k)
-                rivals.append(other)
-                outside = not self.low[k] < there[k] < self.high[k]
-                rise, reach = math.inf if outside else 2 * (other.cost - best.cost), 2 * reach
-        for other in rivals:
-            rise = 2 * (other.cost - best.cost)
-            if rise < _FAINT:
-                apart = np.abs(self.turned(other.x - best.x)) / math.sqrt(max(rise, 1.0))
-                wide = np.maximum(wide, apart)
-        wide[wide >= _FAR] = math.inf
-        covariance[np.diag_indices(len(wide))] = np.where(np.isinf(wide), wide, np.diag(covariance))
-        return wide * self.sizes, covariance * np.outer(self.sizes, self.sizes)
-
-    def message(self, best: Any, chi2: float, errors: dict[str, float]) -> str:
-        lost = ", ".join(name for name, error in errors.items() if math.isinf(error))
-        said = [f"{self.known.sum()} data, chi2 / {self.dof} = {chi2 / self.dof:.3g}"]
-        said += [f"the film cannot tell {lost}"] if lost else []
-        misfit = self.spread(best) > 1 + 5 * math.sqrt(2 / self.dof)
-        said += ["the scene does not fit the film"] if misfit else []
-        return f"{'; '.join(said)}."
-
-
-def _bounds(name: str, value: float) -> tuple[float, float]:
-    if name in _POSITIVE:
-        return 0.1 * value, 100 * value
-    return _BOUNDS.get(name, (-math.inf, math.inf))
-
-
-def _cost(one: Any) -> float:
-    return float(one.cost)
+def _not_fitted(
+    film: Film, unknowns: Unknowns, sigma: FloatArray, fall: float | None, words: str
+) -> Fit:
+    """Return the scene as it is, with a sentence on the units of the film."""
+    motion = unknowns.motion(unknowns.own, film.t)
+    if motion is None:
+        raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")
+    off, infinite = film.off(motion), np.full(len(unknowns.names), math.inf)
+    said = [f"{film.known.sum()} data, not fitted", "the frames are too far apart"]
+    if fall is not None:
+        said[1] = f"the body falls with {fall:.3g} of gravity, as if t or z had other units"
+    said += ["the scene does not fit the film", *([f"it fits with {words}"] if words else [])]
+    return Fit(
+        motion.scene, dict(zip(unknowns.names, infinite.tolist(), strict=True)),
+        np.diag(infinite), float(np.nansum((off / sigma) ** 2)), off, sigma, motion,
+        f"{'; '.join(said)}.",
+    )  # fmt: skip

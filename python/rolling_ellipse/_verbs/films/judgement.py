@@ -1,0 +1,156 @@
+"""Whether a scene fits a film: deviations of the tracks, and residuals beside their neighbours."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..._ask.check import FloatArray
+from .film import TRACKS, sizes_of
+from .search import LEAST, Search
+
+NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
+TRACKER = 0.02  # deviation over the size of the body, or in rad, of a poor tracker
+_ALARM = 3.5  # no right film of 340 came above 2.99
+_FEWEST = 8  # pairs of neighbours, below which there is no verdict
+_ROUNDING = 1e-8  # deviation over the size, below which residuals are rounding of the motion
+_GAP = 1.5  # time from a frame to its neighbour, over the median time
+_WILD = 5.0  # residual over sigma of a frame that is no noise
+_MANY = 0.2  # share of wild frames of a track from which on they decide
+_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: beyond any tracker
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the residuals say about the scene.
+
+    Attributes
+    ----------
+    fits : bool
+        False where the residuals are no noise.
+    doubtful : bool
+        True where they are that, or larger than those of any tracker.
+    likeness : float
+        Largest mean product of neighbouring residuals, over their mean square.
+    words : tuple of str
+    """
+
+    fits: bool
+    doubtful: bool
+    likeness: float
+    words: tuple[str, ...]
+
+
+def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
+    """Return standard deviations of the tracks: the given ones, others from the residuals.
+
+    The unknowns take their share of the data of a track, the trace of its projection. Where there
+    are outliers, the median residual counts.
+    """
+    residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
+    directions, singular, _ = np.linalg.svd(best.jac, full_matrices=False)
+    taken = (directions[:, singular > LEAST * singular[0]] ** 2).sum(axis=1)
+    sigma, spread = search.sigma.copy(), _spread(search.loss, residuals, taken)
+    for k in np.flatnonzero(np.isnan(given)):
+        of_track = search.track == k
+        if of_track.sum() - taken[of_track].sum() >= 1:
+            own = _spread(search.loss, residuals[of_track], taken[of_track])
+            sigma[k] *= own
+        else:
+            sigma[k] *= spread
+    return np.where(np.isnan(given), np.maximum(sigma, LEAST * sizes), given)
+
+
+def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
+    """Return the standard deviation of residuals of which unknowns have taken some."""
+    left = max(residuals.size - taken.sum(), 1.0)
+    if loss == "linear":
+        return math.sqrt(float(np.sum(residuals**2)) / left)
+    return NORMAL * float(np.median(np.abs(residuals))) * math.sqrt(residuals.size / left)
+
+
+def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the residuals of a track that have a next one, and these; missing frames part them."""
+    steps = np.diff(t)
+    near = steps < _GAP * np.median(steps) if steps.size else np.zeros(0, dtype=bool)
+    pair = near & np.isfinite(off[:-1]) & np.isfinite(off[1:])
+    return off[:-1][pair], off[1:][pair]
+
+
+def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
+    """Return whether the scene fits the film.
+
+    T = sqrt(P) sum r r' / sum (r^2 + r'^2)/2 over the P pairs of neighbouring residuals r, r' of a
+    track is a normal number where residuals are noise. Their mean stays in: a ground that is
+    shifted has residuals of one sign. Residuals of outliers count as `search.loss` weighs them.
+    """
+    film, off = search.film, np.full(search.film.data.shape, math.nan)
+    off[film.known] = search.residuals(best.x)
+    size = min(search.unknowns.scene.a, search.unknowns.scene.b)
+    likeness, judges, words, bad, coarse = 0.0, False, list[str](), False, False
+    for k, name in enumerate(TRACKS):
+        seen, unit = film.known[:, k], 1.0 if name == "theta" else size
+        if not seen.any():
+            continue
+        if np.isnan(given[k]) and search.sigma[k] > _COARSE[name] * unit:
+            coarse = True
+            words.append(f"{name} is off by {_printed(name, search.sigma[k])}, beyond any tracker")
+        wild = int(np.sum(np.abs(off[seen, k]) > _WILD))
+        if search.loss != "linear" and wild > _MANY * seen.sum():
+            words.append(f"{wild} of {seen.sum()} values of {name} are beyond {_WILD:g} sigma")
+            bad = True
+        one, other = neighbours(film.t, _weighed(search.loss, off[:, k]))
+        judges = judges or one.size >= _FEWEST
+        if one.size < _FEWEST or search.sigma[k] < _ROUNDING * unit:
+            continue
+        squares = max(float(np.sum(one**2 + other**2)) / 2, np.finfo(float).tiny)
+        alike = float(np.sum(one * other)) / squares
+        likeness = max(likeness, alike)
+        bad = bad or math.sqrt(one.size) * alike > _ALARM
+    dof = search.track.size - len(search.unknowns.names)
+    residuals = off[film.known]
+    spread = _spread(search.loss, residuals, np.full(residuals.size, 1 - dof / residuals.size))
+    bad = bad or (not np.isnan(given).any() and spread**2 > 1 + 5 * math.sqrt(2 / dof))
+    words += ["the scene does not fit the film, or the track was smoothed"] if bad else []
+    words += [] if judges or bad else ["too few frames side by side to judge the fit"]
+    return Verdict(not bad, bad or coarse, likeness, tuple(words))
+
+
+def _weighed(loss: str, off: FloatArray) -> FloatArray:
+    """Return residuals over sigma; where the loss is for outliers, it grows no more from 1 on."""
+    return off if loss == "linear" else off / np.sqrt(1 + off**2)
+
+
+def widened(verdict: Verdict) -> float:
+    """Return the factor of errors from residuals that are alike; it is an estimate only."""
+    alike = min(verdict.likeness, 0.98)
+    return 1.0 if verdict.fits else math.sqrt((1 + alike) / (1 - alike))
+
+
+def _printed(name: str, sigma: float) -> str:
+    if name == "theta":
+        return f"{sigma:.2g} rad"
+    return f"{1e3 * sigma:.2g} mm" if sigma < 1 else f"{sigma:.2g} m"
+
+
+def counted(search: Search, residuals: FloatArray, given: FloatArray) -> str:
+    """Return the number of data, with chi2 of given deviations or the estimated ones."""
+    film, chi2 = search.film, float(np.sum(residuals**2))
+    dof = residuals.size - len(search.unknowns.names)
+    said = f"{residuals.size} data"
+    names = [n for k, n in enumerate(TRACKS) if np.isnan(given[k]) and film.known[:, k].any()]
+    if names:
+        each = ", ".join(f"{n} {_printed(n, search.sigma[TRACKS.index(n)])}" for n in names)
+        said += f", sigma estimated: {each}"
+    else:
+        said += f", chi2 / {dof} = {chi2 / dof:.3g}"
+    tame = np.abs(residuals) <= _WILD
+    wild = int(np.sum(~tame))
+    if wild and search.loss != "linear":
+        said += f", {wild} of them beyond {_WILD:g} sigma"
+        rest = float(np.sum(residuals[tame] ** 2)) / max(dof - wild, 1)
+        said += "" if names else f", without which it is {rest:.3g}"
+    return said

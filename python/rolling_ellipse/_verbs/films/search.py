@@ -1,0 +1,122 @@
+"""Least squares from many starts: the best of the minima of a rough function."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..._ask.check import FloatArray
+from ..._ask.printing import required
+from .film import Film, Unknowns
+from .starts import Start, cell, starts
+
+LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
+_SHARES = 0.3, 0.6, 1.0  # of the film that are fitted in turn
+_TRIED = 30  # starts that are fitted
+_HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
+_WORSE = 1.1, 50.0  # ratio and rise of the cost up to which the search goes on in a cell
+_IMPOSSIBLE = 1e3  # residual of a scene that cannot be, over the largest one of a body at rest
+_EXACT: dict[str, Any] = {
+    "xtol": 1e-10,
+    "ftol": 1e-10,
+    "gtol": 1e-10,
+    "max_nfev": 100,
+    "jac": "3-point",
+}
+_ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
+
+
+class Search:
+    """Fits of unknowns to a film, with residuals in units of sigma."""
+
+    def __init__(self, film: Film, unknowns: Unknowns, sigma: FloatArray, loss: str) -> None:
+        self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
+        self.film, self.unknowns, self.sigma, self.loss = film, unknowns, sigma, loss
+        self.track = np.nonzero(film.known)[1]  # of each datum
+        far = np.abs(film.data) + max(unknowns.scene.a, unknowns.scene.b)
+        self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
+
+    def residuals(self, u: FloatArray) -> FloatArray:
+        motion = self.unknowns.motion(u, self.film.t)
+        if motion is None:
+            return np.full(self.track.size, self.impossible)
+        found: FloatArray = (self.film.off(motion) / self.sigma)[self.film.known]
+        return found
+
+    def solve(
+        self,
+        u: FloatArray,
+        *,
+        exact: bool = False,
+        share: float = 1.0,
+        held: tuple[int, ...] = (),
+        within: tuple[FloatArray, FloatArray] | None = None,
+    ) -> Any:
+        """Return SciPy's solution for a share of the film, with some unknowns held or in a box."""
+        low, high = within or (self.unknowns.low, self.unknowns.high)
+        low, high, k = low.copy(), high.copy(), list(held)
+        u = np.clip(u, low + LEAST, high - LEAST)
+        low[k], high[k] = u[k] - LEAST, u[k] + LEAST
+        used = np.nonzero(self.film.known)[0] < share * self.film.t.size
+
+        def residuals(u: FloatArray) -> FloatArray:
+            return np.where(used, self.residuals(u), 0.0)
+
+        how = _EXACT if exact else _ROUGH
+        one = self.least_squares(residuals, u, bounds=(low, high), loss=self.loss, **how)
+        one.within = within
+        return one
+
+    def minima(self, tried: int = _TRIED) -> list[Any]:
+        """Return the best solution of each cell of friction, the best one first."""
+        nearest: list[tuple[float, int, Start]] = []
+        for several in starts(self.film, self.unknowns):
+            distances = [self._distance(self.residuals(start.u)) for start in several]
+            k = int(np.argmin(distances))
+            nearest.append((distances[k], len(nearest), several[k]))
+        nearest.sort(key=lambda one: one[:2])
+        if nearest[0][0] >= self._distance(np.full(self.track.size, self.impossible)):
+            raise ValueError("scene must move until the last time t, got one that does not")
+        best: dict[tuple[float, ...], Any] = {}
+        for _, _, start in nearest[:tried]:
+            u = start.u
+            for share in _SHARES:
+                one = self.solve(u, share=share, within=(start.low, start.high))
+                u = one.x
+            key = (*start.low, *start.high)
+            best[key] = min(best.get(key, one), one, key=cost)
+        return sorted(best.values(), key=cost)
+
+    def best(self, minima: list[Any]) -> Any:
+        """Return the best of minima around those of a list that are nearly as good as its first.
+
+        chi2 has kinks where the order of events changes, and many a minimum between them.
+        """
+        random, limit = np.random.default_rng(0), _WORSE[0] * minima[0].cost + _WORSE[1]
+        close = [one for one in minima if one.cost < limit]
+        best = min((self._hopped(one, random) for one in close), key=cost)
+        best = self._hopped(best, random) if len(close) > 1 else best
+        return min(self.solve(best.x, exact=True), best, key=cost)
+
+    def _hopped(self, start: Any, random: np.random.Generator) -> Any:
+        """Return the best of solutions from normal numbers around one, if its motion has events."""
+        motion = self.unknowns.motion(start.x, self.film.t)
+        if motion is None or not motion.events:
+            return start
+        _, singular, axes = np.linalg.svd(start.jac, full_matrices=False)
+        told = singular > LEAST * singular[0]
+        errors = np.divide(1.0, singular, out=np.zeros(len(told)), where=told)
+        best, within = start, cell(self.unknowns, start.x)
+        for normal in random.normal(size=(_HOPS, len(told))):
+            u = best.x + _REACH * axes.T @ (np.minimum(errors, 1.0) * normal)
+            best = min(best, self.solve(u, within=within), key=cost)
+        return best
+
+    def _distance(self, residuals: FloatArray) -> float:
+        """Return the sum of orders of magnitude, to which a wild frame adds little."""
+        return float(np.log1p(residuals**2).sum())
+
+
+def cost(one: Any) -> float:
+    return float(one.cost)

@@ -1,0 +1,154 @@
+"""Starts of a fit: places and velocities from the first frames, coefficients from a grid."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..._ask.check import FloatArray
+from ..._core import Mode
+from .film import TRACKS as PLACES
+from .film import Film, Unknowns
+
+_GRID = {
+    "friction": tuple(0.03 * 1.4**k for k in range(11)),
+    "restitution": (0.2, 0.5, 0.8),
+    "inertia": (0.5, 1.0, 2.0),  # over the first guess
+    "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
+}
+_CELL = 1.3  # from a friction of the grid to the ends of its cell, which overlaps the next ones
+_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames of the first pre-fit, ratio to the next, and last
+_WEIGHINGS = 20  # rounds of reweighting, in each of which wild frames lose weight
+_SPINS = 4000  # most angular velocities of a periodogram
+
+
+@dataclass(frozen=True)
+class Start:
+    """Unknowns from which a fit starts, and the box in which it stays."""
+
+    u: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def starts(film: Film, unknowns: Unknowns) -> Iterator[list[Start]]:
+    """Yield starts with equal coefficients: the scene's own, and pre-fits of more and more frames.
+
+    Friction stays in a cell of its grid: where it is large enough for the body to stick, no film
+    tells how large it is, and a step that overshoots would not come back.
+    """
+    counts = [_FEWEST]
+    while counts[-1] < min(film.t.size, _MOST):
+        counts.append(math.ceil(_MORE * counts[-1]))
+    flights = [unknowns.own, *(unknowns.with_values(flight(film, unknowns, n)) for n in counts)]
+    flights = [np.clip(u, unknowns.low, unknowns.high) for u in flights]
+    grid = {k: [None, *values] for k, values in _grid(film, unknowns).items()}
+    for choice in itertools.product(*grid.values()):
+        chosen = {k: value for k, value in zip(grid, choice, strict=True) if value is not None}
+        several = [u.copy() for u in flights]
+        for u in several:
+            u[list(chosen)] = list(chosen.values())
+        yield [Start(u, *cell(unknowns, u)) for u in several]
+
+
+def cell(unknowns: Unknowns, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the bounds of the unknowns, with friction in a cell around its value."""
+    low, high = unknowns.low.copy(), unknowns.high.copy()
+    if "friction" in unknowns.names:
+        k = unknowns.names.index("friction")
+        least, *_, largest = _GRID["friction"]
+        if u[k] > least:
+            low[k] = u[k] / _CELL
+        if u[k] < largest:
+            high[k] = max(u[k], least) * _CELL
+    return low, high
+
+
+def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
+    """Return other values to try, by places of unknowns."""
+    grid = {}
+    for k, name in enumerate(unknowns.names):
+        if name in _GRID and not (name == "theta" and film.known[:, 2].any()):
+            unit = unknowns.own[k] if name == "inertia" else 1 / unknowns.sizes[k]
+            grid[k] = [unit * value for value in _GRID[name]]
+    return grid
+
+
+def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
+    """Return places and velocities at t = 0, as if nothing happened in the first frames.
+
+    After a blow the velocities are not those of the scene.
+    """
+    scene, t = unknowns.scene, film.t[:count]
+    pulls = scene.gravity * math.sin(scene.slope), -scene.gravity * math.cos(scene.slope)
+    found: dict[str, float] = {}
+    for k, pair in enumerate((("x", "x_dot"), ("z", "z_dot"))):
+        rows = film.known[:count, k]
+        powers = t[rows] ** np.arange(3)[:, None]
+        values = film.data[:count, k][rows]
+        if scene.initial_state.mode is Mode.FLIGHT:
+            values, powers = values - pulls[k] / 2 * powers[2], powers[:2]
+        found |= _line(values, powers, dict(zip(pair, _known(unknowns, pair), strict=True)))
+    rows = film.known[:count, 2]
+    if rows.sum() > 2:
+        found |= _spin(t[rows], film.data[:count, 2][rows], unknowns)
+    return found if scene.impulse is None else {n: found[n] for n in PLACES if n in found}
+
+
+def _known(unknowns: Unknowns, names: tuple[str, ...]) -> list[float | None]:
+    """Return values of the scene, None for those to be determined."""
+    scene = unknowns.scene
+    known: list[float | None] = []
+    for name in names:
+        free = name in unknowns.names or not (name in PLACES or scene.impulse is None)
+        known.append(None if free else getattr(scene.initial_state, name))
+    return known
+
+
+def _line(
+    values: FloatArray, powers: FloatArray, known: dict[str, float | None]
+) -> dict[str, float]:
+    """Return the unknown ones of the coefficients, named in the order of powers of time.
+
+    The sum of absolute residuals is least, so that a wild frame decides nothing.
+    """
+    free = [name for name, value in known.items() if value is None]
+    asked = [k for k, value in enumerate(known.values()) if value is None]
+    matrix = powers[[*asked, *range(len(known), len(powers))]].T
+    if not free or len(values) < matrix.shape[1]:
+        return {}
+    for power, value in zip(powers, known.values(), strict=False):
+        values = values - power * (value or 0.0)
+    weights = np.ones(len(values))
+    for _ in range(_WEIGHINGS):
+        solution = np.linalg.lstsq(matrix * weights[:, None], values * weights, rcond=None)[0]
+        off = np.abs(values - matrix @ solution)
+        weights = 1 / np.sqrt(np.maximum(off, 1e-3 * off.mean() + np.finfo(float).tiny))
+        weights /= weights.max()
+    return dict(zip(free, solution.tolist(), strict=False))
+
+
+def _spin(t: FloatArray, theta: FloatArray, unknowns: Unknowns) -> dict[str, float]:
+    """Return the line through angles modulo half turns, from the peak of their periodogram.
+
+    A frame that is off by a quarter turn takes 2 from the height n of the peak, no more.
+    """
+    known = dict(zip(("theta", "omega"), _known(unknowns, ("theta", "omega")), strict=True))
+    angle, omega = known.values()
+    spins = np.array([omega or 0.0])
+    if omega is None:
+        fastest = math.pi / 2 / np.median(np.diff(t))  # above, frames do not tell it
+        count = 8 * math.ceil(np.ptp(t) * fastest / math.pi) + 1
+        spins = np.linspace(-fastest, fastest, min(count, _SPINS))
+    sums = np.exp(2j * (theta - spins[:, None] * t)).sum(axis=1)
+    heights = np.abs(sums) if angle is None else (sums * np.exp(-2j * angle)).real
+    k = int(np.argmax(heights))
+    near = {"theta": np.angle(sums[k]) / 2 if angle is None else angle, "omega": spins[k]}
+    off = theta - near["theta"] - near["omega"] * t
+    off -= math.pi * np.round(off / math.pi)
+    zero = {name: None if value is None else 0.0 for name, value in known.items()}
+    return {n: near[n] + v for n, v in _line(off, t ** np.arange(2)[:, None], zero).items()}
