@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
 constexpr int refused = -1;  // code of a refused scene; Ending uses 0 and above
 
-// The scene of a row, refused above the energy `most`; NaN stands for an absent number.
-Scene scene_in(const double* row, double most) {
+// The valid scene of a row; NaN stands for an absent number.
+Scene scene_in(const double* row, Origin origin) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);
     };
@@ -25,18 +25,18 @@ Scene scene_in(const double* row, double most) {
     std::optional<Impulse> impulse;
     if (given(*blow)) read(impulse.emplace(), impulse_fields, blow);
     const Scene scene = scene_of(numbers, impulse);
-    validate(scene, most);
+    validate(scene, origin);
     return scene;
 }
 
 // Index and message of the first scene that is refused; None if all are accepted.
 py::object first_refused(const Array& scenes, bool reached) {
-    const double most = reached ? most_energy_reached : most_energy;
+    const Origin origin = reached ? Origin::reached : Origin::typed;
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     py::ssize_t at = 0;
     try {
         run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-            for (at = begin; at < end; ++at) scene_in(scenes.data(at, 0), most);
+            for (at = begin; at < end; ++at) scene_in(scenes.data(at, 0), origin);
         });
     } catch (const std::invalid_argument& error) {
         return py::make_tuple(at, error.what());
@@ -72,7 +72,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     Answer found;
     Solution& solution = found.solution;
     try {
-        const Scene scene = scene_in(row, most_energy_reached);
+        const Scene scene = scene_in(row, Origin::reached);
         solution = simulate(scene, settings, times[n - 1], checkpoint);
         solution.valid_until = valid_until(scene, solution);
     } catch (const std::invalid_argument& error) {
@@ -208,7 +208,7 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
         const double t = times.data()[i * each];
         Solution found;
         try {
-            const Scene scene = scene_in(scenes.data(i, 0), most_energy_reached);
+            const Scene scene = scene_in(scenes.data(i, 0), Origin::reached);
             found = simulate(scene, settings, t, checkpoint);
         } catch (const std::invalid_argument&) {
             return;

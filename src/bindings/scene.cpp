@@ -25,8 +25,8 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.z = a + b;  // above the ground at any angle: any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
-        validate(scene.body());                // first: a refusal then names gyration2
-        validate(scene, most_energy_reached);  // the widest limit, as gravity is arbitrary here
+        validate(scene.body());            // first: a refusal then names gyration2
+        validate(scene, Origin::reached);  // the widest limit, as gravity is arbitrary here
         const Geometry at = geometry(scene.axes(), theta);
         const State before = state_before_impulse(scene, at);
         const State after = collision(scene, at, before, gap_rate(before, at), law).after;
@@ -63,7 +63,7 @@ struct SceneMaker {
             if (!absent) numbers[i] = PyFloat_AS_DOUBLE(given);
         }
         const Scene scene = scene_of(numbers, impulse);
-        validate(scene, reached ? most_energy_reached : most_energy);
+        validate(scene, reached ? Origin::reached : Origin::typed);
         return scene;
     }
 };

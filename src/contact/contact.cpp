@@ -34,12 +34,7 @@ class ContactRun {
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
-        const double x_dot = state_.x_dot;
-        recount(state_, {state_.theta, 0.0});
-        if (scene_.friction == 0)
-            state_.x_dot = x_dot;  // without friction only gravity changes x_dot
-        next_ = first_continuation(scene_, state_);
-        if (is_stuck()) note(EventKind::jam, state_);
+        start();
         while (!ending_) {
             checkpoint_();
             follow();
@@ -48,6 +43,20 @@ class ContactRun {
     }
 
   private:
+    // Decides how the body goes on from its start. A body that touches the ground and moves into it
+    // hits it at once.
+    void start() {
+        const double blur = angle_roundings(state_.theta);
+        const bool touches = state_.z == geometry(axes(), state_.theta).h;
+        recount(state_, {state_.theta, 0.0});
+        if (state_.mode != Mode::flight) {
+            next_ = continuation(scene_, state_, true, blur);
+            if (is_stuck() && !next_.has_jammed) note(EventKind::jam, state_);
+        } else if (touches && gap_rate_ < 0) {
+            hit(State(state_), geometry(axes(), state_.theta), gap_rate_);
+        }
+    }
+
     Axes axes() const { return scene_.axes(); }
 
     // Counts an angle from the nearest flat position or tip, where a thin body is most sensitive to
@@ -68,7 +77,7 @@ class ContactRun {
 
     // Goes on from a state with its angle counted from a quarter turn; returns the angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
-        const Axes before = axes();
+        const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);
         state_ = with_angle(before, state, axes(), angle.high);
         return angle;
@@ -166,7 +175,9 @@ class ContactRun {
         if (!advance(lasts)) return;
         end.angle = recount(last, theta);
         end_slide(stop, State(state_));
-        if (next_.mode == Mode::sliding) sliding_on_ = end;
+        if (next_.mode != Mode::sliding) return;
+        if (!is_rolling_speed(double(end.x_dot), state_.x_dot)) end.x_dot = {state_.x_dot, 0.0};
+        sliding_on_ = end;
     }
 
     void end_slide(SlideStop stop, const State& before) {
@@ -181,7 +192,9 @@ class ContactRun {
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
         // A body that slides keeps its x_dot: h omega would add a rounding.
-        if (next.mode == Mode::sliding) state_.x_dot = before.x_dot;
+        if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
+            state_.x_dot = before.x_dot;
+        }
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
@@ -256,9 +269,8 @@ class ContactRun {
     }
 
     // The state in SI units, with its whole angle.
-    State in_full(State state) const {
-        state.theta = static_cast<double>(turned_ + state.theta);
-        return in_si(state, units_);
+    State in_full(const State& state) const {
+        return in_si(with_whole_angle(scene_, state, turned_, motion_.scene), units_);
     }
 
     template <class Law>

@@ -22,28 +22,51 @@ void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSam
     FlowSampler{flow, n}(times, n, samples);
 }
 
-void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
-    for (std::size_t i = 0; i < n; ++i) samples[i] = {state_at(flight, times[i]), {0.0, 0.0}};
+// The height of the centre above which the body does not touch the ground, however h is rounded.
+double most_height(const Axes& axes) {
+    return std::max(axes.a, axes.b) * (1 + equal_ulps * epsilon);
 }
 
-// While bounces settle, velocities change evenly. A coordinate is the integral of its rate; what is
-// then missing of its change is added evenly, too.
+// Rounding does not put a flying body under the ground; a contact that grazes stays on it.
+void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
+    const double tall = most_height(flight.axes);
+    for (std::size_t i = 0; i < n; ++i) {
+        State& state = samples[i].state;
+        state = state_at(flight, times[i]);
+        samples[i].force = {0.0, 0.0};
+        if (state.z > tall) continue;
+        const Geometry at = geometry(flight.axes, state.theta);
+        if (flight.mode == Mode::flight) {
+            state.z = std::max(state.z, at.h);
+        } else {
+            const double slip = flight.mode == Mode::sliding ? slip_velocity(state, at) : 0.0;
+            state = in_contact(at, state.theta, state.omega, state.x, slip, flight.mode);
+        }
+    }
+}
+
+// While bounces settle, velocities change evenly, and the rate of the gap falls evenly from the
+// first rebound to 0: a sample rises, as a start does. A coordinate is the integral of its rate;
+// what is then missing of its change is added evenly, too.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
     const auto& [axes, lasts, start, end, angle] = settling;
+    const double rebound = gap_rate(start, geometry(axes, start.theta));
     for (std::size_t i = 0; i < n; ++i) {
-        const double share = times[i] / lasts;
+        const double share = std::min(times[i] / lasts, 1.0);
         const auto between = [share](double from, double to) { return from + share * (to - from); };
         const auto change = [share, time = lasts](double rate, double last_rate, double in_all) {
             const double rest = in_all - time * (rate + 0.5 * (last_rate - rate));
             return share * (time * (rate + 0.5 * share * (last_rate - rate)) + rest);
         };
         const double theta = start.theta + change(start.omega, end.omega, end.theta - start.theta);
+        const double omega = between(start.omega, end.omega);
+        const Geometry at = geometry(axes, theta);
         const State state{theta,
-                          between(start.omega, end.omega),
+                          omega,
                           start.x + change(start.x_dot, end.x_dot, end.x - start.x),
-                          geometry(axes, theta).h,
+                          at.h,
                           between(start.x_dot, end.x_dot),
-                          between(start.z_dot, end.z_dot),
+                          at.dh * omega + (1 - share) * rebound,
                           Mode::flight};
         samples[i] = {state, {0.0, 0.0}};
     }
@@ -106,21 +129,27 @@ double whole_angle(const DoubleDouble& turned, double theta) {
     return turned.high == 0 ? theta : static_cast<double>(turned + theta);
 }
 
-// Converts a sample to SI units, with its whole angle.
+// Converts a sample of a motion to SI units, with its whole angle; the scene has the axes of its
+// law.
 
-void complete(FlowSample& sample, const Units& units, const DoubleDouble& turned) {
+void complete(FlowSample& sample, const Motion& motion, const Scene&, const DoubleDouble& turned) {
+    const Units& units = motion.units;
     sample = {whole_angle(turned, sample.theta), sample.omega / units.time,
               sample.x * units.length};
 }
 
-void complete(ContactSample& sample, const Units& units, const DoubleDouble& turned) {
+void complete(ContactSample& sample, const Motion& motion, const Scene& scene,
+              const DoubleDouble& turned) {
+    const Units& units = motion.units;
+    State& state = sample.state;
+    state = with_whole_angle(scene, state, turned, motion.scene);
     const double force = units.of(unit::force);
-    sample = {in_si(sample.state, units),
-              {sample.force.normal * force, sample.force.friction * force}};
-    sample.state.theta = whole_angle(turned, sample.state.theta);
+    sample = {in_si(state, units), {sample.force.normal * force, sample.force.friction * force}};
 }
 
-void complete(CoordinateState& state, const Units& units, const DoubleDouble& turned) {
+void complete(CoordinateState& state, const Motion& motion, const Scene&,
+              const DoubleDouble& turned) {
+    const Units& units = motion.units;
     const Coordinates lengths{units.length, units.length, 1.0, 1.0, units.length};
     state = {state.q.cwiseProduct(lengths), state.q_dot.cwiseProduct(lengths) / units.time};
     for (const int angle : {coordinate::theta, coordinate::psi}) {
@@ -129,6 +158,17 @@ void complete(CoordinateState& state, const Units& units, const DoubleDouble& tu
 }
 
 }  // namespace
+
+State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turned,
+                       const Scene& scene) {
+    const double theta = whole_angle(turned, state.theta);
+    // Far from the ground nothing else changes, nor does it where the double of the angle is rough.
+    if (state.z <= most_height(scene.axes()) && std::abs(theta) <= most_turned) {
+        return with_angle(seen, state, scene.axes(), theta);
+    }
+    state.theta = theta;
+    return state;
+}
 
 InitialState start_after(const Scene& scene, const Event& event) {
     const auto& [t, kind, before, after] = event;
@@ -195,7 +235,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         }
         const std::size_t last = i + since.size();
         if (units.are_si() && segment.turned.high == 0) i = last;
-        for (; i < last; ++i) complete(samples[i], units, segment.turned);
+        for (; i < last; ++i) complete(samples[i], motion_, scene, segment.turned);
     }
 }
 

@@ -73,6 +73,11 @@ Integration<Motion> integrate_contact(const Scene& scene, const InitialState& st
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint);
 
+// The state of a segment with its whole angle, rounded to a double: on the ground h, h' omega and,
+// without slip, h omega are those of this double. `seen` has the axes of the segment.
+State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turned,
+                       const Scene& scene);
+
 // A motion of one segment, with this law, in SI units.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 

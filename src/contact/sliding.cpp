@@ -236,6 +236,19 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
+// Whether a start is the state in which a slide has jammed, B = 0 and c = 0 to within rounding and
+// a blur of theta.
+bool has_jammed(const Scene& scene, const State& state, const Geometry& at, double slip,
+                double blur) {
+    constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of it
+    if (slip == 0 || scene.friction == 0 || std::isinf(scene.friction)) return false;
+    const SlidingBody body = sliding_body(scene, side_of(slip));
+    const auto [c, b] = response(body, at, state.omega);
+    const double c_by_blur = free_acceleration_rate(at, state.omega) * blur;
+    return std::abs(b) <= rounding + std::abs(response_derivative(body, at)) * blur &&
+           std::abs(c) <= rounding * body.gravity.into + c_by_blur;
+}
+
 // The start of a slip, where rolling is not possible, to the side to which the contact accelerates.
 Continuation starting_to_slide(const Scene& scene, const Geometry& at, const State& state,
                                const ContactForce& rolling) {
@@ -251,9 +264,34 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
+// Whether a contact that rolls at the limit of its law, to within rounding of the forces and a blur
+// of theta, breaks it in the next moment: with finite friction |F| = mu N, else N = 0.
+bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
+                 const ContactForce& force, double blur) {
+    constexpr double turn = 0x1p-20;  // to the next moment [rad]
+    const RollingEquation rolling(scene.body(), scene.slope);
+    const GroundGravity gravity = scene.ground_gravity();
+    const double omega2 = square(state.omega);
+    const double pull = rolling.acceleration(at.sin, at.cos, state.omega);
+    const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
+    const double heading = side_of(turns_back ? pull : state.omega);
+    const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * pull * heading * turn;
+    const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
+    const double side = side_of(force.friction);
+    const double now = law_margin(force, scene.friction, side);
+    const double then =
+        law_margin(rolling.force(scene.mass, later, std::sqrt(later_omega2)), scene.friction, side);
+    const ContactForce terms{scene.mass * (gravity.into + std::abs(at.ddh) * omega2),
+                             scene.mass * (std::abs(gravity.along) + std::abs(at.dh) * omega2)};
+    const double rounding =
+        law_rounding * (law_size(force, scene.friction) + law_size(terms, scene.friction));
+    const double by_blur = std::abs(then - now) / turn * blur;
+    return std::abs(now) <= rounding + by_blur && then < now - rounding;
+}
+
 // The continuation of a state, decided by a geometry and a slip, which may be those a moment later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
-                             double slip, bool may_roll) {
+                             double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
         const bool stays = slip == 0 && scene.slope == 0 && rests(scene, state, at);
         return stays ? Continuation{Mode::rest} : slide_or_leave(scene, at, state.omega, 0.0);
@@ -262,7 +300,8 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, at, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
-    if (may_roll && force.normal > 0 && held) {
+    const bool lasts = blur == 0 || !breaks_away(scene, state, at, force, blur);
+    if (may_roll && force.normal > 0 && held && lasts) {
         Continuation next{Mode::rolling};
         next.may_fly = free_acceleration(at, scene.ground_gravity().into, state.omega) < 0;
         return next;
@@ -272,34 +311,46 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
 
 }  // namespace
 
-Continuation continuation(const Scene& scene, const State& state, bool may_roll) {
+Continuation continuation(const Scene& scene, const State& state, bool may_roll, double blur) {
     const Geometry at = geometry(scene.axes(), state.theta);
     const double slip = slip_velocity(state, at);
-    const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega);
-    if (!weightless) return continuation_at(scene, state, at, slip, may_roll);
+    if (blur > 0 && has_jammed(scene, state, at, slip, blur)) {
+        Continuation next{Mode::sliding, side_of(slip), Painleve::no_motion};
+        next.has_jammed = true;
+        return next;
+    }
+    const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega, blur);
+    if (!weightless) return continuation_at(scene, state, at, slip, may_roll, blur);
     // A weightless body flies on its way up to the tip: c falls there, since h'' is least on it. On
     // a slope N = h h' (g sin(alpha) - h' omega^2)/D of rolling may hold it nevertheless.
     if (at.dh * state.omega > 0 && !is_equilibrium(at)) {
-        const Continuation now = continuation_at(scene, state, at, slip, may_roll);
+        const Continuation now = continuation_at(scene, state, at, slip, may_roll, blur);
         return scene.slope != 0 && now.mode == Mode::rolling ? now : Continuation{Mode::flight};
     }
     State later = state;
-    later.theta += std::copysign(turn_of_grazing, state.omega);
+    later.theta += std::copysign(std::max(turn_of_grazing, 2 * blur), state.omega);
     Continuation next =
-        continuation_at(scene, later, geometry(scene.axes(), later.theta), slip, may_roll);
+        continuation_at(scene, later, geometry(scene.axes(), later.theta), slip, may_roll, blur);
     const bool needs_force = next.mode == Mode::rolling && scene.slope != 0;
     next.grazes = std::isinf(scene.friction) && !needs_force;
     return next;
 }
 
-State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta) {
-    const Geometry before = geometry(axes, state.theta);
+State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta) {
+    const Geometry before = geometry(scene.axes(), state.theta);
     const Geometry after = geometry(new_axes, theta);
+    // A value that differs by at most 16 roundings from one of rolling.
+    const auto kept = [](double value, double was, double is) {
+        return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
+    };
     const double omega = state.omega;
     state.theta = theta;
-    if (state.z == before.h) state.z = after.h;
-    if (state.x_dot == before.h * omega) state.x_dot = after.h * omega;
-    if (state.z_dot == before.dh * omega) state.z_dot = after.dh * omega;
+    state.z = kept(state.z, before.h, after.h);
+    state.z_dot = kept(state.z_dot, before.dh * omega, after.dh * omega);
+    // In the air and without friction only gravity changes x_dot.
+    if (state.mode != Mode::flight && scene.friction != 0) {
+        state.x_dot = kept(state.x_dot, before.h * omega, after.h * omega);
+    }
     return state;
 }
 
@@ -307,11 +358,12 @@ Continuation first_continuation(const Scene& scene, const State& start, bool may
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene.body(), scene.mass);
     Scene seen = in_units(scene, units);
-    const Axes axes = seen.axes();
-    const State state = in_units(start, units);
-    const QuarterView angle = quarter_view({resolved(state.theta), 0.0});
-    if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
-    return continuation(seen, with_angle(axes, state, seen.axes(), angle.rest.high), may_roll);
+    const QuarterView angle = quarter_view({resolved(start.theta), 0.0});
+    const Axes axes = is_odd(angle.quarters) ? Axes{seen.b, seen.a} : seen.axes();
+    const State state = with_angle(seen, in_units(start, units), axes, angle.rest.high);
+    seen.a = axes.a;
+    seen.b = axes.b;
+    return continuation(seen, state, may_roll, angle_roundings(start.theta));
 }
 
 }  // namespace rolling_ellipse

@@ -107,7 +107,8 @@ struct Continuation {
     // Set for infinite friction and c = 0 within rounding: N is then rounding as well, and next to
     // the tip so is B. The body moves freely until it has turned so far that N and B have digits.
     bool grazes = false;
-    bool may_fly = false;  // the body rolls, but flight would obey the laws, too
+    bool may_fly = false;     // the body rolls, but flight would obey the laws, too
+    bool has_jammed = false;  // the state just after a JAM
 };
 
 inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
@@ -115,11 +116,15 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in
 // The mode that the forces allow. Without slip the body rolls if it may and can; else it starts to
 // slide, or leaves the ground if its contact is not pressed any more. On slopes the forces may
 // allow both rolling and flight (c < 0 < N): the body then rolls, as it does if it has arrived
-// rolling.
-Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
+// rolling. At a start c = 0 and |F| = mu N count as true within rounding and within what a blur of
+// theta [rad] changes of them; the next moment then decides.
+Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
+                          double blur = 0.0);
 
-// A state for exchanged axes, with its angle from these. Contact and no slip remain so.
-State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
+// A state of the scene with another double for its angle, counted for the new axes: h and h' change
+// by rounding. A gap that is not much larger remains, and on the ground a slip and a rate of the
+// gap: contact and no slip remain so.
+State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // The mode in which a body goes on from its start, which may be in the air.
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll = true);

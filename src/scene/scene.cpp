@@ -46,6 +46,16 @@ void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) 
            distance);
 }
 
+// Refuses a start that touches the ground and moves into it.
+void require_no_approach(const State& start, const Geometry& at) {
+    const double rolling = at.dh * start.omega;
+    if (start.z != at.h || start.z_dot >= rolling) return;
+    refuse("z_dot",
+           "at least h'(theta)*omega = " + text(rolling) +
+               " [m/s] while touching the ground (less moves into it)",
+           start.z_dot);
+}
+
 void require_in_size(const char* name, const Unit& unit, std::optional<double> value, double most) {
     if (!value) return;
     require_finite(name, unit, *value);
@@ -142,7 +152,8 @@ void validate_slope(double slope) {
     refuse("slope", std::string("an angle [rad] from -1.5 to 1.5") + hint, slope);
 }
 
-void validate(const Scene& scene, double most) {
+void validate(const Scene& scene, Origin origin) {
+    const double most = most_energy_of(origin);
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
@@ -163,7 +174,8 @@ void validate(const Scene& scene, double most) {
     require_in_size("z_dot", unit::speed, scene.z_dot, most_speed);
     const Geometry at = geometry(scene.axes(), scene.theta);
     validate_blow(scene, at);
-    state_before_impulse(scene, at);
+    const State start = state_before_impulse(scene, at);
+    if (origin == Origin::typed) require_no_approach(start, at);
 }
 
 void validate_blow(const Scene& scene, const Geometry& at) {
@@ -195,19 +207,12 @@ State state_before_impulse(const Scene& scene, const Geometry& at) {
         state.z_dot = scene.z_dot.value_or(0.0);
         return state;
     }
-    const auto given_or = [](const std::optional<double>& given, double rolling) {
-        return given && !nearly_equal(*given, rolling) ? *given : rolling;
-    };
     const double rolling_x_dot = at.h * state.omega;  // physics (12)
     const double rolling_z_dot = at.dh * state.omega;
-    state.x_dot = given_or(scene.x_dot, rolling_x_dot);
-    state.z_dot = given_or(scene.z_dot, rolling_z_dot);
-    if (state.z_dot < rolling_z_dot) {
-        refuse("z_dot",
-               "at least h'(theta)*omega = " + text(rolling_z_dot) +
-                   " [m/s] while touching the ground (less moves into it)",
-               state.z_dot);
-    }
+    const double x_dot = scene.x_dot.value_or(rolling_x_dot);
+    const double z_dot = scene.z_dot.value_or(rolling_z_dot);
+    state.x_dot = is_rolling_speed(x_dot, rolling_x_dot) ? rolling_x_dot : x_dot;
+    state.z_dot = nearly_equal(z_dot, rolling_z_dot) ? rolling_z_dot : z_dot;
     if (state.z_dot == rolling_z_dot) {
         const bool at_rest =
             state.omega == 0 && state.x_dot == 0 && is_equilibrium(at, std::tan(scene.slope));

@@ -162,10 +162,28 @@ inline double zero_if_negligible(double value) {
 }
 
 // Whether two numbers are equal within the rounding of a few operations.
-inline bool nearly_equal(double value, double target) {
+inline bool nearly_equal(double value, double target, double ulps = equal_ulps) {
     const double ulp =
         std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
-    return std::abs(value - target) <= equal_ulps * ulp;
+    return std::abs(value - target) <= ulps * ulp;
+}
+
+// Whether x_dot is that of rolling, h omega, to within eight roundings of its terms: x_dot and
+// omega are rounded by half an ulp, the product with its h by 3 ulp.
+inline bool is_rolling_speed(double x_dot, double h_omega) {
+    constexpr double ulps_of_terms = 4;
+    return nearly_equal(x_dot, h_omega, equal_ulps * ulps_of_terms);
+}
+
+// The largest angle [rad] for which states on the ground have the h and h' of its double, which may
+// be off by 6e-8 rad.
+inline constexpr double most_turned = 1e9;
+
+// Eight roundings of an angle, half an ulp each [rad]; of a larger angle no more than of the
+// largest.
+inline double angle_roundings(double theta) {
+    const double size = std::min(std::abs(resolved(theta)), most_turned);
+    return 0.5 * equal_ulps * (std::nextafter(size, infinity) - size);
 }
 
 // Velocity along the ground of the material point at the contact.
@@ -185,9 +203,16 @@ inline double free_acceleration(const Geometry& at, double gravity_into_ground, 
     return gravity_into_ground + at.ddh * omega * omega;
 }
 
-// Whether the free acceleration is 0 within rounding.
-inline bool is_weightless(const Geometry& at, double gravity_into_ground, double omega) {
-    return nearly_equal(-at.ddh * omega * omega, gravity_into_ground);
+// The size of its change by theta, with h''' = -(3 rho/h + 1) h'.
+inline double free_acceleration_rate(const Geometry& at, double omega) {
+    return (3 * at.rho / at.h + 1) * std::abs(at.dh) * square(omega);
+}
+
+// Whether the free acceleration is 0 within rounding and a blur of theta [rad].
+inline bool is_weightless(const Geometry& at, double gravity_into_ground, double omega,
+                          double blur = 0.0) {
+    return std::abs(free_acceleration(at, gravity_into_ground, omega)) <=
+           equal_ulps * epsilon * gravity_into_ground + free_acceleration_rate(at, omega) * blur;
 }
 
 // Units of a body's own size, powers of two: a number in them keeps its bits. Results computed in
@@ -226,10 +251,15 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
-// The largest energies, by m g times the long semi-axis: of a scene that is typed, and of a state
-// that a motion has reached, which may have gained energy down a slope.
+// Where a scene comes from: typed, or the state that a motion has reached. The latter may have
+// gained energy down a slope, and be about to hit the ground that it touches.
+enum class Origin { typed, reached };
+
+// The largest energy, by m g times the long semi-axis.
 inline constexpr double most_energy = 1e12;
-inline constexpr double most_energy_reached = 1e100;
+constexpr double most_energy_of(Origin origin) {
+    return origin == Origin::typed ? most_energy : 1e100;
+}
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_length(std::string_view name, double value);
@@ -239,14 +269,14 @@ void validate_motion(const Body& body, double theta, double omega, double most =
 void validate_slope(double slope);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
-void validate(const Scene& scene, double most = most_energy);
+void validate(const Scene& scene, Origin origin = Origin::typed);
 
 // The impulse must be finite, meet the body and not make it too fast.
 void validate_blow(const Scene& scene, const Geometry& at);
 
 // The state before any impulse, by the geometry at its angle. Absent values are filled in; values
-// within 8 ulp of touching or of rolling are set exactly. Throws if the body is under the ground or
-// moves into it.
+// within rounding of touching or of rolling are set exactly. A body that touches the ground and
+// moves into it flies: it hits at once. Throws if the body is under the ground.
 State state_before_impulse(const Scene& scene, const Geometry& at);
 
 }  // namespace rolling_ellipse

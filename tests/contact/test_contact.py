@@ -277,6 +277,16 @@ def test_a_jam_on_the_way(scene: Scene) -> None:
     assert moved == pytest.approx(expected, abs=1e-13 * speed)
 
 
+@pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
+def test_a_body_that_has_jammed_stays_so_without_another_event(scene: Scene) -> None:
+    """There B = 0 and c = 0: rounding must not let it fly."""
+    motion = simulate(scene, 10.0)
+    jam = motion.events[-1]
+    assert jam.kind is EventKind.JAM and jam.t > 0
+    later = simulate(motion.scene_at(jam.t), 1.0)
+    assert later.status is Status.JAMMED and not later.events
+
+
 NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
     (5.0, 1.0, 2.6, 100.0), (1.0, 0.05, 6.0, 100.0), (1.0, 0.05, 5.0, 50.0),
     (5.0, 1.0, 2.45, 60.0), (5.0, 1.0, 3.0, 1000.0),

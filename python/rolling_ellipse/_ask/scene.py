@@ -106,8 +106,8 @@ class Scene(FieldsOnly, Listed):
     z : float, optional
         Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
     x_dot, z_dot : float, optional
-        Velocity of the centre [m/s]. On the ground the default is that of rolling, and values
-        within 8 ulp of it count as rolling; in the air the default is 0.
+        Velocity of the centre [m/s]. On the ground the default is that of rolling, and x_dot within
+        32 ulp and z_dot within 8 ulp of it count as rolling; in the air the default is 0.
     impulse : Impulse, optional
         Blow received at t = 0; its line of action must meet the body.
 
@@ -118,6 +118,13 @@ class Scene(FieldsOnly, Listed):
         blow misses it.
     TypeError
         If an argument is not a number.
+
+    Notes
+    -----
+    A state that a motion returns (a sample, an end, the state after an event) is a start: its
+    numbers are accepted, and the motion continues in the mode that follows, without the event that
+    has happened. Where a start is at the limit of its mode, abs(F) = mu N, N = 0 or slip 0 to
+    within eight roundings, the next moment decides, without an event.
     """
 
     _units: ClassVar[dict[str, str]] = SCENE_UNITS
@@ -279,7 +286,8 @@ def _require_one_blow(impulse: Any) -> None:
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
     """Return the scene of all its arguments, in a state that some motion has reached.
 
-    Down a slope its energy may be larger than that of a scene made by its constructor.
+    Down a slope its energy may be larger than that of a scene made by its constructor, and it may
+    be about to hit the ground.
     """
     scene = object.__new__(Scene)
     scene._hold({field.name: arguments[field.name] for field in fields(Scene)}, reached=True)

@@ -110,6 +110,9 @@ def ends(
 ) -> Ends:
     """Return only the ends of many motions, with the bits of `simulate`.
 
+    The states are starts: in a mapping of scenes, as theta, omega, x, z, x_dot and z_dot, they
+    continue the motions.
+
     Parameters
     ----------
     scenes : iterable of Scene, or mapping
