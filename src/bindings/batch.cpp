@@ -237,7 +237,7 @@ Array friction_table(const Array& scenes, bool to_rest, int workers) {
     Array needed = vector(n);
     double* const to = needed.mutable_data();
     run_each(n, workers, [&](py::ssize_t i, const auto&) {
-        const Scene scene = scene_in(scenes.data(i, 0), most_energy);
+        const Scene scene = scene_in(scenes.data(i, 0), Origin::typed);
         to[i] = to_rest ? friction_to_rest(scene) : required_friction(scene);
     });
     return needed;

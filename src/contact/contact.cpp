@@ -230,6 +230,7 @@ class ContactRun {
         state_ = after;
         // A rebound slower than a rounding of the speed of a fall counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
+            state_.z_dot = at.dh * state_.omega;
             return go_on_with(continuation(scene_, state_), EventKind::impact, before);
         }
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
@@ -248,6 +249,11 @@ class ContactRun {
 
     void go_on_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
+        if (t_ == 0 && motion_.events.empty()) {  // the start is at the limit of rolling: a tie
+            next_ = next;
+            if (is_stuck()) note(EventKind::jam, state_);
+            return;
+        }
         go_on_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
 

@@ -265,28 +265,33 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
 }
 
 // Whether a contact that rolls at the limit of its law, to within rounding of the forces and a blur
-// of theta, breaks it in the next moment: with finite friction |F| = mu N, else N = 0.
+// of theta, breaks it in the next moment: with finite friction |F| = mu N, else N = 0. The moment
+// is the first that rounding can tell.
 bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
                  const ContactForce& force, double blur) {
-    constexpr double turn = 0x1p-20;  // to the next moment [rad]
+    constexpr double least_turn = 0x1p-20;  // to the next moment [rad]
+    constexpr double most_turn = 0x1p-8;
     const RollingEquation rolling(scene.body(), scene.slope);
     const GroundGravity gravity = scene.ground_gravity();
     const double omega2 = square(state.omega);
     const double pull = rolling.acceleration(at.sin, at.cos, state.omega);
-    const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
-    const double heading = side_of(turns_back ? pull : state.omega);
-    const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * pull * heading * turn;
-    const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
-    const double side = side_of(force.friction);
-    const double now = law_margin(force, scene.friction, side);
-    const double then =
-        law_margin(rolling.force(scene.mass, later, std::sqrt(later_omega2)), scene.friction, side);
     const ContactForce terms{scene.mass * (gravity.into + std::abs(at.ddh) * omega2),
                              scene.mass * (std::abs(gravity.along) + std::abs(at.dh) * omega2)};
     const double rounding =
         law_rounding * (law_size(force, scene.friction) + law_size(terms, scene.friction));
-    const double by_blur = std::abs(then - now) / turn * blur;
-    return std::abs(now) <= rounding + by_blur && then < now - rounding;
+    for (double turn = least_turn; turn <= most_turn; turn *= 16) {
+        const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
+        const double heading = side_of(turns_back ? pull : state.omega);
+        const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * pull * heading * turn;
+        const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
+        const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2));
+        const double side = side_of(next.friction);  // at the limit also that of F, if F is not 0
+        const double now = law_margin(force, scene.friction, side);
+        const double change = law_margin(next, scene.friction, side) - now;
+        if (std::abs(now) > rounding + std::abs(change) / turn * blur) return false;
+        if (std::abs(change) > rounding) return change < 0;
+    }
+    return false;
 }
 
 // The continuation of a state, decided by a geometry and a slip, which may be those a moment later.

@@ -4,6 +4,7 @@ Ends, samples, states after events and scenes on the way are handed on as number
 `scene_at`, and in arrays. Among bounces that are summed a start may count one impact more.
 """
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -84,13 +85,45 @@ def left_of(motion: Trajectory, t: float) -> float:
     return motion.t_end * (1 + more) - t
 
 
-def assert_continues(whole: Trajectory, begin: int, later: Trajectory, more: bool) -> None:
-    """The later motion has the events of the whole one from `begin` on, and at most one impact
-    more if bounces were summed; without a rebound it stands for the event that ends them."""
+def continues(whole: Trajectory, begin: int, later: Trajectory, more: bool) -> bool:
+    """Whether the later motion has the events of the whole one from `begin` on, and at most one
+    impact more if bounces were summed; one without a rebound ends them itself."""
     left, found = kinds(whole, begin), kinds(later)
-    if more and found[:1] == [EventKind.IMPACT] and found[1:] in (left, left[1:]):
-        return
-    assert found == left
+    if more and found != left and found[:1] == [EventKind.IMPACT]:
+        ended = later.events[0].state_after.mode
+        if ended is not Mode.FLIGHT and left and ended is whole.events[begin].state_after.mode:
+            left = left[1:]
+        found = found[1:]
+    return found == left and (later.status is Status.JAMMED) == (whole.status is Status.JAMMED)
+
+
+def events_are_known(motion: Trajectory) -> bool:
+    """Whether roundings of its scene leave the events of a motion as they are."""
+    span = motion.span
+    return all(
+        kinds(simulate(each, span, **ENOUGH)) == kinds(motion) for each in beside(motion.scene)
+    )
+
+
+def jams_by_roundings(motion: Trajectory, t: float) -> bool:
+    """Whether the start at t jams, and does not if a number of it changes by its roundings or the
+    time by some: where the law of a slide fails, the slip changes with an infinite slope."""
+    start = motion.scene_at(t)
+    earlier = (motion.scene_at(t - n * math.ulp(t)) for n in range(1, 17))
+
+    def jams(each: Scene) -> bool:
+        return simulate(each, 0.0, **ENOUGH).status is Status.JAMMED
+
+    return jams(start) and not all(jams(each) for each in itertools.chain(earlier, beside(start)))
+
+
+def hits(scene: Scene, impact: Any) -> bool:
+    """Whether a body moves into the ground by more than the roundings of h'(theta) omega and of the
+    speed of a fall, below which a rebound counts as none."""
+    state = impact.state_before
+    rate = geometry.support_slope(state.theta, a=scene.a, b=scene.b) * state.omega
+    fall = math.sqrt(scene.gravity * min(scene.a, scene.b))
+    return bool(state.z_dot - rate < -64 * (math.ulp(rate) + math.ulp(fall)))
 
 
 @settings(suppress_health_check=list(HealthCheck))
@@ -163,6 +196,8 @@ def test_every_event_is_a_start(data: Any) -> None:
         event(f"{each.kind.name} to {each.state_after.mode.name}")
         if each.kind is EventKind.JAM and each.t == 0:
             continue  # every start that jams has its JAM at t = 0
+        if each.kind is EventKind.IMPACT and not hits(scene, each):
+            continue
         summed = are_summed(scene, each.state_after)
         starts = [
             handed_on(scene, each.state_after),
@@ -171,31 +206,34 @@ def test_every_event_is_a_start(data: Any) -> None:
         ]
         for start in starts:
             later = simulate(start, left_of(motion, each.t), **ENOUGH)
-            assert_continues(motion, place, later, summed)
-            assert (later.status is Status.JAMMED) == (motion.status is Status.JAMMED)
+            same = continues(motion, place, later, summed)
+            assert same or not events_are_known(motion), (start, later.events)
 
 
 @settings(suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_a_motion_cut_at_an_event_continues_with_it(data: Any) -> None:
+def test_a_motion_cut_at_an_event_continues_with_what_is_due(data: Any) -> None:
+    """An impact is the first event. Another change may happen as a tie, without an event."""
     scene = data.draw(turned_scenes())
     span = data.draw(powers(-1, 1.2)) * clock(scene)
     motion = simulate(scene, span, **ENOUGH)
     count = len(motion.events)
     assume(2 <= count < ENOUGH["max_events"])
-    # A friction of the size of roundings does not tell when a slip reverses.
-    assume(scene.friction == 0 or scene.friction > 1e-9)
     for most in range(1, min(count, 6)):
         cut = simulate(scene, span, **{**ENOUGH, "max_events": most})
         due = motion.events[most]
         assert cut.status is Status.MAX_EVENTS and cut.t_end == due.t
         event(f"{due.kind.name} from {due.state_before.mode.name}")
         later = simulate(cut.scene_at(cut.t_end), left_of(motion, cut.t_end), **ENOUGH)
-        summed = due.state_before.mode is Mode.FLIGHT and due.kind is not EventKind.IMPACT
-        if summed:
-            continue  # it ends without an impact of its own, or after one more
-        assert_continues(motion, most, later, summed)
-        assert later.events[0].t <= 1e-6 * span
+        is_impact = due.kind is EventKind.IMPACT
+        if jams_by_roundings(cut, cut.t_end) or (is_impact and not hits(scene, due)):
+            continue
+        summed = due.state_before.mode is Mode.FLIGHT and not is_impact
+        same = any(continues(motion, most + k, later, summed) for k in (0, int(not is_impact)))
+        assert same or not events_are_known(motion), later.events
+        if is_impact:
+            assert kinds(later)[0] is EventKind.IMPACT
+            assert later.events[0].t <= 1e-9 * span
 
 
 @settings(suppress_health_check=list(HealthCheck))
@@ -205,9 +243,10 @@ def test_only_scene_at_starts_with_an_impact(data: Any) -> None:
     typed by hand move into the ground."""
     scene = data.draw(turned_scenes())
     motion = simulate(scene, data.draw(powers(-1, 1)) * clock(scene), **ENOUGH)
-    hits = [each for each in motion.events if each.kind is EventKind.IMPACT and each.t > 0]
-    assume(hits and len(motion.events) < ENOUGH["max_events"])
-    hit = hits[0]
+    impacts = [each for each in motion.events if each.kind is EventKind.IMPACT and each.t > 0]
+    assume(impacts and len(motion.events) < ENOUGH["max_events"])
+    hit = impacts[0]
+    assume(hits(scene, hit))
     place = list(motion.events).index(hit)
     assume(hit.t - (motion.events[place - 1].t if place else 0) > 1e-9 * hit.t)
     before = motion.scene_at(math.nextafter(hit.t, 0.0))

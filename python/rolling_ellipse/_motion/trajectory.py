@@ -14,14 +14,13 @@ from .. import _core
 from .._ask.check import FloatArray, array, choice, number, shown
 from .._ask.habits import MEANT, meant
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
-from .._ask.scene import Scene, require_scene
+from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events
 from .methods import bind_methods
 from .quantities import MODE, QUANTITIES
-from .restart import scene_at
 from .samples import (
     ContactSamples,
     Pair,
@@ -57,6 +56,8 @@ if TYPE_CHECKING:
 
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
+# Quantities that the ground leaves free, by modes
+_FREE = {_core.Mode.SLIDING: ("x_dot",), _core.Mode.FLIGHT: ("z", "x_dot", "z_dot")}
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
@@ -353,17 +354,23 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that continues from time t [s]; give it an impulse with `Scene.replace`.
 
-        At the time of an event it continues in the mode after the event; at the `t_end` of a
-        motion that ended by ``max_events``, with the next event. A body on the ground that moves
-        into it hits it at t = 0; no other scene may start so. Bounces too low to be resolved, which
-        a motion sums after an impact, are summed after one more impact by a scene among them.
+        At the time of an event it continues in the mode after the event. At the `t_end` of a motion
+        that ended by ``max_events`` the next event is due. If it is an impact, it is the first
+        event of the new motion, at t = 0 or a rounding later: no other scene may start by moving
+        into the ground. Any other change happens without an event where the state is at the limit
+        of its mode to within rounding, else a moment later. Bounces too low to be resolved, which a
+        motion sums after an impact, are summed after one more impact by a scene among them.
 
         Raises
         ------
         ValueError
             If t is outside of [0, t_end].
         """
-        return scene_at(self, number("t", t))
+        at = self.sol(number("t", t))
+        free = _FREE.get(_core.Mode(int(at.mode[0])), ())
+        state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x", *free)}
+        constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
+        return reached_scene(self.scene.__getstate__() | constrained | state)
 
     # -- methods of other modules, bound by `methods` ---------------------------------------------
 
