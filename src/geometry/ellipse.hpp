@@ -46,6 +46,14 @@ inline Geometry geometry(const Axes& axes, double theta) {
     return geometry(axes, std::sin(theta), std::cos(theta));
 }
 
+// h h'' - h'^2 by factors, their order such that a mirror image has the same bits.
+inline double bend_of_height(const Axes& axes, const Geometry& at) {
+    const auto [a, b] = axes;
+    const double across = b * at.cos;
+    const double along = a * at.sin;
+    return (a - b) * (a + b) * ((across - along) * (across + along)) / square(at.h);
+}
+
 // A position by its angle phi from the flat one: phi is theta for a >= b, otherwise theta - pi/2.
 // Half turns, after which the ellipse is the same, fold it to cos phi >= 0.
 struct FlatView {

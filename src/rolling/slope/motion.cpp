@@ -5,6 +5,7 @@
 
 #include "numerics/bisect.hpp"
 #include "numerics/wide.hpp"
+#include "rolling/force.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -248,13 +249,14 @@ double acceleration_at(const SlopeBody& body, const Geometry& at, double omega) 
     return drive / inertia_about_contact(body.gyration2, at);
 }
 
-// Physics (20); RollingEquation has the same forces in SI units.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
-    const double omega2 = square(place.omega);
-    const double turning = acceleration_at(body, at, place.omega);
-    return {body.gravity.into + at.dh * turning + at.ddh * omega2,
-            at.h * turning + at.dh * omega2 - body.gravity.along};
+    const double w = bend_of_height({body.long_axis, body.short_axis}, at);
+    const auto& [into, along] = body.gravity;
+    const CentreOfRolling<double> centre(body.gyration2, into, along, at.h, at.dh, at.ddh, w,
+                                         square(place.omega));
+    const auto [normal, friction] = centre.force_per_mass();
+    return {normal, friction};
 }
 
 }  // namespace rolling_ellipse

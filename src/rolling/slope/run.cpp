@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rolling/force.hpp"
 #include "rolling/slope/part.hpp"
 
 namespace rolling_ellipse {
@@ -292,12 +293,12 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
         const Pack over_h3 = 1 / (h * h2);
         const Pack dh = body.c2 * at.sin * at.cos * at.over / h;
         const Pack ddh = body.c2 * (b * cos2 - a * sin2) * (b * cos2 + a * sin2) * over_h3;
-        const Pack rho = square(a * b) * over_h3;
-        const Pack over_inertia = 1 / (body.gyration2 + h2 + dh * dh);
-        const Pack omega2 = 2 * (load(&part.level[i]) + gained) * over_inertia;
-        const Pack turning = (h * along - dh * (into + rho * omega2)) * over_inertia;
-        store(into + dh * turning + ddh * omega2, &found.normal[i]);
-        store(h * turning + dh * omega2 - along, &found.friction[i]);
+        const Pack w = body.c2 * (b * b * cos2 - a * a * sin2) * over_h3 * h;
+        const Pack omega2 = 2 * (load(&part.level[i]) + gained) / (body.gyration2 + h2 + dh * dh);
+        const CentreOfRolling<Pack> centre(body.gyration2, into, along, h, dh, ddh, w, omega2);
+        const auto force = centre.force_per_mass();
+        store(force.normal, &found.normal[i]);
+        store(force.along, &found.friction[i]);
     }
     return found;
 }

@@ -8,6 +8,7 @@
 #include "geometry/ellipse.hpp"
 #include "integrator/system.hpp"
 #include "numerics/numbers.hpp"
+#include "rolling/force.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -77,8 +78,7 @@ class RollingEquation {
                 gravity_.into * at.h - gravity_.along * x};
     }
 
-    // Accelerations of theta and of the centre, and the contact force of a body with a mass:
-    // physics (20), Newton's law for the centre.
+    // Accelerations of theta and of the centre.
     struct Accelerations {
         double theta;
         double x;
@@ -86,16 +86,14 @@ class RollingEquation {
     };
 
     Accelerations accelerations(const Geometry& at, double omega) const {
-        const double omega2 = omega * omega;
-        const double omega_dot = acceleration(at.sin, at.cos, omega);
-        return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+        const auto [up, along] = centre(at, omega).acceleration();
+        return {acceleration(at.sin, at.cos, omega), along, up};
     }
 
-    ContactForce force(double mass, const Accelerations& of_centre) const {
-        return {mass * (gravity_.into + of_centre.z), mass * (of_centre.x - gravity_.along)};
-    }
+    // The contact force on a body with a mass.
     ContactForce force(double mass, const Geometry& at, double omega) const {
-        return force(mass, accelerations(at, omega));
+        const auto [normal, friction] = centre(at, omega).force_per_mass();
+        return {mass * normal, mass * friction};
     }
 
     bool is_level() const { return gravity_.along == 0; }
@@ -105,6 +103,17 @@ class RollingEquation {
     }
 
   private:
+    CentreOfRolling<double> centre(const Geometry& at, double omega) const {
+        return {gyration2_,
+                gravity_.into,
+                gravity_.along,
+                at.h,
+                at.dh,
+                at.ddh,
+                bend_of_height(axes_, at),
+                omega * omega};
+    }
+
     struct Squares {
         double a2;
         double b2;
