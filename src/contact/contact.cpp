@@ -39,7 +39,7 @@ class ContactRun {
             checkpoint_();
             follow();
         }
-        return {std::move(motion_), *ending_, t_ * units_.time, counts_};
+        return {std::move(motion_), *ending_, now() * units_.time, counts_};
     }
 
   private:
@@ -50,11 +50,15 @@ class ContactRun {
         const bool touches = state_.z == geometry(axes(), state_.theta).h;
         recount(state_, {state_.theta, 0.0});
         if (state_.mode != Mode::flight) {
-            next_ = continuation(scene_, state_, true, blur);
-            if (is_stuck() && !next_.has_jammed) note(EventKind::jam, state_);
+            start_with(continuation(scene_, state_, true, blur));
         } else if (touches && gap_rate_ < 0) {
             hit(State(state_), geometry(axes(), state_.theta), gap_rate_);
         }
+    }
+
+    void start_with(const Continuation& next) {
+        next_ = next;
+        if (is_stuck() && !next_.has_jammed) note(EventKind::jam, state_);
     }
 
     Axes axes() const { return scene_.axes(); }
@@ -128,7 +132,7 @@ class ContactRun {
     void roll_on_slope() {
         SlopeFlow flow =
             slope_flow(scene_.body(), scene_.slope, state_.theta, state_.omega, state_.x);
-        const double left = t_end_ - t_;
+        const double left = time_left();
         const LawMeetings met = law_meetings(flow, friction_to_roll(), left);
         const double lasts = met.broken ? met.broken->time : infinity;
         prepare(flow, std::min(lasts, left));
@@ -147,7 +151,7 @@ class ContactRun {
     template <class Flow>
     void roll(Flow flow, double lasts) {
         if (lasts == infinity) {
-            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
+            validate_time(t_end_ * units_.time, (now() + longest_time(flow)) * units_.time);
         }
         const auto kept = std::make_shared<const Flow>(std::move(flow));
         if (lasts > 0) add_segment(kept);
@@ -162,7 +166,7 @@ class ContactRun {
         Slide slide = slide_from(scene_, state_, next_.side, sliding_on_);
         sliding_on_.reset();
         const long steps_left = settings_.max_steps - counts_.steps;
-        const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left}, checkpoint_);
+        const SlideStop stop = slide_on(slide, {time_left(), steps_left}, checkpoint_);
         const State last = end_of(slide);
         const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
@@ -214,19 +218,36 @@ class ContactRun {
     void fly() {
         const Flight flight{axes(), scene_.ground_gravity(), state_, gap_rate_};
         const auto [lasts, small_rate] = touch_down(flight);
-        State before = state_at(flight, t_ + lasts <= t_end_ ? lasts : t_end_ - t_);
+        State before = state_at(flight, is_over_after(lasts) ? time_left() : lasts);
         // Bounces down a slope may grow higher and higher, until the state is no longer finite.
         if (!is_finite(before)) return give_up(Ending::step_too_small, 0.0);
         add_segment(flight);
         if (!advance(lasts)) return;
-        before.theta = count_from_quarter(two_product(state_.omega, lasts) + state_.theta).high;
+        add_flight(flight, lasts, before);
         const Geometry at = geometry(axes(), before.theta);
         before.z = at.h;
         hit(before, at, small_rate ? *small_rate : gap_rate(before, at));
     }
 
+    // Puts what a flight adds to angle, x and x_dot into a state, with the low parts of the sums.
+    void add_flight(const Flight& flight, double lasts, State& state) {
+        const auto& [into, along] = flight.gravity;
+        const double moved = lasts * (flight.start.x_dot + 0.5 * along * lasts);
+        const DoubleDouble x = DoubleDouble{state_.x, low_.x} + (moved + lasts * low_.x_dot);
+        const DoubleDouble x_dot = DoubleDouble{state_.x_dot, low_.x_dot} + along * lasts;
+        const double low = low_.theta + lasts * low_.omega;
+        const DoubleDouble turned = two_product(state_.omega, lasts) + low;
+        turned_ = turned_ + -low_.theta;
+        const DoubleDouble theta = count_from_quarter(turned + state_.theta);
+        state.theta = theta.high;
+        state.x = x.high;
+        state.x_dot = x_dot.high;
+        low_ = {theta.low, low_.omega, x.low, x_dot.low};
+    }
+
     void hit(const State& before, const Geometry& at, double approach) {
-        const auto [after, rebound] = collision(scene_, at, before, approach);
+        const auto [after, low, rebound] =
+            collision(scene_, at, before, approach, Restitution::stronge, low_);
         state_ = after;
         // A rebound slower than a rounding of the speed of a fall counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
@@ -236,6 +257,7 @@ class ContactRun {
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const Bounce bounce{rebound, rebound / -approach, c};
         go_on_with({Mode::flight}, EventKind::impact, before, rebound);
+        low_ = low;
         if (!ending_ && settles(scene_, state_.omega, bounce, rest_speed_)) settle(bounce);
     }
 
@@ -249,17 +271,15 @@ class ContactRun {
 
     void go_on_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
-        if (t_ == 0 && motion_.events.empty()) {  // the start is at the limit of rolling: a tie
-            next_ = next;
-            if (is_stuck()) note(EventKind::jam, state_);
-            return;
-        }
+        // A start at the limit of rolling is a tie.
+        if (now() == 0 && motion_.events.empty()) return start_with(next);
         go_on_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
 
     void go_on_with(const Continuation& next, EventKind kind, const State& before,
                     double rebound = 0.0) {
         next_ = next;
+        low_ = {};
         gap_rate_ = rebound;
         state_.mode = next.mode;
         note(kind, before);
@@ -270,7 +290,7 @@ class ContactRun {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
             ending_ = Ending::max_events;
         } else {
-            motion_.events.push_back({t_ * units_.time, kind, in_full(before), in_full(state_)});
+            motion_.events.push_back({now() * units_.time, kind, in_full(before), in_full(state_)});
         }
     }
 
@@ -281,27 +301,33 @@ class ContactRun {
 
     template <class Law>
     void add_segment(Law law) {
-        motion_.segments.push_back({t_, std::move(law), turned_, axes_exchanged_});
+        motion_.segments.push_back({now(), std::move(law), turned_, axes_exchanged_});
+    }
+
+    double now() const { return static_cast<double>(t_); }
+    double time_left() const { return static_cast<double>(-t_ + t_end_); }
+    bool is_over_after(double lasts) const {
+        return !(static_cast<double>(t_ + lasts) <= t_end_);  // NaN if it lasts for ever
     }
 
     // Advances the time to the end of the segment just added; false if the motion is over before.
     bool advance(double lasts) {
-        if (t_ + lasts > t_end_) {
+        if (is_over_after(lasts)) {
             finish();
             return false;
         }
-        t_ += lasts;
+        t_ = t_ + lasts;
         return true;
     }
 
     void finish() {
-        t_ = t_end_;
+        t_ = {t_end_, 0.0};
         ending_ = Ending::completed;
     }
 
     // Ends the motion at the time `lasts` after the begin of its last segment.
     void give_up(Ending ending, double lasts) {
-        t_ += lasts;
+        t_ = t_ + lasts;
         ending_ = ending;
     }
 
@@ -316,9 +342,10 @@ class ContactRun {
     Motion motion_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide, if another one follows it
     DoubleDouble turned_;                   // quarter turns and roundings taken off theta
+    LowParts low_;                          // from impact to impact; turned_ has that of theta
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
-    double t_ = 0.0;
+    DoubleDouble t_;
     StepCounts counts_;
     std::optional<Ending> ending_;
 };

@@ -217,8 +217,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
     const Curvature curvature(flight);
     // Whether the flight starts on the ground without a velocity away from it.
     const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
-    // The height of the centre above which there is no contact, however h is rounded.
-    const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
+    const double tall = most_height(flight.axes);
     // The time by which a contact is certain, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));
@@ -275,6 +274,10 @@ State state_at(const Flight& flight, double t) {
             s.x_dot + flight.gravity.along * t,
             s.z_dot - flight.gravity.into * t,
             flight.mode};
+}
+
+double most_height(const Axes& axes) {
+    return std::max(axes.a, axes.b) * (1 + equal_ulps * epsilon);
 }
 
 Landing touch_down(const Flight& flight) {
@@ -336,10 +339,10 @@ Settling settling(const Scene& scene, const State& start, const Bounce& first) {
         turned += moving.omega * hop;
         moving.x_dot += gained;
         moving.z_dot = at.dh * moving.omega - speed;
-        const auto [after, next] = collision(scene, at, moving, -speed);
-        moving = after;
-        if (!(next < largest_ratio * speed)) break;
-        speed = std::max(next, 0.0);
+        const Collision next = collision(scene, at, moving, -speed);
+        moving = next.after;
+        if (!(next.rebound < largest_ratio * speed)) break;
+        speed = std::max(next.rebound, 0.0);
     }
     const DoubleDouble angle = two_sum(start.theta, turned);
     const double theta = angle.high;

@@ -19,6 +19,9 @@ struct Flight {
 
 State state_at(const Flight& flight, double t);
 
+// The height of the centre above which the body does not touch the ground, however h is rounded.
+double most_height(const Axes& axes);
+
 // The first contact of a flight: the time since its start and, after a small turn, the rate of the
 // gap, which then has more digits than the velocities. A start in contact counts as leaving the
 // ground, with its velocity or its acceleration.

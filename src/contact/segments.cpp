@@ -22,11 +22,6 @@ void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSam
     FlowSampler{flow, n}(times, n, samples);
 }
 
-// The height of the centre above which the body does not touch the ground, however h is rounded.
-double most_height(const Axes& axes) {
-    return std::max(axes.a, axes.b) * (1 + equal_ulps * epsilon);
-}
-
 // Rounding does not put a flying body under the ground; a contact that grazes stays on it.
 void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
     const double tall = most_height(flight.axes);

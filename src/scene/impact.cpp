@@ -21,10 +21,11 @@ struct Contact {
 
 // u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) has more digits for
 // a light body that turns fast, u - v gtn/gtt for a body that hardly moves into the ground.
-Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate) {
+Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate,
+                const LowParts& low = {}) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
-    Contact c{slip_velocity(state, at),
+    Contact c{slip_velocity(state, at) + (low.x_dot - at.h * low.omega),
               gap_rate,
               0.0,
               inverse_mass + at.h * at.h * inverse_inertia,
@@ -156,35 +157,58 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
     return path.result(sticks);
 }
 
+// Adds a change to a number with its low part.
+void add(double change, double& number, double& low) {
+    const DoubleDouble sum = DoubleDouble{number, low} + change;
+    number = sum.high;
+    low = sum.low;
+}
+
 // The gap rate afterwards is exactly the rebound, and exactly v = 0 if the contact sticks. The
 // angular momentum about the contact, which no reaction changes, gives the sticking angular
 // velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
-// rebound. If the contact slips on, the impulse gives x_dot and omega. If little is left of the
-// omega of a light and fast body, the angular momentum about another point of the line of the
-// impulse, at the height of the centre, gives omega with more digits. If little is left of h'
-// omega, the impulse gives z_dot.
-void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
+// rebound; its change, by v and u before, where that is the smaller part. If the contact slips on,
+// the impulse gives x_dot and omega. If little is left of the omega of a light and fast body, the
+// angular momentum about another point of the line of the impulse, at the height of the centre,
+// gives omega with more digits. If little is left of h' omega, the impulse gives z_dot.
+void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
+           State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;
     const double pull = reaction.tangential / scene.mass;
     const double kick = reaction.normal / scene.mass;
     const double pushed = state.z_dot + kick;
     const double largest = 2 * (std::abs(state.z_dot) + kick);
+    const auto set_omega = [&](double omega) {
+        state.omega = zero_if_negligible(omega);
+        low.omega = 0.0;
+    };
     if (reaction.sticks) {
-        state.omega = zero_if_negligible(
-            (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
-            inertia_about_contact(k2, at));
-        state.x_dot = at.h * state.omega;
+        const double inertia = inertia_about_contact(k2, at);
+        const double gained = (at.h * c.v + at.dh * (c.u - reaction.rebound)) / inertia;
+        if (std::abs(gained) < 0.5 * std::abs(state.omega)) {
+            add(gained, state.omega, low.omega);
+        } else {
+            set_omega(
+                (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
+                inertia);
+        }
+        const DoubleDouble x_dot = two_product(at.h, state.omega);
+        state.x_dot = x_dot.high;
+        low.x_dot = x_dot.low + at.h * low.omega;
     } else {
         const double lever = at.dh + at.h * (pull / kick);
         const double turned = (at.h * pull + at.dh * kick) / k2;
         const double about = k2 + at.dh * lever;
         const double terms = k2 * std::abs(state.omega) +
                              std::abs(lever) * (std::abs(state.z_dot) + reaction.rebound);
-        state.omega = zero_if_negligible(
-            terms < std::abs(about) * (std::abs(state.omega) + std::abs(turned))
-                ? (k2 * state.omega + lever * (state.z_dot - reaction.rebound)) / about
-                : state.omega - turned);
-        state.x_dot += pull;
+        if (std::abs(turned) < 0.5 * std::abs(state.omega)) {
+            add(-turned, state.omega, low.omega);
+        } else {
+            set_omega(terms < std::abs(about) * (std::abs(state.omega) + std::abs(turned))
+                          ? (k2 * state.omega + lever * (state.z_dot - reaction.rebound)) / about
+                          : state.omega - turned);
+        }
+        add(pull, state.x_dot, low.x_dot);
     }
     const double turning = at.dh * state.omega;
     state.z_dot = std::abs(turning) > largest ? pushed : turning + reaction.rebound;
@@ -243,7 +267,8 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
     const State free = state;
-    apply(scene, at, reaction, state);
+    LowParts low;
+    apply(scene, at, c, reaction, state, low);
     result.gap_rate = reaction.rebound;
     if (!is_struck(scene) && reaction.sticks) {
         result.slip_removed = c.v;
@@ -296,12 +321,12 @@ double gap_rate(const State& state, const Geometry& at) {
 }
 
 Collision collision(const Scene& scene, const Geometry& at, const State& before, double gap_rate,
-                    Restitution law) {
-    const Contact c = contact(scene, at, before, gap_rate);
-    if (!(c.u < 0)) return {before, c.u};
+                    Restitution law, const LowParts& low) {
+    const Contact c = contact(scene, at, before, gap_rate, low);
+    if (!(c.u < 0)) return {before, low, c.u};
     const Reaction reaction = reaction_to(scene, c, scene.restitution, law);
-    Collision found{before, reaction.rebound};
-    apply(scene, at, reaction, found.after);
+    Collision found{before, low, reaction.rebound};
+    apply(scene, at, c, reaction, found.after, found.low);
     return found;
 }
 

@@ -48,14 +48,24 @@ double energy_lost(const Scene& scene, const State& before, const State& after);
 // The rate of the gap: the velocity of the lowest point away from the ground.
 double gap_rate(const State& state, const Geometry& at);
 
+// The low parts of numbers of a state. Many impacts that change a number by nearly the same amount
+// would otherwise add their roundings, which are then nearly the same, too.
+struct LowParts {
+    double theta = 0.0;
+    double omega = 0.0;
+    double x = 0.0;
+    double x_dot = 0.0;
+};
+
 // The state just after the collision of a body that touches the ground, with the mode it had, and
 // the rate of its gap. The rate before is an argument, as a low hop has more digits of it than
 // z_dot.
 struct Collision {
     State after;
+    LowParts low;
     double rebound;
 };
 Collision collision(const Scene& scene, const Geometry& at, const State& before, double gap_rate,
-                    Restitution law = Restitution::stronge);
+                    Restitution law = Restitution::stronge, const LowParts& low = {});
 
 }  // namespace rolling_ellipse
