@@ -71,7 +71,7 @@ class ContactRun {
             theta = {rest, 0.0};
         }
         const QuarterView angle = quarter_view(theta);
-        turned_ = turned_ + half_pi_exact * angle.quarters + angle.rest.low;
+        turned_ = turned_ + half_pi_exact * angle.quarters;
         if (is_odd(angle.quarters)) {
             std::swap(scene_.a, scene_.b);
             axes_exchanged_ = !axes_exchanged_;
@@ -237,7 +237,6 @@ class ContactRun {
         const DoubleDouble x_dot = DoubleDouble{state_.x_dot, low_.x_dot} + along * lasts;
         const double low = low_.theta + lasts * low_.omega;
         const DoubleDouble turned = two_product(state_.omega, lasts) + low;
-        turned_ = turned_ + -low_.theta;
         const DoubleDouble theta = count_from_quarter(turned + state_.theta);
         state.theta = theta.high;
         state.x = x.high;
@@ -301,7 +300,7 @@ class ContactRun {
 
     template <class Law>
     void add_segment(Law law) {
-        motion_.segments.push_back({now(), std::move(law), turned_, axes_exchanged_});
+        motion_.segments.push_back({now(), std::move(law), turned_ + low_.theta, axes_exchanged_});
     }
 
     double now() const { return static_cast<double>(t_); }
@@ -341,8 +340,8 @@ class ContactRun {
     const double rest_speed_;
     Motion motion_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide, if another one follows it
-    DoubleDouble turned_;                   // quarter turns and roundings taken off theta
-    LowParts low_;                          // from impact to impact; turned_ has that of theta
+    DoubleDouble turned_;                   // quarter turns taken off theta
+    LowParts low_;                          // of state_, from impact to impact
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
     DoubleDouble t_;

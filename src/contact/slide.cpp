@@ -328,7 +328,6 @@ Slide slide_from(const Scene& scene, const State& start, double side,
     if (end_of_other) {
         const double rest = end_of_other->angle.low;
         slide.last.angle = slide.last.angle + rest;
-        slide.theta_base = slide.theta_base + -rest;
         slide.last.omega = end_of_other->omega;
         slide.last.x_dot = end_of_other->x_dot;
         slide.last.energy = end_of_other->energy;

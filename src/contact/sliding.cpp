@@ -349,13 +349,14 @@ State with_angle(const Scene& scene, State state, const Axes& new_axes, double t
         return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
     };
     const double omega = state.omega;
+    // In the air and without friction only gravity changes x_dot. A flight that has just begun by
+    // the acceleration of the gap is not yet in the air.
+    const bool touches = state.z == before.h && state.z_dot == before.dh * omega;
+    const bool by_contact = scene.friction != 0 && (state.mode != Mode::flight || touches);
     state.theta = theta;
     state.z = kept(state.z, before.h, after.h);
     state.z_dot = kept(state.z_dot, before.dh * omega, after.dh * omega);
-    // In the air and without friction only gravity changes x_dot.
-    if (state.mode != Mode::flight && scene.friction != 0) {
-        state.x_dot = kept(state.x_dot, before.h * omega, after.h * omega);
-    }
+    if (by_contact) state.x_dot = kept(state.x_dot, before.h * omega, after.h * omega);
     return state;
 }
 
