@@ -167,9 +167,11 @@ class ContactRun {
         sliding_on_.reset();
         const long steps_left = settings_.max_steps - counts_.steps;
         const SlideStop stop = slide_on(slide, {time_left(), steps_left}, checkpoint_);
-        const State last = end_of(slide);
+        State last = end_of(slide);
         const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
+        if (stop == SlideStop::slip_vanishes) end.omega = omega_without_slip(slide);
+        last.omega = double(end.omega);
         const double lasts = double(end.time);
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));

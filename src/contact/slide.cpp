@@ -352,6 +352,18 @@ State end_of(const Slide& slide) { return sample_at(slide, slide.last).state; }
 
 DoubleDouble angle_at_end(const Slide& slide) { return slide.theta_base + slide.last.angle; }
 
+DoubleDouble omega_without_slip(const Slide& slide) {
+    const auto& [angle, omega, slip, x_dot, path, time, energy] = slide.last;
+    double turning = std::abs(omega.high);
+    double moving = std::abs(x_dot.high);
+    for (const SlidePiece& piece : slide.pieces) {
+        turning = std::max(turning, std::abs(piece.centre.omega.high));
+        moving = std::max(moving, std::abs(piece.centre.x_dot.high));
+    }
+    const double h = geometry(slide.body.axes, angle).h;
+    return moving < h * turning ? DoubleDouble{double(x_dot) / h, 0.0} : omega;
+}
+
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples) {
     const auto first = slide.pieces.begin();
     for (std::size_t i = 0; i < n; ++i) {

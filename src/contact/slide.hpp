@@ -76,6 +76,10 @@ State end_of(const Slide& slide);
 // The angle of the body at the last point of the slide, with all digits.
 DoubleDouble angle_at_end(const Slide& slide);
 
+// The angular velocity at the last point, where the slip has vanished: by x_dot = h omega, if x_dot
+// has had smaller sizes, and so roundings, in the slide.
+DoubleDouble omega_without_slip(const Slide& slide);
+
 // States and forces at n times since the start, ascending.
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples);
 

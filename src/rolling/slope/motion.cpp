@@ -5,7 +5,7 @@
 
 #include "numerics/bisect.hpp"
 #include "numerics/wide.hpp"
-#include "rolling/force.hpp"
+#include "scene/centre_of_rolling.hpp"
 
 namespace rolling_ellipse {
 namespace {

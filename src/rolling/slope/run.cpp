@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rolling/force.hpp"
 #include "rolling/slope/part.hpp"
+#include "scene/centre_of_rolling.hpp"
 
 namespace rolling_ellipse {
 namespace {

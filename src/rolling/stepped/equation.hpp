@@ -8,7 +8,7 @@
 #include "geometry/ellipse.hpp"
 #include "integrator/system.hpp"
 #include "numerics/numbers.hpp"
-#include "rolling/force.hpp"
+#include "scene/centre_of_rolling.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -78,7 +78,7 @@ class RollingEquation {
                 gravity_.into * at.h - gravity_.along * x};
     }
 
-    // Accelerations of theta and of the centre.
+    // Accelerations of theta and of the centre, physics (18, 20).
     struct Accelerations {
         double theta;
         double x;
