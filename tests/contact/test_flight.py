@@ -260,3 +260,24 @@ def test_elastic_impacts_neither_gain_nor_lose_energy(
     first, last = motion.events[0], motion.events[-1]
     assert {event.kind for event in motion.events} == {EventKind.IMPACT}
     assert abs(last.energy_after / first.energy_before - 1) <= 2e-17 * impacts
+
+
+@pytest.mark.parametrize("theta", [0.3, 1e5])
+@pytest.mark.parametrize("slope", [0.0, -0.768, 0.4])
+def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> None:
+    """Without friction impacts change neither spin nor path. The bound is a rounding of each input,
+    and of the result, however many hops there are: equal hops would round alike."""
+    radius, fall, speed = 0.039, GRAVITY * math.sin(slope), -0.0357
+    scene = Scene(
+        radius, radius, slope=slope, theta=theta, omega=-7.99, x_dot=speed, z_dot=1.1e-3,
+        friction=0.0, restitution=1.0,
+    )  # fmt: skip
+    times = np.linspace(0.0, 0.3, 7)
+    motion = simulate(scene, times, model="contact")
+    assert len(motion.events) > 900
+    sizes = abs(speed) + 3 * abs(fall) * times
+    assert np.all(np.abs(motion.x_dot - (speed + fall * times)) <= 2 * EPS * sizes)
+    x = (speed + fall * times / 2) * times
+    assert np.all(np.abs(motion.x - x) <= 2 * EPS * sizes * times)
+    turned = scene.omega * times
+    assert np.all(np.abs(motion.theta - (theta + turned)) <= EPS * (theta + 2 * np.abs(turned)))

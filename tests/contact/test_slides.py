@@ -98,6 +98,26 @@ def test_a_frictionless_slide_creeps_over_the_tip_as_often_as_it_comes_there(
     assert np.max(np.abs(there.omega - creep)) <= 64 * EPSILON * creep + missed**2 / creep
 
 
+def test_a_slide_after_another_one_has_the_angle_of_its_body() -> None:
+    """A thin body slides, reverses its slip and passes its flat position, within 8 units.
+
+    The numbers are those of reference/contact_motion.py in 42 digits, units as in its table."""
+    scene = Scene(0.00388, 1.0, inertia=4.44e-4, friction=0.26, theta=2.06, omega=3.2, x_dot=0.237)
+    motion = simulate(scene, [0.75], model="contact")
+    kinds = ["REVERSE", "STICK", "SLIP", "REVERSE"]
+    assert [event.kind.name for event in motion.events] == kinds
+    known = {
+        "theta": (1.412982892815551894116766, 1.87e-15),
+        "omega": (-3.717972924359255415538428, 4.17e-15),
+        "x": (0.1588669015568735520815835, 2.78e-16),
+        "z": (0.1572058953230338618212159, 1.43e-15),
+        "x_dot": (-0.2339955212093542957774162, 3.66e-16),
+        "z_dot": (3.670624592798674701299433, 5.69e-15),
+    }
+    for name, (value, unit) in known.items():
+        assert abs(getattr(motion, name)[0] - value) <= 8 * unit, name
+
+
 def test_few_pieces_make_a_slide() -> None:
     """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")

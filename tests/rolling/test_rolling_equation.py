@@ -14,7 +14,7 @@ import numpy as np
 import oracles.geometry
 import pytest
 from oracles.numbers import DIGITS, ulps
-from rolling_ellipse import Scene, _core, kinematics, rolling_equation
+from rolling_ellipse import Scene, _core, kinematics, rolling_equation, simulate
 
 SLOPES = (0.0, 0.1, -0.7, 1.4)
 SPEEDS = (0.0, 1e-8, -1.3, 40.0)
@@ -118,3 +118,30 @@ def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -
     assert np.array_equal(found[:2], rhs(0.0, [theta, omega])) and np.array_equal(found[0], omega)
     assert found[2] == pytest.approx(rates[:, 0], rel=1e-14)
     assert np.all(np.abs(by_omega - jacobian[:, 1]) <= 1e-8 * size / np.abs(omega) / fine)
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+@pytest.mark.parametrize(("a", "b", "gyration2"), [(1.0, 2e-3, 1e-4), (0.05, 3.0, 0.02), (2, 1, 1)])
+def test_forces_are_accelerations_less_gravity(
+    a: float, b: float, gyration2: float, slope: float
+) -> None:
+    """N and F by Newton's law for the centre, in 40 digits. The bound is a few roundings of the
+    terms over D of which they are sums: where a thin body is light, both sides are far smaller than
+    the accelerations."""
+    rng = np.random.default_rng(6)
+    for theta, omega in zip(rng.uniform(-4, 4, 60), rng.normal(0, 3, 60), strict=True):
+        scene = Scene(a, b, inertia=gyration2, slope=slope, theta=float(theta), omega=float(omega))
+        with mp.workdps(2 * DIGITS):
+            weight, pull = (mp.mpf(scene.gravity) * f(mp.mpf(slope)) for f in (mp.cos, mp.sin))
+            h, h1, h2 = oracles.geometry.height_slopes(float(theta), a, b)
+            turning, speed2 = lagrange(scene, *map(float, (theta, omega)))[0][0], mp.mpf(omega) ** 2
+            normal = weight + h1 * turning + h2 * speed2
+            friction = h * turning + h1 * speed2 - pull
+            d, bend = inertia(mp.mpf(theta), scene), abs(h * h2) + h1**2
+            up = (gyration2 + h**2) * weight + abs(h * h1 * pull)
+            up += (gyration2 * abs(h2) + h * bend) * speed2
+            along = abs(h1) * (gyration2 + bend) * speed2 + abs(h * h1) * weight
+            along += (gyration2 + h1**2) * abs(pull)
+        motion = simulate(scene, [0.0], model="rolling")
+        assert ulps(float(motion.normal_force[0]), normal, up / d) <= 16, scene
+        assert ulps(float(motion.friction_force[0]), friction, along / d) <= 16, scene
