@@ -14,9 +14,11 @@ is undecided. Events, the states after them and states at times between are comp
 package's, which come from a table of times, from single times, and from `sol` in any order.
 
 Units. The unit of a value is a sum: the effect of 2.2e-16 of each input, each in its own run, two
-ulp of the value and, at events, the effect of two ulp of the time. theta0 is changed by 2.2e-16
-rad. The strict unit changes theta0 by 2.2e-16 of its distance from the nearest quarter turn and has
-no ulp of times: there a double resolves more than an ulp of the angle.
+ulp of the value and, at events, the effect of two ulp of the time. On the ground it has the effect
+of half an ulp of theta on h, h' omega and, without slip, h omega, too: returned states carry those
+of their theta as rounded. theta0 is changed by 2.2e-16 rad. The strict unit changes theta0 by
+2.2e-16 of its distance from the nearest quarter turn and has no ulp of times: there a double
+resolves more than an ulp of the angle.
 
 Rolling that never ends has the bits of the model "rolling", which other tables judge over any time.
 
@@ -71,6 +73,7 @@ UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not 
 KIND_LIMIT = 1e-4  # largest unit of a time / time; up to it the inputs fix the kind of an event
 MOST_STEPS = 260  # most steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
+ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # slightly changed scenes that distinguish a limit from a fault
 ROUTES = ("event", "table", "alone", "sol")
@@ -341,6 +344,19 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
     return max(shares, default=0.0)
 
 
+def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
+    """The effect of half an ulp of theta on what it determines on the ground."""
+    theta, omega, z, x_dot = map(float, (row.theta, row.omega, row.z, row.x_dot))
+    h, slope, bend = support(float(scene.a), float(scene.b), theta)
+    if abs(z - h) > ON_GROUND * h:
+        return {}
+    half = 0.5 * float(np.spacing(abs(theta)))
+    effects = {"z": abs(slope) * half, "z_dot": abs(bend * omega) * half}
+    if abs(x_dot - h * omega) <= ON_GROUND * abs(x_dot):
+        effects["x_dot"] = abs(slope * omega) * half
+    return effects
+
+
 def reference(case: Case, times: list[float], end: float, check: bool, level: int = 0) -> Reference:
     """Events, samples and their units, in a finer precision where this one is too coarse."""
     road, finer = ROADS[level : level + 2]
@@ -367,8 +383,9 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
     rates = {f"event {i}": one for i, one in enumerate(exact.rates)}
     shift = ROUNDING * abs(case.scene.x)
     for key, row in rows.items():
+        by_angle = by_rounded_angle(case.scene, row) | {"x": shift}
         for i, name in enumerate(VALUES):
-            rounding = 2 * float(np.spacing(abs(float(row[1 + i])))) + (shift if name == "x" else 0)
+            rounding = 2 * float(np.spacing(abs(float(row[1 + i])))) + by_angle.get(name, 0.0)
             loose[key][i] += rounding
             strict[key][i] += rounding
         if key in rates:
