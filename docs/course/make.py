@@ -2,9 +2,8 @@
 
     pictures   01.png to 10.png
     tasks      the marked parts of the sheets, from the questions and data that `course` marks by
-    table      print the mark of every task for the right answer and for those by usual mistakes
 
-Named steps are made alone; `table` only if it is named.
+Named steps are made alone.
 """
 
 import math
@@ -20,7 +19,6 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from rolling_ellipse import course
-from rolling_ellipse._ask.printing import text_table
 from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 
 HERE = Path(__file__).resolve().parent
@@ -61,7 +59,8 @@ def with_tasks(path: Path) -> str:
 def written(task: course.Task, points: int) -> str:
     unit = task.unit.replace("^2", "²") or "a number without unit"
     data = ", ".join(datum(*SYMBOLS[name], value) for name, value in task.data.items())
-    given = f"*Data:* {data}. *Answer:* {unit}."
+    shared = {"8": ", and the table", "10": ", and the film"}.get(task.number.split(".")[0], "")
+    given = f"*Data:* {data}{shared}. *Answer:* {unit}."
     return f"**{task.number}** ({points} points) {task.question}\\\n{given}\n"
 
 
@@ -82,22 +81,6 @@ def tables(sheet: int) -> list[str]:
         return []
     rows = [head, ["---"] * len(head), *shown]
     return ["".join(f"| {' | '.join(row)} |\n" for row in rows)]
-
-
-def table() -> None:
-    """Print what `course.mark` says to the right answer and to each mistake."""
-    kinds = ("none", "sign", "degrees", "ring", "friction", "per mille")
-    rows = [("task", "right", *kinds)]
-    for task in course.tasks():
-        tolerance, known = course._known(task.number, None)
-        right = known[0][1]
-        given = {name: v for name, v in reversed(known) if abs(v / right - 1) > 1e-9}
-        given |= {"none": right, "per mille": right + tolerance + 1e-3 * abs(right)}
-        answers = [given.get(kind, 1.37 * right) for kind in kinds]
-        marks = [course.mark(task.number, answer).mistake for answer in answers]
-        cells = [f"{x:.4g} {mark}" for x, mark in zip(answers, marks, strict=True)]
-        rows.append((task.number, f"{right:.5g} {task.unit}", *cells))
-    print(text_table(rows))
 
 
 # ------------------------------------------------------------------------------ pictures
@@ -227,7 +210,7 @@ def over() -> Figure:
     left.set(xlabel="θ [rad]", xticks=[0, math.pi / 2, math.pi], xticklabels=["0", "π/2", "π"])
     left.set_title("ω [rad/s]", loc="left", fontsize="medium")
     ratio = np.linspace(1.02, 6, 120)
-    for name, k2, colour in (("solid", 0.25, INK), ("ring", 0.5, GREY)):
+    for name, k2, colour in (("uniform", 0.25, INK), ("k² twice\nas large", 0.5, GREY)):
         needs = [
             rl.thresholds(r, 1.0, gyration2=k2 * (r * r + 1)).friction_to_roll_over for r in ratio
         ]
@@ -254,10 +237,10 @@ def blow() -> Figure:
     left.text(-0.015, 0.1, r"$\Lambda_z$", color=PLUM, ha="right")
     left.text(0.16, -0.045, r"$\Lambda_x$", color=PLUM, va="center")
     d = np.linspace(0, A, 50)
-    solid, ring = d / (K2 + B * B), d / (2 * K2 + B * B)
+    uniform, twice = d / (K2 + B * B), d / (2 * K2 + B * B)
     for values, name, colour, dash in ((d / K2, "without friction", PLUM, "--"),
-                                       (solid, "solid, the ground holds", INK, "-"),
-                                       (ring, "ring, the ground holds", GREY, "-")):  # fmt: skip
+                                       (uniform, "the ground holds", INK, "-"),
+                                       (twice, "k² twice as large", GREY, "-")):  # fmt: skip
         right.plot(d, 0.6 * values, color=colour, ls=dash, label=name)
     right.legend(frameon=False, loc="upper left")
     right.set(xlabel="distance $d_x$ [m]", xlim=(0, A), ylim=(0, 6.4))
@@ -427,4 +410,4 @@ def tasks() -> None:
 
 if __name__ == "__main__":
     for step in sys.argv[1:] or ["pictures", "tasks"]:
-        {"pictures": pictures, "tasks": tasks, "table": table}[step]()
+        {"pictures": pictures, "tasks": tasks}[step]()
