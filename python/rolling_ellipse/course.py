@@ -1,10 +1,11 @@
 """Marks for the answers to the tasks of a course of ten sheets, docs/course.
 
 >>> from rolling_ellipse import course
->>> course.mark("3.2", 1.9)
+>>> course.mark("3.2", 1.91).mistake
+'sign and inertia'
 
 Answers are computed by the package, and so are those by usual mistakes: by making the mistake.
-``FILM`` is the film of sheet 10: t [s], x, z [m] and theta [rad], rounded to 1e-4 m and 1e-3 rad.
+``FILM`` is the film of sheet 10, with noise of 0.5 mm and 0.01 rad: t [s], x, z [m], theta [rad].
 """
 
 from __future__ import annotations
@@ -16,12 +17,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from typing import Any
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from . import _core, geometry, impacts
-from ._ask.check import FloatArray, choice, finite, number
+from ._ask.check import FloatArray, finite, number, shown
 from ._ask.impulse import Impulse
 from ._ask.scene import SCENE_UNITS, Scene
 from ._ask.settings import Settings
@@ -50,8 +52,10 @@ class Task:
 class Mark:
     """The mark of an answer in words; as a truth value, whether the answer is right.
 
-    The mistake is "none", "sign", "degrees", "ring" (in the inertia), "friction" (forgotten in a
-    blow or an impact), "per mille" or "other".
+    The mistake is "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (forgotten
+    in a blow or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
+    (I_C omega_dot about the contact), "task 4.1" (the answer to it), "per mille" (nearly right) or
+    "other"; "sign and inertia" for both at once, "angle or task 4.1" where either leads there.
     """
 
     task: str
@@ -63,13 +67,29 @@ class Mark:
         return self.right
 
 
+class _Mistake(NamedTuple):
+    """A way to a wrong answer: other data, another formula, or the answer times a factor."""
+
+    name: str
+    data: dict[str, float]
+    source: str = ""
+    factor: float = 1.0
+
+
 _DATA = json.loads(resources.files(__package__).joinpath("course.json").read_text("utf-8"))
 _TASKS = {known["number"]: Task(**known) for known in _DATA["tasks"]}
 FILM: dict[str, FloatArray] = {name: np.array(track) for name, track in _DATA["film"].items()}
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.4")  # blows and impacts with friction
+_RESTS = ("2.2", "2.4")  # releases, which at theta = 0 lead to no motion
+_WRONG = {  # formulas for tasks
+    "2.4": [_Mistake("small", {}, "small.period")],
+    "3.2": [_Mistake("torque", {}, "torque.friction_force")],
+    "3.3": [_Mistake("torque", {}, "torque.omega_dot")],
+}
 _FILE = "ROLLING_ELLIPSE_IMPACTS"
 _ROUNDING = 1e-4  # relative; the fourth digit rounds by 5e-4 at most
-_MOST = 5e-3  # largest tolerance, and largest miss beyond it that is a per mille; relative
+_MOST = 5e-3  # largest tolerance, and largest miss beyond it that is nearly right; relative
+_NOTHING = 1e-9  # what counts as 0, where a mistake leads there
 _STEP = 1e-6  # relative step of the differences for the condition
 
 
@@ -95,17 +115,31 @@ def mark(task: str, answer: float) -> Mark:
     ImportError
         If SciPy is not installed (sheet 10).
     """
-    task = choice("task", task, tuple(_TASKS))
-    given = float(finite("answer", number("answer", answer)))
-    tolerance, known = _known(task, os.environ.get(_FILE) if task[0] == "8" else None)
-    right = known[0][1]
-    miss, share = abs(given - right) / abs(right), tolerance / abs(right)
-    fits = (k for k, v in known if abs(given - v) <= tolerance * max(1.0, abs(v / right)))
-    mistake = next(fits, "per mille" if miss <= share + _MOST else "other")
-    sentence: str = _DATA["marks"][mistake].format(within=1e3 * share, miss=1e3 * miss)
+    if not (isinstance(task, str) and task in _TASKS):
+        from difflib import get_close_matches  # for mistakes only: it takes a millisecond
+
+        near = ", ".join(map(repr, get_close_matches(shown(task).strip("'"), _TASKS, 3, 0.5)))
+        meant = f"; near it: {near}" if near else ""
+        raise ValueError(f"task must be one of '1.1' to '10.4', got {shown(task)}{meant}")
+    if isinstance(answer, (bool, np.bool_)):
+        raise TypeError(f"answer must be a number, got {answer}")
+    given, of = float(finite("answer", number("answer", answer))), _TASKS[task]
+    share, known = _known(of.number, os.environ.get(_FILE) if task[0] == "8" else None)
+    right, says = known[0][1], _DATA["marks"]
+    allowed = _allowed(right, share)
+    made = [names for names, v in known if abs(given - v) <= _allowed(v, share)]
+    made = [names for names in made if not any({*fewer} < {*names} for fewer in made)]
+    if () in made:
+        made = [("none",)]
+    elif abs(given - right) <= allowed + _MOST * abs(right):
+        made.append(("per mille",))
+    made = list(dict.fromkeys(made)) or [("other",)]
+    mistake = " or ".join(" and ".join(names) for names in made)
+    words = [[says.get(n, f"This is the answer to {n}.") for n in names] for names in made]
+    sentence = " Or: ".join(map(" ".join, words)).format(within=1e2 * allowed / abs(right))
     if task[0] == "8":
         sentence += f" ({'Measured' if _FILE in os.environ else 'Made'} impacts.)"
-    return Mark(task, mistake == "none", mistake, sentence)
+    return Mark(of.number, mistake == "none", mistake, sentence)
 
 
 def measured_impacts() -> tuple[FloatArray, FloatArray]:
@@ -125,39 +159,77 @@ def measured_impacts() -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def _known(task: str, path: str | None) -> tuple[float, list[tuple[str, float]]]:
-    """Return the tolerance of an answer, and the right answer followed by those of mistakes."""
-    data, source = _TASKS[task].data, _TASKS[task].source
+def _known(task: str, path: str | None) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
+    """Return the relative tolerance before rounding, and answers with the mistakes that lead there.
 
-    def found(changes: dict[str, float], source: str = source) -> float:
-        d, (kind, _, name) = data | changes, source.partition(".")
-        blow = {key: d[key] for key in ("jx", "jz", "dx", "dz") if key in d}
-        given: dict[str, Any] = {key: d[key] for key in SCENE_UNITS if key in d}
-        s = Scene(**{"a": 1.0, "b": 1.0} | given, impulse=Impulse(**blow) if blow else None)
-        return float(_ANSWERS[kind](s, d, name))
-
-    known = [("none", right := found({})), ("sign", -right)]
+    The right answer comes first; then those of mistakes, of pairs of them, and of other tasks.
+    """
+    of = _TASKS[task]
+    right = _answer(of)
     if not 0 < abs(right) < math.inf:
         wanted = f"impacts with an answer to task {task}, which change the velocities"
         raise ValueError(f"{_FILE} must name a table of {wanted}, got {path!r}")
-    for scale in (math.pi / 180, 180 / math.pi):
-        known += [("degrees", scale * right)] if "rad" in _TASKS[task].unit else []
-        angles = {name: scale * v for name, v in data.items() if name in ("theta", "slope")}
-        known.append(("degrees", found(angles)))
+    known: list[tuple[tuple[str, ...], float]] = [((), right)]
+    usual = _usual(of)
+    for made in (*combinations(usual, 1), *combinations(usual, 2)):
+        data = {key: value for mistake in made for key, value in mistake.data.items()}
+        source = max(mistake.source for mistake in made)
+        value = math.prod(mistake.factor for mistake in made) * _answer(of, data, source)
+        known.append((tuple(dict.fromkeys(mistake.name for mistake in made)), value))
+    for other in _TASKS.values():
+        if other.number[:-1] == task[:-1] and other.unit == of.unit and other is not of:
+            known.append(((f"task {other.number}",), _answer(other)))
+    known = [(names, value) for names, value in known if math.isfinite(value)]
+    if of.source.startswith("film"):
+        return 2 * _answer(of, {}, of.source.replace("film", "error")) / abs(right), known
+    ends = [[_answer(of, {k: v * (1 + s * _STEP)}) for s in (-1, 1)] for k, v in of.data.items()]
+    condition = math.hypot(*(high - low for low, high in ends)) / (2 * _STEP * abs(right))
+    return min(_ROUNDING * condition, _MOST), known
+
+
+def _usual(of: Task) -> list[_Mistake]:
+    """Return the mistakes that a task allows, each by wrong data, a formula, or a factor."""
+    number, data, radian = of.number, of.data, 180 / math.pi
     a, b, mass = (data.get(name, 1.0) for name in ("a", "b", "mass"))
-    known.append(("ring", found({"inertia": mass * (a**2 + b**2) / 2})))
-    known += [("friction", found({"friction": 0.0}))] if task in _BLOWS else []
-    if source.startswith("film"):
-        return 2 * found({}, source.replace("film", "error")), known
-    ends = [[found({k: v * (1 + s * _STEP)}) for s in (-1, 1)] for k, v in data.items()]
-    condition = math.hypot(*(high - low for low, high in ends)) / (2 * _STEP)
-    digit = 10.0 ** (math.floor(math.log10(abs(right))) - 3)
-    return min(digit / 2 + _ROUNDING * condition, _MOST * abs(right)), known
+    angles = {name: radian * v for name, v in data.items() if name in ("theta", "slope")}
+    usual = [
+        (True, _Mistake("sign", {}, factor=-1.0)),
+        (bool(angles), _Mistake("degrees", angles)),
+        ("rad" in of.unit, _Mistake("degrees", {}, factor=radian)),
+        # a fit of the film takes seconds
+        (number[:2] != "10", _Mistake("inertia", {"inertia": mass * (a**2 + b**2) / 2})),
+        (number in _BLOWS, _Mistake("friction", {"friction": 0.0})),
+        ("theta" in data and number not in _RESTS, _Mistake("angle", {"theta": 0.0})),
+    ]
+    return [mistake for made, mistake in usual if made] + _WRONG.get(number, [])
+
+
+def _allowed(value: float, share: float) -> float:
+    """Return how far from a value an answer may be: half its fourth digit and the share of it."""
+    size = abs(value) or _NOTHING
+    digit = 10.0 ** (math.floor(math.log10(size)) - 3)
+    return min(digit / 2 + share * size, max(share, _MOST) * size)
+
+
+def _answer(of: Task, changes: dict[str, float] | None = None, source: str = "") -> float:
+    """Return the answer to a task with other data, or from another source than its own."""
+    d, (kind, _, name) = of.data | (changes or {}), (source or of.source).partition(".")
+    blow = {key: d[key] for key in ("jx", "jz", "dx", "dz") if key in d}
+    given: dict[str, Any] = {key: d[key] for key in SCENE_UNITS if key in d}
+    s = Scene(**{"a": 1.0, "b": 1.0} | given, impulse=Impulse(**blow) if blow else None)
+    return float(_ANSWERS[kind](s, d, name))
 
 
 @cache
 def _fit(s: Scene) -> Fit:
-    return fit_motion(**_DATA["film"], scene=s, **_DATA["fit"])
+    return fit_motion(**_DATA["film"], scene=s.replace(**_DATA["guess"]), **_DATA["fit"])
+
+
+def _torque(s: Scene, d: dict[str, float], name: str) -> float:
+    """Return what M_C = I_C omega_dot leads to: the angular acceleration of a body at rest."""
+    now, spin = simulate(s, 0.0), simulate(s.replace(omega=0.0), 0.0).omega_dot[0]
+    force = now.friction_force[0] + s.mass * now.z[0] * (spin - now.omega_dot[0])  # m x_ddot
+    return float(force if name == "friction_force" else spin)
 
 
 def _runs(s: Scene, d: dict[str, float], name: str) -> float:
@@ -198,6 +270,8 @@ _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "least": lambda s, d, name: _core.roll_over_speed(s.core) / abs(
         s.replace(impulse=Impulse(jz=-1.0, dx=d["dx"])).initial_state.omega),
     "event": lambda s, d, name: getattr(simulate(s, 5.0).events[0], name),
+    "small": lambda s, d, name: 2 * math.pi / _thresholds(s)["rocking_rate"],
+    "torque": _torque,
     "after": lambda s, d, name: getattr(simulate(s, 5.0).events[0].state_after, name),
     "leave": lambda s, d, name: max(
         0.0, -s.gravity / geometry.support_curvature(s.theta, a=s.a, b=s.b)) ** 0.5,

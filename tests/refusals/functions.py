@@ -150,8 +150,9 @@ REFUSALS: list[Row] = [
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
            gyration2=[0.0]),
     # the course
-    *wrong(course.mark, {"answer": 1.0}, task=["0.1", "1.5", 1.1, None, [1.1], ""]),
-    *wrong(course.mark, {"task": "1.1"}, answer=[*NOT_FINITE, "0.2", [0.2], None, 2j, (), {}]),
+    *wrong(course.mark, {"answer": 1.0}, task=["0.1", "3,2", 1.1, None, [1.1], ""]),
+    *wrong(course.mark, {"task": "1.1"},
+           answer=[*NOT_FINITE, "0.2", [0.2], None, 2j, (), {}, True]),
     (TABLE, patch.dict("os.environ", {TABLE: str(ROOT / "reference/slope_reference.csv")})(
         lambda _: course.measured_impacts())),
     (TABLE, lambda folder: marked_by(folder, NAN)), (TABLE, lambda folder: marked_by(folder, 0.0)),
