@@ -1,7 +1,7 @@
 """Settings of the site: python -m sphinx docs OUT, after pip install '.[docs]'; no network."""
 
 import re
-from importlib.metadata import version as installed
+from importlib.metadata import metadata
 from pathlib import Path
 from runpy import run_path
 from shutil import copytree, rmtree
@@ -14,15 +14,21 @@ copytree(HERE.parent / "notebooks", HERE / "notebooks")
 
 project, language = "rolling_ellipse", "en"
 author = copyright = "The rolling_ellipse developers"
-release = version = installed("rolling-ellipse")
-extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline"]
+release = version = metadata("rolling-ellipse")["Version"]
+extensions = [
+    "myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline", "sphinx_copybutton",
+]  # fmt: skip
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
+myst_dmath_double_inline = True  # formulas within a paragraph, as Jupyter shows them
+myst_html_meta = {"description": metadata("rolling-ellipse")["Summary"]}
+copybutton_selector = ".highlight-python pre, .highlight-bash pre, .cell_input pre"
 default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 numpydoc_show_class_members = False
 python_maximum_signature_line_length = 90
 html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
+html_logo = html_favicon = "_static/logo.svg"
 templates_path, html_static_path = ["_templates"], ["_static"]
 html_css_files, html_js_files = ["site.css"], ["site.js"]
 html_show_search_summary = False  # it reads pages, which a browser forbids from files
@@ -32,8 +38,15 @@ def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
     text[0] = re.sub(r"(\]\((?:\.\./)*)\.\./notebooks/", r"\1notebooks/", text[0])
 
 
+def keep_pictures_in_the_site(app: Sphinx) -> None:
+    """Write the pictures of notebooks to a folder of the site, not to one beside it."""
+    folder = str(app.doctreedir / "pictures")
+    app.env.mystnb_config = app.env.mystnb_config.copy(output_folder=folder)
+
+
 def setup(app: Sphinx) -> None:
     app.connect("source-read", lead_to_copies)
+    app.connect("builder-inited", keep_pictures_in_the_site)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows
     live.mkdir(parents=True, exist_ok=True)
     run_path(str(HERE / "live" / "make.py"))["write"](live / "index.html")

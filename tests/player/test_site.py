@@ -14,6 +14,10 @@ from oracles.paths import ROOT
 
 NOWHERE = dict.fromkeys(("http_proxy", "https_proxy", "all_proxy"), "http://127.0.0.1:9")
 ADDRESS = re.compile(r"<(?:script|img|link|iframe|source)\b[^>]*?(?:src|href)=\"(?:https?:)?//")
+FORMULA = r"<(span|div) class=\"math\b.*?</\1>"
+CODE = r"<(script|style|pre|code)\b.*?</\1>"
+WIDE = """[...document.querySelectorAll("mjx-container[display=true]")]
+    .filter(box => box.scrollWidth > box.clientWidth + 1).map(box => box.textContent)"""
 
 
 @pytest.fixture(scope="module")
@@ -43,21 +47,46 @@ def test_every_public_name_has_its_place_in_the_api(site: Path) -> None:
     assert not [n for n in names if not places.get(f"rolling_ellipse.{n}", "").startswith("api/")]
 
 
-def test_no_page_asks_for_another_address(site: Path) -> None:
-    pages = {path.name: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
-    assert len(pages) > 50 and not [name for name, text in pages.items() if ADDRESS.search(text)]
+@pytest.fixture(scope="module")
+def pages(site: Path) -> dict[Path, str]:
+    return {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
 
 
-def test_formulas_films_and_search_work_from_files(site: Path, chromium: Any) -> None:
+def test_no_page_asks_for_another_address(pages: dict[Path, str]) -> None:
+    assert len(pages) > 50 and not [page for page, text in pages.items() if ADDRESS.search(text)]
+
+
+def test_no_page_shows_the_source_of_a_formula(pages: dict[Path, str]) -> None:
+    for page, html in pages.items():
+        for hidden in (CODE, FORMULA, "<()[^>]*>"):
+            html = re.sub(hidden, "", html, flags=re.DOTALL)
+        assert re.findall(r".{,40}[$\\].{,40}", html) == [], page
+
+
+def test_no_page_leads_on_to_its_own_title(pages: dict[Path, str]) -> None:
+    for page, html in pages.items():
+        for title in re.findall(r'<div class="title">(.*?)</div>', html):
+            assert f"<title>{title} - " not in html, page
+
+
+def test_formulas_fit_and_films_and_search_work_from_files(
+    site: Path, pages: dict[Path, str], chromium: Any
+) -> None:
     context, complaints = chromium.new_context(), []
     context.set_offline(True)
     page = context.new_page()
     page.on("console", lambda message: complaints.append(message.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto((site / "notebooks" / "02_physics.html").as_uri())
-    page.wait_for_function("document.querySelectorAll('mjx-container').length >= 300")
-    assert page.locator(".math:not(:has(mjx-container))").count() == 0
-    assert page.locator("mjx-merror").count() == 0
+    found = {each[0] for html in pages.values() for each in re.finditer(FORMULA, html, re.DOTALL)}
+    assert len(found) > 400
+    sheet = site / "course" / "02_energy_and_period.html"
+    proofs = sheet.with_name("formulas.html")  # a page with the formulas of all pages
+    proofs.write_text(pages[sheet].replace("</article>", f"{''.join(found)}</article>"), "utf-8")
+    page.goto(proofs.as_uri(), wait_until="commit")  # a busy machine may need a minute for it
+    drawn = "!document.querySelector('.math:not(:has(mjx-container))')"
+    page.wait_for_function(f"document.querySelector('footer') && {drawn}", timeout=120_000)
+    assert page.locator("mjx-container").count() >= len(found)
+    assert page.locator("mjx-merror").count() == 0 and page.evaluate(WIDE) == []
     page.goto((site / "notebooks" / "01_first_roll.html").as_uri())
     page.locator(".rolling-ellipse").scroll_into_view_if_needed()
     page.wait_for_function("document.querySelector('.rolling-ellipse').player?.t > 0.2")
