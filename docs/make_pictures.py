@@ -40,7 +40,7 @@ def main() -> None:
     rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25, blow=True)
     friction()
     save(methods(), "methods.png")
-    save(speed(), "speed.png", RACE)
+    save(speed(), "speed.png", RACE, dpi=150)
     for name, figure in engines().items():
         save(figure, f"engine_{name}.png", ENGINES)
     save(stability(), "stability.png")
@@ -68,10 +68,15 @@ def methods() -> Figure:
 
 
 def speed() -> Figure:
-    """Work-precision chart of the package and its peers, from the files of the races."""
-    chart = rl.WorkPrecision.load(RACE).plot()
-    figure = chart.ax.figure
-    assert isinstance(figure, Figure)
+    """Work-precision chart of the package and its peers, small enough for the screen of a phone."""
+    race = rl.WorkPrecision.load(RACE)
+    figure = Figure(figsize=(4.0, 4.0), layout="constrained")
+    fronts = race.plot(ax=figure.add_subplot()).fronts
+    peers = {run.name for run in race.runs if "peer" in run.tags}
+    labels = ["this package", f"the best of {len(peers)} others"]
+    figure.legend([fronts["highlight"], fronts["others"]], labels, loc="outside upper left",
+                  ncols=2, frameon=False, fontsize="small", title="least time for each error",
+                  alignment="left")  # fmt: skip
     return figure
 
 
@@ -175,13 +180,13 @@ def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colour
     ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6})
 
 
-def save(figure: Figure, name: str, source: Path | None = None) -> None:
+def save(figure: Figure, name: str, source: Path | None = None, dpi: int = 120) -> None:
     """Write a picture, with the digest of its source file."""
     facts = PngImagePlugin.PngInfo()
     if source is not None:
         facts.add_text("Source", hashlib.sha256(source.read_bytes()).hexdigest())
     picture = BytesIO()
-    figure.savefig(picture, dpi=120)
+    figure.savefig(picture, dpi=dpi)
     colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the size
     colours.save(HERE / name, optimize=True, pnginfo=facts)
 
