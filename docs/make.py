@@ -9,7 +9,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     pictures   docs/*.png and *.gif, by docs/make_pictures.py; paper/*.png, by paper/figures.py
     problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
-    text       the marked parts of docs/speed.md, many.md and benchmark.md, from those files
+    text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA and solve_dae
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
@@ -28,15 +28,16 @@ from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import fill
 from typing import Any
 
 import nbformat
 from nbclient import NotebookClient
-from rolling_ellipse import WorkPrecision, benchmark
+from rolling_ellipse import Scene, WorkPrecision, benchmark, simulate
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-PAGES = ("speed", "many", "benchmark")  # pages that quote measurements
+PAGES = ("README", "docs/speed", "docs/many", "docs/benchmark")  # that quote measurements
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
@@ -48,6 +49,8 @@ MOTIONS = {
 }
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
+# pooltool-billiards 0.3.3: its default ball starts at 1 m/s without spin, and its first event is at
+POOLTOOL = 0.14562399883500798  # [s]
 
 
 def races(quick: bool) -> None:
@@ -117,7 +120,7 @@ def notebooks(quick: bool) -> None:
 
 
 def text(quick: bool) -> None:
-    for path in (HERE / f"{name}.md" for name in PAGES):
+    for path in (ROOT / f"{name}.md" for name in PAGES):
         path.write_text(quoted(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
@@ -138,7 +141,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 def quoted(page: str) -> str:
     """A page with its marked parts made anew."""
-    parts = {"speed": speed, "batches": throughput, "engines": engine_table}
+    parts = {"speed": speed, "batches": throughput, "engines": engine_table, "others": others}
     found = [name for name in parts if f"<!-- {name}: made by docs/make.py -->\n" in page]
     if not found:
         raise ValueError(f"the page must have a mark of {', '.join(parts)}")
@@ -175,14 +178,39 @@ def speed() -> str:
     head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     if any("*" in line for line in lines[2:]):
-        lines.append("\n\\* of those that were run")
+        lines.append("\n\\* of those that were run: for others no time was left")
     on = drawn.machine
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
-    told = [line for line in drawn.verdict().splitlines() if line[0] != " "]
-    verdict = "\n".join(f"* {line}" for line in told[1:])
+    first, *leaders = [line for line in drawn.verdict().splitlines() if line[0] != " "]
+    verdict = fill(f"{first.replace('_', ' ')} {' '.join(leaders).rstrip(';')}.", 130)
     table = "\n".join(lines)
-    return f"{told[0]}\n\n{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
+    return f"{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
+
+
+def others() -> str:
+    """Table of what other programs do, with a figure for each."""
+    race = WorkPrecision.load(HERE / "peers_R_10.37.json")
+    least = race.least(1e-8)
+    rows = [["others", "what they do", "beside this package"]]
+    for name in ("SciPy", "heyoka"):
+        best = min(time for contender, time in least.items() if contender.startswith(name))
+        ratio = float(f"{best / least['flow']:.3g}")
+        figure = f"ten half turns within 1e-8: {ratio:g} × the time"
+        rows.append([name, "integrates; no contact", figure])
+    for name in ("MuJoCo", "Drake"):
+        scores = json.loads((HERE / "engines.json").read_text(encoding="utf-8"))["engines"][name]
+        finest = min(score["setting"] for score in scores["scores"])
+        passed = [score["passed"] for score in scores["scores"] if score["setting"] == finest]
+        figure = f"passes {sum(passed)} of {len(passed)} known answers at steps of {finest:g} s"
+        rows.append([name, "contact, by steps", figure])
+    mass, radius = 0.170097, 0.028575
+    how = {"mass": mass, "inertia": 0.4 * mass * radius**2, "friction": 0.2}
+    ball = Scene(radius, radius, x_dot=1.0, omega=0.0, **how)
+    off = abs(simulate(ball, 1.0).events[0].t - POOLTOOL)
+    figure = f"its ball slips for {POOLTOOL:.6f} s, as ours to within {off:.0e} s"
+    rows.append(["pooltool", "circles (balls), exactly", figure])
+    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * 3, *rows[1:])) + "\n"
 
 
 def half_turns(path: Path) -> float:

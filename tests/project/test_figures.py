@@ -17,7 +17,7 @@ PROSE = {
     name: (ROOT / name).read_text(encoding="utf-8")
     for name in (
         "README.md",
-        *(f"docs/{page}.md" for page in ("start", "speed", "many", "benchmark")),
+        *(f"docs/{page}.md" for page in ("start", "speed", "constraints", "many", "benchmark")),
     )
 }
 RACE = DOCS / "peers_R_10.37.json"
@@ -44,7 +44,7 @@ def printed(path: Path) -> str:
 
 def test_the_figures_of_the_pages_are_those_of_the_data(make: dict[str, Any]) -> None:
     for name in make["PAGES"]:
-        page = PROSE[f"docs/{name}.md"]
+        page = PROSE[f"{name}.md"]
         assert make["quoted"](page) == page, "python docs/make.py text"
 
 
