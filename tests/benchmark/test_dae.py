@@ -112,7 +112,7 @@ def test_solve_dae(form: str) -> None:
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_a_column_of_a_matrix_has_the_residual_of_its_copy(form: str) -> None:
+def test_a_column_of_a_matrix_has_the_bits_of_its_copy(form: str) -> None:
     """Also a row of many; einsum took its order of summation from the strides."""
     dae, rng = benchmark.problem("roll.roll").dae(form), np.random.default_rng(4)
     y, yp = rng.normal(size=(2, 300, len(dae.names)))

@@ -58,7 +58,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "arrays": lambda: rl.simulate_many([rl.scenes.report], TIMES, returns="x"),
     "ends": lambda: rl.ends([rl.scenes.report], 1.0),
     "sample": lambda: MOTIONS["contact"]().at(0.3),
-    "residuals": lambda: MOTIONS["rolling"]().constraint_residuals(),
+    "constraints": lambda: MOTIONS["rolling"]().constraint_residuals(),
     "integration error": integration_error,
     "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
     "completeness warning": lambda: rl.CompletenessWarning("in flight"),

@@ -33,7 +33,7 @@ LONG = {
     "sol": "DROP.sol(np.linspace(0., 2., 10**5)).energy",
     "sol, loaded": "pickle.loads(LOADED).sol([1.])",
     "when": "(DROP.when(z=1.), DROP.scene_at(1.))",
-    "residuals": "DROP.sol(np.linspace(0., 2., 50000)).constraint_residuals()",
+    "constraints": "DROP.sol(np.linspace(0., 2., 50000)).constraint_residuals()",
     "work_precision": "rl.work_precision(R, 4., rounds=2, max_seconds=3)",
     "explore": "rl.explore(rl.scenes.report).to_html('explorer.html')",
     "film": "DROP.animate('film.html')",

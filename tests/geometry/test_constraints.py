@@ -100,7 +100,7 @@ def test_residuals_of_inconsistent_states(shape: Shape) -> None:
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
-def test_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
+def test_residual_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
     """Gap and slip equal the lowest point of the outline and the velocity of the material there,
     above and below the ground, to 8 ulp of the terms; psi and r have no effect."""
     a, b = map(mp.mpf, shape)

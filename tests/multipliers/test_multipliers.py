@@ -228,7 +228,7 @@ def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
 
 
 @each_shape
-def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> None:
+def test_projection_leaves_residuals_of_rounding_at_the_nearest_state(shape: Shape) -> None:
     """A state some 1e-4 off is projected: residuals are of the size of rounding, and the change has
     no part along the rolling direction, in the metric of M: rounding for velocities, second order
     for positions (x, which no position constraint contains, stays)."""

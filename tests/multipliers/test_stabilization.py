@@ -27,7 +27,7 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_what_each_stabilization_is_worth() -> None:
+def test_residuals_and_errors_of_each_stabilization() -> None:
     """Errors of theta from 10 half turns on: largest by drift, smaller with feedback, small with
     projection, least with the energy too. Residuals: feedback bounds them, projection leaves
     rounding."""
@@ -65,7 +65,7 @@ def test_the_path_shows_what_no_residual_does() -> None:
 
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
-def test_projection_between_steps(scene: Scene, stabilization: Any) -> None:
+def test_residuals_of_projection_between_steps(scene: Scene, stabilization: Any) -> None:
     """10 half turns with dop853 at rtol 1e-10, at 10 000 times between knots: 1e-8 from exact
     rolling (some 500 steps, each 1e-10 off in theta = 30, with errors of both signs), and residuals
     of rounding: 16 ulp of theta in the constraints, times the rates for velocities."""
@@ -136,7 +136,7 @@ def test_order_of_the_index_2_system() -> None:
 
 # the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
-def test_index_2_keeps_the_constraints_everywhere(name: str) -> None:
+def test_index_2_leaves_residuals_of_rounding_everywhere(name: str) -> None:
     """Residuals at knots and between, for any truncation error: 64 ulp of the size, plus the
     effect of an ulp of psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
     scene = SCENES[name]

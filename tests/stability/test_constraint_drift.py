@@ -19,7 +19,7 @@ DRIFTS = {
 
 
 @pytest.mark.parametrize(("scene", "method", "step", "last"), DRIFTS.values(), ids=DRIFTS)
-def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
+def test_residuals_grow_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
     """A step leaves the constraints by its truncation error in position and velocity, and the
     equations keep second rates 0: errors grow like t in velocity and like t^2 in position. Slopes
     are taken from 10 half turns on, while the gap stays below 1e-2; steps are powers of two, so
@@ -40,7 +40,7 @@ HELD: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("how", HELD.values(), ids=HELD)
-def test_projection_and_index_2_hold_the_constraints_as_long(how: dict[str, Any]) -> None:
+def test_residuals_of_projection_and_index_2_do_not_grow(how: dict[str, Any]) -> None:
     """Constraints hold from 1 to 1000 half turns, where the first motion above has left the ground
     by 1e-4: within 16 ulp of theta in the constraints, times the rates for velocities. No error
     grows beyond the last digit of theta."""
