@@ -21,6 +21,9 @@ class Mode(enum.IntEnum):
     FLIGHT = 2
     REST = 3
 
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+
 class Restitution(enum.Enum):
     STRONGE = 0
     POISSON = 1
@@ -37,6 +40,9 @@ class Validity(enum.Enum):
     EDGE = 2
     NO_PROOF = 3
 
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+
 class Outcome(enum.IntEnum):
     RESTS = 0
     ROCKS = 1
@@ -46,6 +52,9 @@ class Outcome(enum.IntEnum):
     JAMS = 5
     EDGE = 6
 
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+
 class EventKind(enum.Enum):
     SLIP = 0
     STICK = 1
@@ -54,6 +63,9 @@ class EventKind(enum.Enum):
     IMPACT = 4
     REST = 5
     JAM = 6
+
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
 
 class Ending(enum.Enum):
     COMPLETED = 0

@@ -104,9 +104,9 @@ def collide(
     W. J. Stronge, Impact Mechanics, Cambridge University Press, 2000, ch. 3 to 5.
     S. D. Poisson, Traité de mécanique, 1833.
     """
-    choice("law", law, LAWS)
+    meaning = _core.Restitution[choice("law", law, LAWS).upper()]
     found = evaluate(
-        _core.collide_arrays, _core.Restitution[law.upper()], theta=theta, x_dot=x_dot,
+        _core.collide_arrays, meaning, theta=theta, x_dot=x_dot,
         z_dot=z_dot, omega=omega, a=a, b=b, gyration2=gyration2, friction=friction,
         restitution=restitution,
     )  # fmt: skip
@@ -264,8 +264,7 @@ def fit(
     >>> 0.5 < fitted.restitution < 0.6
     True
     """
-    choice("minimise", minimise, get_args(Measure))
-    measure = _MEASURES[minimise]
+    measure = _MEASURES[choice("minimise", minimise, get_args(Measure))]
     start, end = _series("before", before, 4), _series("after", after, 3)
     if start.shape[1] != end.shape[1]:
         raise ValueError(

@@ -60,7 +60,7 @@ def test_a_missing_column_is_named() -> None:
     ("typed", "near"),
     [
         ("slide.slop", "slide.slope"), ("slide", "slide.stick"), ("stick", "slide.stick"),
-        ("Roll.Rock", "roll.rock"), ("roll_rock", "roll.rock"), ("hit.drop", "hit.drop_slip"),
+        ("Roll_Rok", "roll.rock"), ("roll_rock", "roll.rock"), ("hit.drop", "hit.drop_slip"),
         ("hit.bounceflat", "hit.bounce_flat"), ("rock", "roll.rock"), ("law", "law.which"),
     ],
 )  # fmt: skip

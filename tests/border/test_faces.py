@@ -2,10 +2,12 @@
 
 import copy
 import dataclasses
+import json
 import pickle
 import re
 from collections.abc import Callable
 from html.parser import HTMLParser
+from operator import eq, ne
 from typing import Any
 
 import numpy as np
@@ -76,6 +78,63 @@ def test_codes_print_their_names(kind: Any) -> None:
         assert f"{each:>30}" == name.rjust(30)
         assert eval(repr(each), vars(rl)) is each
     assert f"{rl.Outcome.ROLLS_OVER:d}" == "2" and int(rl.Outcome.ROLLS_OVER) == 2
+
+
+@pytest.mark.parametrize("kind", [rl.Outcome, rl.Mode, rl.EventKind, rl.Validity, rl.Status])
+def test_members_equal_their_names_and_nothing_else(kind: Any) -> None:
+    coded = issubclass(kind, int)
+    for each in kind:
+        for other in (each.name, np.str_(each.name), each, kind[each.name], copy.copy(each)):
+            assert eq(each, other) and eq(other, each) and not ne(each, other) | ne(other, each)
+        for other in (each.name.lower(), f"{each.name} ", None, 1.5, b"SLIP", object()):
+            assert ne(each, other) and ne(other, each) and not eq(each, other) | eq(other, each)
+        assert [one == each for one in kind].count(True) == 1
+        assert pickle.loads(pickle.dumps(each)) is copy.deepcopy(each) is each
+        assert hash(each) == hash(each.value if coded else each.name)
+        assert ({each.name: 7}.get(each) == 7) != coded and {each: 7}[each] == 7
+        if coded:
+            codes = np.array([each, *kind])
+            assert json.dumps([each]) == f"[{each.value}]" and codes.dtype.kind == "i"
+            assert each == each.value == np.int8(each.value) == each and not ne(each, np.int8(each))
+            assert (codes == each).sum() == (each == codes).sum() == 2
+    members = np.array(list(kind))
+    if not coded:
+        assert [(members == each.name).sum() for each in kind] == [1] * len(kind)
+
+
+REPORT, JUMP = rl.scenes.report, rl.simulate(rl.scenes.jump, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("word", "call"),
+    [
+        ("lift_off", lambda word: JUMP.when(event=word)),
+        ("roll_over", lambda word: JUMP.when(event=word)),
+        ("rolling", lambda word: rl.simulate(REPORT, 1.0, model=word).x),
+        ("dop853", lambda word: rl.simulate(REPORT, 1.0, method=word).x),
+        ("baumgarte", lambda word: rl.simulate(REPORT, 1.0, model="multipliers",
+                                               stabilization=word).x),
+        ("poisson", lambda word: rl.impacts.collide(0.3, 1, -2, 1, a=2, b=1, friction=1,
+                                                    restitution=0.5, law=word)),
+        ("rest", lambda word: rl.required_friction(rl.Scene(2.0, 1.0, slope=0.1), to=word)),
+        ("x", lambda word: rl.simulate_many([REPORT], 1.0, returns=word)[word.lower()]),
+        ("omega", lambda word: JUMP.sensitivity(wrt=word).state),
+        ("corrected", lambda word: rl.report.simulate(
+            *rl.kinematics(0.3, 1.0, a=2.0, b=1.0), a=2.0, b=1.0, t=1.0, equations=word).t),
+        ("roll.rock", lambda word: rl.benchmark.problem(word).times),
+    ],
+)  # fmt: skip
+def test_words_are_understood_in_any_case(word: str, call: Callable[[str], Any]) -> None:
+    for typed in (word.upper(), word.title()):
+        assert np.array_equal(call(typed), call(word))
+
+
+def test_an_event_is_asked_for_by_its_kind() -> None:
+    for kind in rl.EventKind:
+        times = [each.t for each in JUMP.events if each.kind == kind.name]
+        assert JUMP.when(event=kind).tolist() == JUMP.when(event=kind.name).tolist() == times
+    assert JUMP.status == "COMPLETED" == rl.ends([JUMP.scene], 2.0).status[0]
+    assert rl.outcome(REPORT) == "ROLLS_OVER" and REPORT.initial_state.mode == "ROLLING"
 
 
 # -------------------------------------------------------------------------------------- tables

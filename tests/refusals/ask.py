@@ -23,7 +23,7 @@ PRINTED: dict[str, Any] = {
     "equations": "printed",
     "consistent": "project",
 }
-UNKNOWN: list[Any] = ["", "Auto", "no_such", "rk5", None, 1, ["auto"]]
+UNKNOWN: list[Any] = ["", "auto ", "no_such", "rk5", None, 1, ["auto"]]
 
 
 def run(**options: Any) -> Callable[[Path], Any]:

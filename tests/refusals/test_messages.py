@@ -130,10 +130,14 @@ ours: Any = rolling_ellipse  # types refuse these calls, too
         ("called as thresholds(a, b, *, grav", lambda: ours.thresholds(ours.scenes.report)),
         ("called as support(theta, *, a, b)", lambda: ours.geometry.support(0.3, 2, 1)),
         ("did you mean x_dot?", lambda: ours.simulate(ours.scenes.report, 1.0).vx),
+        ("did you mean impact?", lambda: ours.simulate(ours.scenes.report, 1.0).when(event="hit")),
+        ("mean lift_off?", lambda: ours.simulate(ours.scenes.report, 1.0).when(event="Lift-Off")),
+        ("did you mean rk4?", lambda: ours.simulate(ours.scenes.report, 1.0, method="RK-4")),
+        ("mean stronge?", lambda: ours.impacts.fit([[1]] * 4, [[1]] * 3, a=1, b=1, law="Strong")),
     ],
 )
 def test_a_word_of_habit_is_answered_with_ours(said: str, call: Any) -> None:
-    with pytest.raises((TypeError, AttributeError)) as caught:
+    with pytest.raises((TypeError, AttributeError, ValueError)) as caught:
         call()
     assert said in str(caught.value)
 

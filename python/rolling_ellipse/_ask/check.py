@@ -16,12 +16,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain, islice
 from operator import index
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from .habits import meant
+
 FloatArray = npt.NDArray[np.float64]
+_Name = TypeVar("_Name", bound=str)
 COORDINATES = 5  # number of coordinates x, z, theta, psi, r
 
 _DOUBLE = np.dtype(np.float64)
@@ -376,9 +379,11 @@ def file_name(name: str, value: Any) -> str:
     return found
 
 
-def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
-    """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
-    if isinstance(value, str) and value in valid:
-        return valid[valid.index(value)]  # a plain str, even if `value` is of a subclass
+def choice(name: str, value: Any, valid: tuple[_Name, ...]) -> _Name:
+    """Return the valid name that ``value`` is in any case, or raise ValueError with a near one."""
+    word = value.casefold() if isinstance(value, str) else ""
+    for known in valid:
+        if word == known.casefold():
+            return known
     names = ", ".join(repr(v) for v in valid)
-    raise ValueError(f"{name} must be one of {names}, got {shown(value)}")
+    raise ValueError(f"{name} must be one of {names}, got {shown(value)}{meant(word, valid)}")

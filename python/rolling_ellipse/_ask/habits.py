@@ -16,7 +16,9 @@ MEANT = {
     "time": "t", "times": "t", "tol": "rtol", "solver": "method", "integrator": "method",
     "n_jobs": "workers", "threads": "workers", "N": "normal_force", "F": "friction_force",
     "ke": "kinetic_energy", "pe": "potential_energy", "E": "energy",
-    "rotations": "turns",
+    "rotations": "turns", "hit": "impact", "bounce": "impact", "collision": "impact",
+    "landing": "impact", "slide": "slip", "slipping": "slip", "sliding": "slip",
+    "takeoff": "lift_off",
 }  # fmt: skip
 
 _Given = ParamSpec("_Given")
@@ -24,13 +26,17 @@ _Found = TypeVar("_Found")
 
 
 def meant(word: str, names: Iterable[str]) -> str:
-    """Return the end of a message about an unknown name, with the names that may be meant."""
+    """Return the end of a message about an unknown name, with the names that may be meant.
+
+    They are ours for a habit, else the one of the most similar letters, else those with a part.
+    """
     from difflib import get_close_matches  # for mistakes only: it takes a millisecond
 
-    known = list(names)
-    found = [name for name in MEANT.get(word, "").split() if name in known]
-    found = found or get_close_matches(word, known, 1, 0.7)
-    return f"; did you mean {' or '.join(found)}?" if found else ""
+    known = {name.casefold(): name for name in names}
+    near = [name for name in MEANT.get(word, "").split() if name in known]
+    near = near or get_close_matches(typed := word.casefold(), known, 1, 0.7)
+    near = near or [name for name in known if {*typed.split(".")} & {*name.split(".")}]
+    return f"; did you mean {' or '.join(known[name] for name in near)}?" if near else ""
 
 
 def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:

@@ -6,13 +6,14 @@ import enum
 import importlib
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from .._core import EventKind, Mode, Outcome, Validity
 
 Row = tuple[str, ...]
+_Enum = TypeVar("_Enum", bound=type[enum.Enum])
 
 
 def _dotted(value: enum.Enum) -> str:
@@ -24,8 +25,28 @@ def _formatted(value: enum.Enum, spec: str) -> str:
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 
+def equal_to_names(kind: _Enum) -> _Enum:
+    """Let the members of an enum equal their names, too; the hashes stay as they are."""
+    same, differs = kind.__eq__, kind.__ne__
+
+    def equal(member: Any, other: object) -> bool:
+        return member._name_ == other if isinstance(other, str) else same(member, other)
+
+    def unequal(member: Any, other: object) -> bool:
+        return member._name_ != other if isinstance(other, str) else differs(member, other)
+
+    said = "A member equals its name, a str"
+    if issubclass(kind, int):
+        said += ", and its code, which is its hash: dicts and arrays of codes know no names"
+    faces = {"__eq__": equal, "__ne__": unequal, "__doc__": f"{kind.__doc__}\n\n{said}."}
+    for name, face in faces.items():
+        setattr(kind, name, face)
+    return kind
+
+
 # These enums print as Kind.NAME; Python would print <Kind.NAME: 1> in lists, an IntEnum as 1.
 for _kind in (EventKind, Mode, Outcome, Validity):
+    equal_to_names(_kind)
     for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
         setattr(_kind, _name, _face)
 

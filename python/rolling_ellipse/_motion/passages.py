@@ -29,7 +29,7 @@ def when(
     omega: Any = None,
     contact_x: Any = None,
     function: Callable[[Trajectory], Any] | None = None,
-    event: str | None = None,
+    event: str | EventKind | None = None,
     direction: int = 0,
 ) -> Any:
     """Return all times in [0, t_end] at which the motion passes a value.
@@ -50,9 +50,9 @@ def when(
         or `function`.
     function : callable, optional
         Takes a Trajectory and returns one number for each sample; its zeros are searched.
-    event : str, optional
-        Kind of events, ``"slip"`` to ``"jam"`` as of `EventKind`; or ``"roll_over"``: the body
-        passes a position with its long axis at right angles to the ground (a circle: its axis a).
+    event : EventKind or str, optional
+        Kind of events, also as its name in any case; or ``"roll_over"``: the body passes a
+        position with its long axis at right angles to the ground (a circle: its axis a).
     direction : {0, 1, -1}
         1: only where it rises through the value; -1: only where it falls; 0: both, and touches.
 
@@ -84,9 +84,9 @@ def when(
     if sense not in (-1, 0, 1):
         raise ValueError(f"direction must be 1, -1 or 0, got {shown(direction)}")
     if name == "event":
-        kind = choice("event", asked, _EVENTS)
+        kind = choice("event", asked.name if isinstance(asked, EventKind) else asked, _EVENTS)
         if kind != "roll_over":
-            return np.array([each.t for each in motion.events if each.kind.name.lower() == kind])
+            return np.array([each.t for each in motion.events if each.kind.name == kind.upper()])
         rolled = when(motion, theta=_tips(motion), direction=sense)
         return np.sort(np.concatenate([[], *rolled]))
     values = np.empty(()) if name == "function" else finite(name, asked)

@@ -6,11 +6,13 @@ import enum
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
+from .._ask.printing import equal_to_names
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 
+@equal_to_names
 class Status(enum.Enum):
     """Ending of a simulation; the value is a sentence for people."""
 
@@ -32,6 +34,11 @@ class Status(enum.Enum):
         "the integration stopped where no step that changes t meets rtol and atol: loosen them"
     )
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
+
+    if TYPE_CHECKING:
+
+        def __eq__(self, other: object) -> bool: ...
+        def __hash__(self) -> int: ...
 
 
 COMPLETED = Status.COMPLETED  # kept: access by the class is five times slower

@@ -329,8 +329,8 @@ def plane_of(
     axes: tuple[str, str], ranges: Sequence[Any], fixed: dict[str, Any], b: float, gravity: float
 ) -> Plane:
     """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
-    for argument, axis in zip("xy", axes, strict=True):
-        choice(argument, axis, tuple(AXIS_NAMES))
+    known = tuple(AXIS_NAMES)
+    axes = choice("x", axes[0], known), choice("y", axes[1], known)
     if axes[0] == axes[1] or set(axes) == _LEVELS:
         raise ValueError(
             "x and y must be two of the aspect, the energy or the speed, and the friction, "

@@ -72,8 +72,7 @@ def draw(
     highlight: Sequence[str] | None, by: str | None, t_end: float | None,
 ) -> WorkPrecisionChart:  # fmt: skip
     """Draw the runs; see `WorkPrecision.plot`."""
-    choice("x", x, ERRORS)
-    choice("y", y, QUANTITIES)
+    x, y = choice("x", x, ERRORS), choice("y", y, QUANTITIES)
     runs = found.of(t_end)
     if tags is not None:
         chosen = _chosen("tags", tags, runs)

@@ -97,8 +97,12 @@ def motion_parser() -> OneLineParser:
         f"{PROGRAM} benchmark tests other simulators; {PROGRAM} examples DIR writes notebooks.",
     )
     found.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
-    found.add_argument("--model", choices=MODELS, default="auto", help="how it moves")
-    found.add_argument("--method", choices=METHODS, default="auto", help="how it is computed")
+    for name, known, meaning in (
+        ("model", MODELS, "how it moves"), ("method", METHODS, "how it is computed")
+    ):  # fmt: skip
+        found.add_argument(
+            f"--{name}", type=str.casefold, choices=known, default="auto", help=meaning
+        )
     found.add_argument("--step", type=float, metavar="S", help="size of fixed steps [s]")
     found.add_argument("--save", metavar="FILE", help="write an animation (.gif, .mp4, .html)")
     found.add_argument("--plot", metavar="FILE", help="write the overview figure")
@@ -111,7 +115,9 @@ def explore_parser() -> OneLineParser:
     """Return the parser of `explore`."""
     found = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
     found.add_argument("--time", type=float, metavar="S", help="how long motions are followed")
-    found.add_argument("--language", choices=LANGUAGES, default="en", help="of the page")
+    found.add_argument(
+        "--language", type=str.casefold, choices=LANGUAGES, default="en", help="of the page"
+    )
     found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
     found.add_argument("--no-open", action="store_true", help="write it and open no browser")
     return found

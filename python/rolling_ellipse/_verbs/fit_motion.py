@@ -168,7 +168,7 @@ def fit_motion(
     ----------
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
     """
-    choice("loss", loss, _LOSSES)
+    loss = choice("loss", loss, _LOSSES)
     unknowns = Unknowns(scene, free)
     film = film_of(sample_times(array("t", t)), {"x": x, "z": z, "theta": theta})
     count = int(film.known.sum())

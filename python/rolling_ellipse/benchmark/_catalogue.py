@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -103,7 +102,7 @@ def problem(id: str | Problem) -> Problem:
     ValueError
         If there is no such problem; the message lists all, and the nearest first.
     """
-    return id if isinstance(id, Problem) else _made(listed("id", id, tuple(_read())))
+    return id if isinstance(id, Problem) else _made(choice("id", id, tuple(_read())))
 
 
 def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
@@ -121,7 +120,7 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
         If there is no such tag.
     """
     typed = [tag.strip() for tag in tags.split(",")] if isinstance(tags, str) else tags
-    able = TAGS if typed is None else [listed("tags", tag, TAGS) for tag in typed]
+    able = TAGS if typed is None else [choice("tags", tag, TAGS) for tag in typed]
     found = [problem(name) for name in _read()]
     return [one for one in found if one.scored and set(one.tags) <= set(able)]
 
@@ -137,24 +136,7 @@ def scored_ones(
     if not isinstance(each, Iterable):
         raise TypeError(f"{name} must be ids or problems, got {shown(each)}")
     ids = [one.id if isinstance(one, Problem) else one for one in each]
-    return [_made(listed(name, one, names)) for one in ids]
-
-
-def listed(name: str, value: Any, valid: tuple[str, ...]) -> str:
-    """Return a value if it is in a list of names; the refusal of another has near names at its end.
-
-    Near are names of similar letters, and those with its first or last part.
-    """
-    try:
-        return choice(name, value, valid)
-    except ValueError as error:
-        typed = value.lower().replace("_", ".") if isinstance(value, str) else ""
-        parts = set(typed.split("."))
-        near = get_close_matches(typed, valid, 3, 0.7)
-        near += [one for one in valid if parts & set(one.split(".")) and one not in near]
-        if not near:
-            raise
-        raise ValueError(f"{error}; did you mean {' or '.join(near[:5])}?") from None
+    return [_made(choice(name, one, names)) for one in ids]
 
 
 def gradients() -> list[Gradient]:

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._ask.check import file_name
-from ._catalogue import listed, scored_ones
+from .._ask.check import choice, file_name
+from ._catalogue import scored_ones
 from ._problem import COLUMNS, STATE, Problem
 from ._results import KINDS, Result
 
@@ -44,7 +44,7 @@ def read_folder(results: Any) -> dict[str, Result]:
         if path.suffix.lower() != ".csv":
             continue
         name = path.name.removesuffix(".csv").removesuffix(".events")
-        one = known[listed("results", name, tuple(known))]
+        one = known[choice("results", name, tuple(known))]
         table = folder / f"{name}.csv"
         if path == table:
             found[name] = read(one, path)
@@ -94,8 +94,7 @@ def _read_events(problem: Problem, path: Path) -> list[tuple[str, float]] | None
     found = []
     for row, entries in table.rows:
         then = _finite(problem, table, row, _entry(problem, table, row, "t", _text(entries, t)))
-        typed = _text(entries, kind).upper()
-        found.append((listed(f"kind of {problem.id}", typed, KINDS), then))
+        found.append((choice(f"kind of {problem.id}", _text(entries, kind), KINDS), then))
     return found
 
 

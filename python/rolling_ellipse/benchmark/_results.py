@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, array, number, shown
+from .._ask.check import FloatArray, array, choice, number, shown
 from .._core import EventKind
-from ._catalogue import listed
 from ._problem import COLUMNS, STATE, Problem
 
 KINDS = tuple(kind.name for kind in EventKind)
@@ -158,8 +157,7 @@ def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | No
             raise ValueError(
                 f"{name} must be pairs of kind and time, got {shown(event)} in row {row}"
             )
-        kind = getattr(pair[0], "name", pair[0])
-        kind = listed(name, kind.upper() if isinstance(kind, str) else kind, KINDS)
+        kind = choice(name, getattr(pair[0], "name", pair[0]), KINDS)
         t = number(f"t of {name}", pair[1])
         if not math.isfinite(t):
             raise ValueError(f"t of {name} must be finite, got {t} in row {row} ({kind})")

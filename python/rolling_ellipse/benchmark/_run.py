@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, positive, shown
-from ._catalogue import listed, scored_ones
+from .._ask.check import FloatArray, choice, positive, shown
 from ._catalogue import problems as able_to
+from ._catalogue import scored_ones
 from ._files import read_folder
 from ._problem import Problem
 from ._results import checked
@@ -122,7 +122,7 @@ def score(
     """
     given_results = results if isinstance(results, Mapping) else read_folder(results)
     names = tuple(one.id for one in scored_ones(None))
-    known = {listed("results", name, names): one for name, one in given_results.items()}
+    known = {choice("results", name, names): one for name, one in given_results.items()}
 
     def given(one: Problem, times: FloatArray, setting: Any) -> Any:
         if one.id not in known:

@@ -69,8 +69,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     """
     theta, _, r, sine, cosine = state(q, q_dot=q_dot)
     rates = coordinates("q_dot", q_dot)
-    choice("case", case, _CASES)
-    sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
+    sign = {"1": -1.0, "2": 1.0}.get(choice("case", case, _CASES), case_sign(theta))
     turning = rates[..., 3] - rates[..., 2]
     return rates[..., 0] + sign * (r * cosine * turning + rates[..., 4] * sine)
 

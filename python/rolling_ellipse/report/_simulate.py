@@ -25,6 +25,7 @@ from ._rows import CODE, along, direction, masses, misprints, rows
 Equations = Literal["corrected", "printed"]
 Consistent = Literal["refuse", "project", "as_given"]
 
+_EXPLICIT: tuple[Method, ...] = ("dopri5", "rk4")
 _EPS = float(np.finfo(float).eps)
 _ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: as large as one of `kinematics`
 _NAMES = (  # name and unit of a constraint, and the row that may be as printed
@@ -127,8 +128,8 @@ def simulate(
     IntegrationError
         If the integration of the corrected equations stops before the last time.
     """
-    choice("equations", equations, get_args(Equations))
-    choice("consistent", consistent, get_args(Consistent))
+    equations = choice("equations", equations, get_args(Equations))
+    consistent = choice("consistent", consistent, get_args(Consistent))
     body = Scene(a, b, mass=mass, gravity=gravity)
     times = sample_times(t)
     state = _vector("q", q), _vector("q_dot", q_dot)
@@ -142,7 +143,7 @@ def simulate(
     if method is None:
         method = "dopri5" if not corrected else "radau" if str(stabilization) == "ggl" else "dop853"
     if not corrected:
-        choice("method", method, ("dopri5", "rk4"))
+        method = choice("method", method, _EXPLICIT)
     settings = replace(
         DEFAULTS,
         model="multipliers",

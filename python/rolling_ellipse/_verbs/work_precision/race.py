@@ -129,7 +129,7 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
 def _own(spec: Any) -> Contender:
     """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
     if isinstance(spec, str):
-        name, arguments = spec, _named(spec)
+        name, arguments = spec.casefold(), _named(spec.casefold())
     elif isinstance(spec, Mapping) and all(isinstance(key, str) for key in spec):
         arguments = dict(spec)
         name = arguments.pop("name", "/".join(map(str, arguments.values())))

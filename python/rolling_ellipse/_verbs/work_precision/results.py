@@ -309,8 +309,7 @@ class WorkPrecision:
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
         if not number("at", at) > 0:
             raise ValueError(f"at must be positive, got {at!r}")
-        choice("x", x, ERRORS)
-        choice("y", y, QUANTITIES)
+        x, y = choice("x", x, ERRORS), choice("y", y, QUANTITIES)
         floor = self.judged_by(t_end).limits(x)[0]
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
