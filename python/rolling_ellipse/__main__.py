@@ -16,6 +16,7 @@ from pathlib import Path
 from matplotlib import rcParams
 
 from . import StabilityWarning, Status, Trajectory, examples, simulate
+from ._ask.printing import printable
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
@@ -66,7 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
-    print(message)
+    print(printable(message))
     for warning in caught:
         _complain(warning.message)
     return code
@@ -123,7 +124,7 @@ def _examples(options: argparse.Namespace) -> tuple[int, str]:
 
 def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
-        argument, *said = str(error).split() or [""]
+        argument, *said = printable(str(error)).split() or [""]
         print(f"{PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
 
 

@@ -26,7 +26,7 @@ from ._ask.check import (
     shaped,
     uniform_disc,
 )
-from ._ask.printing import Listed, brief
+from ._ask.printing import Listed, brief, printable
 
 if TYPE_CHECKING:
     from ._pictures.fit import FitChart
@@ -184,7 +184,7 @@ class FittedImpacts(Listed):
             object.__setattr__(self, f"{name}_error", float(measure(np.sort(self.errors))))
 
     def __repr__(self) -> str:
-        return (
+        return printable(
             f"<FittedImpacts {self.law}: restitution = {brief(self.restitution)} "
             f"± {self.restitution_error:.1g}, friction = {brief(self.friction)} "
             f"± {self.friction_error:.1g}, {self.errors.size} impacts, "

@@ -2,12 +2,14 @@
 
 import copy
 import dataclasses
+import io
 import json
 import pickle
 import re
 from collections.abc import Callable
 from html.parser import HTMLParser
 from operator import eq, ne
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ from oracles.pickles import fitted
 from rolling_ellipse._motion.events import Events
 
 SCENES = {name: getattr(rl.scenes, name) for name in rl.scenes.__all__}
+RACE = Path(__file__).parents[2] / "docs" / "peers_R_1.37.json"
 WEIRD = rl.Scene(
     3e-20, 2e-17, mass=1e30, gravity=1e-30, inertia=1e-5, slope=-1.5, friction=0.0, theta=1e50,
     omega=-0.0, x=-1e50,
@@ -135,6 +138,20 @@ def test_an_event_is_asked_for_by_its_kind() -> None:
         assert JUMP.when(event=kind).tolist() == JUMP.when(event=kind.name).tolist() == times
     assert JUMP.status == "COMPLETED" == rl.ends([JUMP.scene], 2.0).status[0]
     assert rl.outcome(REPORT) == "ROLLS_OVER" and REPORT.initial_state.mode == "ROLLING"
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "cp437", "utf-8"])
+def test_a_console_of_any_encoding_shows_all(encoding: str, monkeypatch: Any) -> None:
+    found, console = sliding(), io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    monkeypatch.setattr("sys.stdout", console)
+    print(*(make() for make in LISTED.values()), found, *found[:2], *rl.report.errata())
+    print(found[:1], [fitted()], rl.WorkPrecision.load(RACE).verdict(), rl.benchmark.problem("jam"))
+    print(rl.fit_motion(JUMP.t, JUMP.x, scene=JUMP.scene, free="omega", sigma=1e-3), repr(JUMP))
+    console.seek(0)
+    shown = console.read()
+    arrow, marks = ("→", "…±×µ") if encoding == "utf-8" else ("->", "")
+    assert f"ROLLING {arrow} SLIDING" in shown and all(mark in shown for mark in marks)
+    assert "\\u" not in shown and ("x_ddot" in shown) == (encoding != "utf-8")
 
 
 # -------------------------------------------------------------------------------------- tables

@@ -50,6 +50,7 @@ def typed(folder: Path, *arguments: str, **environment: str) -> Answer:
 def ran(folder: Path, *command: str, **environment: str) -> Answer:
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, timeout=120,
+        encoding=environment.get("PYTHONIOENCODING"),
         env=os.environ | {"MPLBACKEND": "Agg"} | environment,
     )  # fmt: skip
     return Answer(done.returncode, done.stdout, done.stderr)
@@ -108,6 +109,19 @@ def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
     assert lines["distance"].endswith(f", {trajectory.turns[-1]:.6g} turns")
     assert lines["smallest N"] == f"{certificate.smallest_normal_force:.6g} N"
     assert list(tmp_path.iterdir()) == []  # the command writes no file unless asked
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
+def test_a_console_of_any_encoding_is_written_to(encoding: str, tmp_path: Path) -> None:
+    """Eleven events, a name that no such console knows, a problem with an accent, and a refusal."""
+    told = {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
+    falls = ["--theta", "0.4", "--friction", "0.2", "--omega", "4", "--slope", "0.1"]
+    code, out, err = typed(tmp_path, *falls, "--time", "9", "--plot", "θ→.png", **told)
+    assert (code, err) == (0, "") and "events more" in out and (tmp_path / "θ→.png").is_file()
+    assert ("theta->.png" in out) == (encoding != "utf-8")
+    assert typed(tmp_path, "benchmark", "list", **told).code == 0
+    code, out, err = typed(tmp_path, "--save", "θ→.nothing", **told)
+    assert code == 2 and out == "" and "Traceback" not in err
 
 
 def test_json_on_stdout(tmp_path: Path) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import codecs
 import enum
 import importlib
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from typing import Any, ClassVar, TypeVar
+from unicodedata import digit, normalize
 
 import numpy as np
 
@@ -49,6 +52,32 @@ for _kind in (EventKind, Mode, Outcome, Validity):
     equal_to_names(_kind)
     for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
         setattr(_kind, _name, _face)
+
+
+_IN_ASCII = {
+    "→": "->", "…": "...", "±": "+/-", "×": "x", "µ": "u", "−": "-", "–": "-", "≈": "~", "′": "'",
+    "θ": "theta", "ψ": "psi", "λ": "lambda", "π": "pi", "∞": "inf", "\u0301": "", "\u0307": "_dot",
+    "\u0308": "_ddot", **{each: f"^{digit(each)}" for each in "¹²³⁴⁵⁶⁷⁸⁹"},
+}  # fmt: skip
+
+
+def _without_code(error: UnicodeError) -> tuple[str, int]:
+    """Return ASCII for what an encoding lacks, and the next place: an error handler of codecs."""
+    assert isinstance(error, UnicodeEncodeError)
+    lost = normalize("NFD", error.object[error.start : error.end])
+    return "".join(_IN_ASCII.get(each, ascii(each)[1:-1]) for each in lost), error.end
+
+
+codecs.register_error("rolling_ellipse", _without_code)
+
+
+def printable(text: str) -> str:
+    """Return a text that standard output can print: ASCII for characters that it has no code for.
+
+    Consoles of ASCII, Latin-1 and cp1252 raise an error for an arrow otherwise.
+    """
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    return text.encode(encoding, "rolling_ellipse").decode(encoding)
 
 
 def brief(value: Any) -> str:
@@ -109,7 +138,7 @@ class Listed:
         return [(name, with_unit(value, self._units.get(name, ""))) for name, value in found]
 
     def __str__(self) -> str:
-        return f"{type(self).__name__}\n{text_table(self._rows())}"
+        return printable(f"{type(self).__name__}\n{text_table(self._rows())}")
 
     def _repr_html_(self) -> str:
         return html_table(type(self).__name__, self._rows())

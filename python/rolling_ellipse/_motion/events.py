@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 import numpy as np
 
 from .. import _core
-from .._ask.printing import Row, brief, html_table, required, text_table
+from .._ask.printing import Row, brief, html_table, printable, required, text_table
 from .._ask.records import FieldsOnly, find_late, trusted
 from .._ask.scene import STATE_UNITS, InitialState, Scene
 from .._core import EventKind, Mode
@@ -85,7 +85,7 @@ class Event(FieldsOnly):
         return change
 
     def __repr__(self) -> str:
-        return (
+        return printable(
             f"<Event {self.kind.name} at t = {self.t:.9g} s, theta = {brief(self.theta)} rad, "
             f"x = {brief(self.x)} m: {self._change()}>"
         )
@@ -119,7 +119,9 @@ class Events(tuple[Event, ...]):
         return "1 event" if len(self) == 1 else f"{len(self)} events"
 
     def __repr__(self) -> str:
-        return f"{self._caption()}\n{text_table([_HEAD, *self._shown()])}" if self else "no events"
+        if not self:
+            return "no events"
+        return printable(f"{self._caption()}\n{text_table([_HEAD, *self._shown()])}")
 
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._ask.check import FloatArray, array, choice
-from .._ask.printing import Row, html_table, text_table
+from .._ask.printing import Row, html_table, printable, text_table
 from .._ask.scene import Scene
 from .._motion.inputs import value_of
 from .._motion.trajectory import Trajectory
@@ -73,7 +73,7 @@ class Fit:
         return rows
 
     def __repr__(self) -> str:
-        return f"{text_table(self._rows())}\n{self.message}"
+        return printable(f"{text_table(self._rows())}\n{self.message}")
 
     def _repr_html_(self) -> str:
         return html_table(self.message, self._rows())

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._ask.check import FloatArray, array, choice
+from .._ask.printing import printable
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
 from .._core import EventKind, Mode
@@ -101,7 +102,7 @@ class Problem(FieldsOnly):
     laws: dict[str, FloatArray]
 
     def __repr__(self) -> str:
-        return f"<Problem {self.id}: {self.question}>"
+        return printable(f"<Problem {self.id}: {self.question}>")
 
     @property
     def output_times(self) -> FloatArray:

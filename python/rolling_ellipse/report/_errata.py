@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._ask.printing import printable
 from .._ask.scene import Scene
 from .._motion.constraints import kinematics
 from .._verbs.classify import thresholds
@@ -38,7 +39,7 @@ class Comparison(NamedTuple):
         return self.printed - self.right
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Erratum:
     """One error of the report.
 
@@ -57,6 +58,9 @@ class Erratum:
     finding: str
     quantity: str
     evaluate: Callable[[], Comparison]
+
+    def __repr__(self) -> str:
+        return printable(f"<Erratum {self.where}, {self.printed}: {self.finding}>")
 
 
 def _rolling(theta: float, **other: float) -> dict[str, Any]:

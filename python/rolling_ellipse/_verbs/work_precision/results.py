@@ -12,7 +12,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import choice, file_name, number, shown
-from ..._ask.printing import Row, html_table, required, text_table
+from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, parsed, restored
@@ -202,7 +202,7 @@ class WorkPrecision:
         if none:
             why = ", which the reference could not tell" if none[0] < floor else ""
             lines.append(f"nobody has reached an error {_span(none)}{why}")
-        return "\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))])
+        return printable("\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))]))
 
     def gaps(self, *, t_end: float | None = None) -> Gaps:
         """Return the table of the runs that failed, were refused or were not run, with reasons.
