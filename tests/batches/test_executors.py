@@ -121,7 +121,7 @@ def test_every_pool_gives_the_same_bits(pool: Any, tmp_path: Path) -> None:
     simulate_many(NAMED * 5, TIMES, workers=workers, out=folder)
     assert list(load_many(folder)) == expected
     arrays = simulate_many(NAMED * 5, TIMES, workers=workers, returns="z")
-    assert np.array_equal(arrays["z"], [each.z for each in expected])
+    assert np.array_equal(arrays["z"], [each.z for each in expected])  # type: ignore[union-attr]
     body = {"a": 2.0, "b": 1.0, "omega": 1.0}
     for call in (
         lambda workers: rl.flow(2.0, theta=THETA, workers=workers, **body),

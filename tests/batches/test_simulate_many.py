@@ -133,6 +133,7 @@ def test_arrays_broadcast() -> None:
     assert len(found) == 12
     for one, other in zip(found, singly(each, TIMES), strict=True):
         require_same(one, other)
+        assert isinstance(one, rl.Trajectory)
         assert repr(one.scene) == repr(other.scene)  # repr shows the sign of a zero
 
 

@@ -68,7 +68,7 @@ def by_folder(scene: Scene, folder: Path) -> Scene:
 def by_arrays(scene: Scene, folder: Path) -> Scene:
     numbers = {name: np.array([getattr(scene, name)]) for name in FIELDS}
     (found,) = rl.simulate_many({**numbers, "impulse": scene.impulse}, [0.0])
-    return found.scene
+    return found.scene  # type: ignore[union-attr]
 
 
 ROADS: dict[str, Callable[[Scene, Path], Scene]] = {

@@ -158,7 +158,8 @@ if __name__ == "__main__":
 def test_pools_return_motions(how: str, tmp_path: Path) -> None:
     program, path = tmp_path / "pools.py", tmp_path / "found"
     program.write_text(POOLS)
-    jobs = [(rl.scenes.report, TIMES), (rl.scenes.rocking, 1.0), (rl.scenes.bounce, TIMES)]
+    scenes = (rl.scenes.report, rl.scenes.rocking, rl.scenes.bounce)
+    jobs: list[Any] = list(zip(scenes, (TIMES, 1.0, TIMES), strict=True))
     given = pickle.dumps((jobs, os.fspath(path)))
     subprocess.run([sys.executable, program, how], input=given, timeout=120, check=True)
     expected = [*(simulate(*job) for job in jobs), MOTIONS["stopped"]()]

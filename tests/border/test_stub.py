@@ -7,6 +7,8 @@ import re
 from pathlib import Path
 
 import rolling_ellipse
+from matplotlib import pyplot
+from oracles.every_verb import use
 from rolling_ellipse import _core
 
 STUB = ast.parse((Path(rolling_ellipse.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
@@ -60,3 +62,14 @@ def test_classes_have_the_members_of_the_extension() -> None:
         assert public(kind) == attributes | methods.keys() - {"__init__"}, name
         for method, function in methods.items():
             assert bound(getattr(kind, method)) == declared(function), f"{name}.{method}"
+
+
+def test_a_script_with_every_verb_runs_and_its_types_are_known(tmp_path: Path) -> None:
+    """mypy --strict reads the script with the tests; here it runs, and misses no verb."""
+    assert all(isinstance(number, float | int) for number in use(tmp_path))
+    script = inspect.getsource(use)
+    for name in rolling_ellipse.__all__:
+        of = getattr(rolling_ellipse, name)
+        if inspect.isfunction(of) and "._verbs" in of.__module__:
+            assert f"rl.{name}(" in script, name
+    pyplot.close("all")

@@ -145,9 +145,9 @@ def test_far_away_and_too_often() -> None:
 def test_what_is_kept_counts_where_it_begins() -> None:
     still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
     for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
-        assert still.when(**given).tolist() == [0.0]  # type: ignore[arg-type]
+        assert still.when(**given).tolist() == [0.0]  # type: ignore[call-overload]
         for direction in (1, -1):
-            assert still.when(**given, direction=direction).size == 0  # type: ignore[arg-type]
+            assert still.when(**given, direction=direction).size == 0  # type: ignore[call-overload]
     dropped = simulate(Scene(1.0, 1.0, z=2.0), 3.0)
     (rest,) = (event.t for event in dropped.events if event.state_after.mode is Mode.REST)
     assert dropped.at(2.0).mode is Mode.REST
@@ -190,7 +190,7 @@ def test_far_down_a_slope() -> None:
     assert abs(motion.at(t).theta - angle) <= 8 * EPS * angle
     for name in ("z", "omega"):
         with pytest.raises(ValueError, match=f"^{name} must be searched over at most 1000"):
-            motion.when(**{name: 1.5})  # type: ignore[arg-type]
+            motion.when(**{name: 1.5})  # type: ignore[call-overload]
 
 
 def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
@@ -233,7 +233,7 @@ def test_it_warns_only_where_nothing_is_proved() -> None:
         for scene in (rl.scenes.report, rl.scenes.rocking, rl.scenes.slope, rl.scenes.slip):
             motion = simulate(scene, 3.0)
             for given in ({"theta": 0.3}, {"x": 0.3}, {"omega": 0.3}, {"z": 1.1}):
-                motion.when(**given)  # type: ignore[arg-type]
+                motion.when(**given)  # type: ignore[call-overload]
             motion.when(contact_x=0.5)
         for scene in (rl.scenes.bounce, rl.scenes.jump):
             simulate(scene, 3.0).when(contact_x=[0.5, 0.7])

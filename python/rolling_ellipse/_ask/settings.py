@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import lru_cache, partial
 from operator import is_
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypedDict, get_args
 
 from .. import _core
 from .check import choice, number, optional_number, shown, whole
@@ -19,6 +19,23 @@ MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
 GIVEN: Any = "arrays"  # the method of a trajectory from arrays, which no setting is
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
+
+
+class Options(TypedDict, total=False):
+    """Arguments of `simulate_many` that are those of `simulate`, for its overloads."""
+
+    model: Model
+    method: Method
+    rtol: float
+    atol: float
+    step: float | None
+    stages: int | None
+    stabilization: Stabilization
+    baumgarte: tuple[float, float]
+    max_steps: int
+    max_events: int
+    rest_speed: float | None
+    raise_on_failure: bool
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, finite
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
-from ..geometry import contact_angle, contact_distance, support, support_slope
+from ..geometry import centre_path, contact_angle, contact_distance, support, support_slope
 from .samples import ContactSamples, fields_of, vector
 from .status import COMPLETED
 
@@ -25,7 +26,15 @@ _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body t
 _SAID = "Samples from arrays: nothing is proved of them."
 
 
-def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene: Scene) -> _Made:
+def from_arrays(
+    kind: type[_Made],
+    t: ArrayLike,
+    x: ArrayLike | None = None,
+    z: ArrayLike | None = None,
+    theta: ArrayLike | None = None,
+    *,
+    scene: Scene,
+) -> _Made:
     """Make a trajectory of samples from elsewhere: a tracker's, or another simulator's.
 
     Each track is the polynomial of fourth degree through five samples about the nearest one: rates
@@ -39,7 +48,8 @@ def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene:
     t : array_like, shape (n,)
         Increasing times since the start of the scene, n >= 5 [s].
     x, z, theta : array_like, shape (n,)
-        Centre [m] and angle [rad] without steps of half turns.
+        Centre [m] and angle [rad] without steps of half turns. Without x and z they are those of
+        rolling from the scene's start, as for the angles of an equation of motion.
     scene : Scene
         Body and ground; its start is what `plot_error` compares with.
 
@@ -51,11 +61,15 @@ def from_arrays(kind: type[_Made], t: Any, x: Any, z: Any, theta: Any, *, scene:
     times = vector("t", finite("t", t))
     if times.size < _NEAR or times[0] < 0 or not (np.diff(times) > 0).all():
         raise ValueError(f"t must be {_NEAR} or more increasing times [s] from 0 on, got {t!r}")
-    tracks = {"x": finite("x", x), "z": finite("z", z), "theta": finite("theta", theta)}
-    held = [vector(name, values, times.size) for name, values in tracks.items()]
-    samples = _Samples(require_scene(scene), times, np.stack(held, axis=1))
+    body, given = require_scene(scene), {"x": x, "z": z, "theta": theta}
+    if x is None and z is None and theta is not None:
+        axes = {"a": body.a, "b": body.b}
+        path = centre_path([body.theta, *finite("theta", theta).ravel()], **axes)
+        given |= {"x": body.x + path[1:] - path[0], "z": support(theta, **axes)}
+    held = [vector(name, finite(name, values), times.size) for name, values in given.items()]
+    samples = _Samples(body, times, np.stack(held, axis=1))
     return kind(
-        **fields_of(samples.samples(times)), scene=scene, model="contact",
+        **fields_of(samples.samples(times)), scene=body, model="contact",
         method=GIVEN, status=COMPLETED, message=COMPLETED.value, reason=_SAID, settings=DEFAULTS,
         valid_until=math.inf, t_end=float(times[-1]), span=float(times[-1]), kept_events=(),
     )  # fmt: skip

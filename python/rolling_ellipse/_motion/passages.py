@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
+import numpy.typing as npt
 
 from .._ask.categories import CompletenessWarning
 from .._ask.check import FloatArray, array, choice, finite, shown, whole
@@ -20,6 +21,23 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 
+_Number: TypeAlias = float | np.floating[Any] | np.integer[Any]
+_Several: TypeAlias = Sequence[_Number] | npt.NDArray[Any]
+
+
+@overload
+def when(
+    motion: Trajectory, *, theta: _Number | None = None, x: _Number | None = None,
+    z: _Number | None = None, omega: _Number | None = None, contact_x: _Number | None = None,
+    function: Callable[[Trajectory], Any] | None = None, event: str | EventKind | None = None,
+    direction: int = 0,
+) -> FloatArray: ...  # fmt: skip
+@overload
+def when(
+    motion: Trajectory, *, theta: _Several | None = None, x: _Several | None = None,
+    z: _Several | None = None, omega: _Several | None = None, contact_x: _Several | None = None,
+    direction: int = 0,
+) -> list[FloatArray]: ...  # fmt: skip
 def when(
     motion: Trajectory,
     *,

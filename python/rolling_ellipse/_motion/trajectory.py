@@ -315,7 +315,7 @@ class Trajectory(FieldsOnly):
 
     # -- the same motion at other times ----------------------------------------------------------
 
-    def sol(self, t: Any) -> Trajectory:
+    def sol(self, t: npt.ArrayLike) -> Trajectory:
         """Return the same motion at other times in [0, t_end], in any order.
 
         Parameters
@@ -391,7 +391,10 @@ class Trajectory(FieldsOnly):
         @classmethod
         def load(cls, path: _Path) -> Self: ...
         @classmethod
-        def from_arrays(cls, t: Any, x: Any, z: Any, theta: Any, *, scene: Scene) -> Self: ...
+        def from_arrays(
+            cls, t: npt.ArrayLike, x: npt.ArrayLike | None = None, z: npt.ArrayLike | None = None,
+            theta: npt.ArrayLike | None = None, *, scene: Scene,
+        ) -> Self: ...  # fmt: skip
 
     else:  # a type checker would take every name for an attribute
 

@@ -23,6 +23,10 @@ _SPEEDS = 2048  # number of speeds tried above the one that just reaches the tip
 _FASTEST = 1e3  # largest excess of these speeds, over the speed that just reaches the tip
 
 
+@overload
+def outcome(scene: Scene, impulse: None = None) -> Outcome: ...
+@overload
+def outcome(scene: Scene, impulse: Impulse) -> Any: ...
 def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArray[np.int8]:
     """Return the first outcome of the motion after a blow.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -104,6 +104,16 @@ find_late(
 )
 
 
+@overload
+def classify(
+    *, a: float, b: float, omega: float, theta: float = 0.0, friction: float = math.inf,
+    gravity: float = 9.81, gyration2: float | None = None, workers: Any = 1,
+) -> Outcome: ...  # fmt: skip
+@overload
+def classify(
+    *, a: Any, b: Any, omega: Any, theta: Any = 0.0, friction: Any = math.inf, gravity: Any = 9.81,
+    gyration2: Any = None, workers: Any = 1,
+) -> Any: ...  # fmt: skip
 @understood
 def classify(
     *,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, array, choice
 from .._ask.printing import Row, html_table, printable, text_table
@@ -92,7 +93,7 @@ class Fit:
 
 
 def fit_motion(
-    t: Any,
+    t: ArrayLike,
     x: Any = None,
     z: Any = None,
     theta: Any = None,

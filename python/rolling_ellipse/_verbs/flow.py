@@ -8,6 +8,7 @@ from types import NoneType
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from .._ask.check import FloatArray, array, evaluate, shaped, uniform_disc
@@ -19,7 +20,7 @@ _SCALARS = (float, int, np.float64)
 
 
 def flow(
-    t: Any,
+    t: ArrayLike,
     *,
     a: Any,
     b: Any,
@@ -97,7 +98,7 @@ def flow(
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
         with suppress(TypeError):  # an int beyond doubles is refused by name below
             if type(t) in _SCALARS:
-                return _core.flow_scalar(t, *one, gyration2, 0.0)
+                return _core.flow_scalar(t, *one, gyration2, 0.0)  # type: ignore[arg-type]
             times = array("t", t)
             if threads is None:
                 k2 = uniform_disc(a, b) if gyration2 is None else gyration2

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, array, common_shape
 from .._motion.differences import RULES, STEPS, WORST, Best, differenced, size
@@ -16,7 +17,7 @@ _FREE = ("t", "a", "b", "theta", "omega", "gravity", "slope", "gyration2")
 
 
 def flow_jacobian(
-    t: Any,
+    t: ArrayLike,
     *,
     a: Any,
     b: Any,

@@ -6,6 +6,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from .._ask.categories import StabilityWarning, ValidityWarning
@@ -24,7 +25,7 @@ _DEFAULT_SAMPLES = 1001
 @understood
 def simulate(
     scene: Scene,
-    t: Any,
+    t: ArrayLike,
     *,
     model: Model = DEFAULTS.model,
     method: Method = DEFAULTS.method,

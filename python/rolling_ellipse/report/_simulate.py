@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from .._ask.check import FloatArray, choice, finite, shown
@@ -62,7 +63,7 @@ class Start:
 def simulate(
     q: Any,
     q_dot: Any,
-    t: Any,
+    t: ArrayLike,
     *,
     a: float,
     b: float,

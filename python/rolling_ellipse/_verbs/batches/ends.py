@@ -101,7 +101,7 @@ class _Request:
 @understood
 def ends(
     scenes: Iterable[Scene] | Mapping[str, Any],
-    t: Any,
+    t: npt.ArrayLike,
     *,
     workers: Any = 1,
     progress: bool | Callable[[int, int | None], Any] = False,

@@ -4,29 +4,49 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeAlias, Unpack, overload
+
+from numpy.typing import ArrayLike
 
 from ... import _core
 from ..._ask.check import flag, shown
 from ..._ask.habits import understood
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene
-from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
+from ..._ask.settings import DEFAULTS, Method, Model, Options, Stabilization, settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
-from .answers import Answer, Request, answers, gathered, names_in
+from .answers import Answer, MotionArrays, Request, answers, gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
+_Scenes: TypeAlias = Iterable[Scene] | Mapping[str, Any]
+_Progress: TypeAlias = bool | Callable[[int, int | None], Any]
 
+
+@overload
+def simulate_many(
+    scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
+    out: None = None, returns: None = None, **options: Unpack[Options],
+) -> list[Answer]: ...  # fmt: skip
+@overload
+def simulate_many(
+    scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
+    out: None = None, returns: str | Iterable[str], **options: Unpack[Options],
+) -> MotionArrays: ...  # fmt: skip
+@overload
+def simulate_many(
+    scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
+    out: str | os.PathLike[str], **options: Unpack[Options],
+) -> str: ...  # fmt: skip
 @understood
 def simulate_many(
-    scenes: Iterable[Scene] | Mapping[str, Any],
-    t: Any,
+    scenes: _Scenes,
+    t: ArrayLike,
     *,
     workers: Any = 1,
-    progress: bool | Callable[[int, int | None], Any] = False,
+    progress: _Progress = False,
     out: str | os.PathLike[str] | None = None,
     returns: str | Iterable[str] | None = None,
     model: Model = DEFAULTS.model,
