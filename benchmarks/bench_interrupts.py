@@ -78,7 +78,7 @@ WORK: dict[str, Callable[[], Any]] = {
         lambda: classify(a=2.0, b=1.0, theta=ANGLES, omega=3.2, friction=0.4, workers=2)
     ),
     "Impulse.press of 20 million": again(lambda: Impulse.press(FORCES, 0.1)),
-    "Impulse of a list of 10 million": again(lambda: Impulse(LISTED)),
+    "Impulse of a list of 10 million": again(lambda: Impulse(jx=LISTED)),
     "thresholds above Painlevé's friction": lambda: [
         thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-4 * i).lift_off_speed
         for i in range(20_000)

@@ -420,7 +420,9 @@ def in_words(case: Case) -> rl.Scene:
     """The scene of a case as the package's `Scene`."""
     given = {name: value for name, value in case.scene._asdict().items() if value is not None}
     if case.blow:
-        given["impulse"] = rl.Impulse(case.blow.jx, case.blow.jz, dx=case.blow.dx, dz=case.blow.dz)
+        given["impulse"] = rl.Impulse(
+            jx=case.blow.jx, jz=case.blow.jz, dx=case.blow.dx, dz=case.blow.dz
+        )
     return rl.Scene(given.pop("a"), given.pop("b"), **given)
 
 

@@ -175,7 +175,7 @@ export class Workbench extends Live {
       && value !== null && value !== Infinity && value !== usual[name])
       .map(([name, value]) => `, ${name}=${value}`).join("");
     const { jx, jz, dx, dz } = others;
-    const blow = jx === null ? "" : `blow = rl.Impulse(${jx}, ${jz}, dx=${dx}, dz=${dz})\n`;
+    const blow = jx === null ? "" : `blow = rl.Impulse(jx=${jx}, jz=${jz}, dx=${dx}, dz=${dz})\n`;
     return `import rolling_ellipse as rl\n\n${blow}scene = rl.Scene(${a}, ${b}${numbers}${
       blow && ", impulse=blow"})\nmotion = rl.simulate(scene, ${this.given.t})\n`;
   }

@@ -1,5 +1,6 @@
 """`ends` has the last samples and the events of `simulate`, in any shape, by any workers."""
 
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -85,6 +86,20 @@ def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
     assert found.events[0] == impacts + 1
     kinds = [event.kind.name for event in rl.simulate(disc, 10.0, rest_speed=rest_speed).events]
     assert kinds == ["IMPACT"] * impacts + ["REST"]
+
+
+def test_a_table_of_ends_has_the_scenes_and_times() -> None:
+    grid = {"a": 2.0, "b": 1.0, "omega": [[1.0], [3.2]]}
+    found = rl.ends(grid, [0.5, 1.0, 1.5])
+    table, rows = found.to_xarray(), found.to_dataframe()
+    assert found.axes == ("omega0", "t") == table.x.dims and table.attrs["a"] == 2.0
+    assert np.array_equal(table.x, found.x) and table.t.values.tolist() == [0.5, 1.0, 1.5]
+    assert len(rows) == 6 and rows.theta[3.2, 1.0] == found.theta[1, 1]
+    listed = rl.ends([rl.scenes.jump, rl.scenes.report], [0.5, 1.0])
+    assert listed.axes == ("scene",) and listed.to_xarray().mass.values.tolist() == [1.0, 10.0]
+    assert pickle.loads(pickle.dumps(found)).to_xarray().equals(table)
+    assert len(rl.ends({"a": 2.0, "b": 1.0}, 1.0).to_dataframe()) == 1
+    assert len(rl.ends([], 1.0).to_dataframe()) == 0
 
 
 def test_a_time_after_all_is_refused_with_a_reason() -> None:

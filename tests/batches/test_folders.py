@@ -70,7 +70,7 @@ def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
     """Signs of zeros, infinite friction, missing arguments and last bits of a blow survive."""
     mine = [
         Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
-        Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(0.1, -0.0, dx=1 / 3)),
+        Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),
         Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
     ]
     simulate_many(mine, [1.0], out=out)

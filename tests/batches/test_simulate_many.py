@@ -123,12 +123,13 @@ def test_bodies_at_the_limits() -> None:
 def test_arrays_broadcast() -> None:
     """Arrays broadcast in C order, with numbers, None and blows among them."""
     a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
-    blow = Impulse(0.0, [[[-1.0]], [[-20.0]]], dx=0.5)
+    blow = Impulse(jx=0.0, jz=[[[-1.0]], [[-20.0]]], dx=0.5)
     grid = {"a": a[:, None], "b": 1, "friction": friction, "impulse": blow, "z": None, "x": -0.0}
     found = simulate_many(grid, TIMES)
     order = itertools.product([-1.0, -20.0], a, friction)
     each = [
-        Scene(a, 1, friction=mu, x=-0.0, impulse=Impulse(0.0, jz, dx=0.5)) for jz, a, mu in order
+        Scene(a, 1, friction=mu, x=-0.0, impulse=Impulse(jx=0.0, jz=jz, dx=0.5))
+        for jz, a, mu in order
     ]
     assert len(found) == 12
     for one, other in zip(found, singly(each, TIMES), strict=True):
@@ -142,7 +143,7 @@ def test_every_argument_of_a_scene_has_its_place() -> None:
     arguments: dict[str, Any] = {
         "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
         "friction": 0.7, "restitution": 0.3, "theta": 0.2, "omega": 0.4, "x": 5.0, "z": 6.0,
-        "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(0.1, -0.2, dx=0.3, dz=0.4),
+        "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(jx=0.1, jz=-0.2, dx=0.3, dz=0.4),
     }  # fmt: skip
     assert [*arguments, "unknown"] == list(inspect.signature(Scene).parameters)
     (found,) = simulate_many(arguments, TIMES)

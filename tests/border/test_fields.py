@@ -34,7 +34,7 @@ from rolling_ellipse._show.command_line import (
 )
 
 FIELDS = list(UNITS["Scene"])
-BLOW = Impulse(3.0, -5.0, dx=0.3, dz=-0.2)
+BLOW = Impulse(jx=3.0, jz=-5.0, dx=0.3, dz=-0.2)
 # A start in the air over a slope uses x_dot, z and z_dot; a new field gets a small number.
 GIVEN = {
     "a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.0, "inertia": 11.0, "slope": 0.2,

@@ -81,7 +81,8 @@ CALLS: dict[str, Call] = {
         lambda F, d: rl.outcome(Scene(2, 1), Impulse.press(F, d)),
         {"F": within(0, 9), "d": within(-2, 2)}),
     "ends": Call(
-        lambda t, **s: vars(rl.ends({**s, "friction": 0.4}, t)),
+        lambda t, **s: {name: each for name, each in vars(
+            rl.ends({**s, "friction": 0.4}, t)).items() if name not in ("axes", "_scenes")},
         {"t": within(0, 2), **BODY, **START}),
     "simulate_many": Call(
         lambda **s: rl.simulate_many({**s, "friction": 0.4}, FIRST / 9, returns=("x", "theta")),

@@ -22,7 +22,7 @@ LONG = {
     "contact": "simulate(FREE, [1e7], model='contact', **ON)",
     "thresholds": "rl.thresholds(2., 1., gyration2=.0435, friction=.25).lift_off_speed",
     "classify": "rl.classify(a=2., b=1., theta=ANGLES, omega=3.2, friction=.4, workers=2)",
-    "blows": "rl.outcome(rl.scenes.report, rl.Impulse(ANGLES[:5000]))",
+    "blows": "rl.outcome(rl.scenes.report, rl.Impulse(jx=ANGLES[:5000]))",
     "flow, times": "rl.flow(TIMES, a=2., b=1., theta=.1, omega=3.2)",
     "flow, bodies": "rl.flow(5., a=2., b=1., theta=ANGLES, omega=3.2, workers=2)",
     "exact": "simulate(R, TIMES)",

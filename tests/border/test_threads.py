@@ -74,7 +74,7 @@ KINDS: dict[str, Callable[[int], Any]] = {
     "thresholds": lambda i: rl.thresholds(**BODY, friction=0.1 + 0.1 * i).slip_speed,
     "period": lambda i: rl.period(rolling(i)),
     "outcome": lambda i: rl.outcome(rolling(i)),
-    "blows": lambda i: rl.outcome(scenes.report, rl.Impulse(np.linspace(-9.0, 9.0, 20 + i))),
+    "blows": lambda i: rl.outcome(scenes.report, rl.Impulse(jx=np.linspace(-9.0, 9.0, 20 + i))),
     "required": lambda i: rl.required_friction(rolling(i)),
     "constraints": lambda i: rl.constraints(
         *rl.kinematics(0.3 * i, np.linspace(-1.0, 1.0, 9), **BODY), **BODY

@@ -679,7 +679,7 @@ def test_a_rebound_of_a_rounding_on_the_tip_does_not_take_the_body_through_the_g
     """Rounding leaves the body no speed off the ground, and its weight presses it down."""
     scene = Scene(
         1.0, 0.8, gravity=1.0, inertia=0.41, friction=0.0, restitution=1.0,
-        theta=-3 * math.pi / 2, omega=1.0, impulse=Impulse(0.5, 0.0, dx=0.0, dz=0.4),
+        theta=-3 * math.pi / 2, omega=1.0, impulse=Impulse(jx=0.5, jz=0.0, dx=0.0, dz=0.4),
     )  # fmt: skip
     motion = simulate(scene, np.linspace(0.0, 2.0, 200), model="contact")
     assert np.min(motion.z - support(motion.theta, 1.0, 0.8).h) > -4 * EPS

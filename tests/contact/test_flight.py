@@ -149,7 +149,7 @@ def test_a_blow_that_presses_leaves_no_speed_into_the_ground(
     b: float, theta: float, omega: float, strength: float
 ) -> None:
     """The body flies at once from a closed gap with gap rate zero, after a blow of any strength."""
-    blow = Impulse(0.0, -strength, dx=0.0, dz=0.0)
+    blow = Impulse(jx=0.0, jz=-strength, dx=0.0, dz=0.0)
     scene = Scene(2.0, b, theta=theta, omega=omega, friction=0.6, impulse=blow)
     start = scene.initial_state
     assert start.mode is Mode.FLIGHT and start.reaction_z > 0
@@ -217,7 +217,7 @@ def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same(
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
     """The speed off the ground comes from the blow alone, without a difference of velocities that
     are 1e9 times as fast. Judged in 40 digits: speed and time take some ten operations each."""
-    blow = Impulse(0.3 * strength, strength, dx=0.2, dz=0.4)
+    blow = Impulse(jx=0.3 * strength, jz=strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]
     with mp.workdps(40):

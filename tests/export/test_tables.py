@@ -14,7 +14,7 @@ from rolling_ellipse._ask.scene import SCENE_UNITS
 from rolling_ellipse._motion.quantities import MODE, MULTIPLIERS, QUANTITIES, TIME
 
 BLOWN = rl.Scene(
-    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=rl.Impulse(1.0, -4.0, dx=0.5)
+    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=rl.Impulse(jx=1.0, jz=-4.0, dx=0.5)
 )
 SCENES = {"report": rl.scenes.report, "rocking": rl.scenes.rocking, "blown": BLOWN}
 

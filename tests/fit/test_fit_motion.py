@@ -115,7 +115,7 @@ def test_at_the_bounds(changes: dict[str, float]) -> None:
 def test_what_a_film_cannot_tell() -> None:
     """Without an impact no film tells restitution, at rest none tells friction, and points on
     the line of a blow are one; half turns of theta are not told and stay those of the scene."""
-    blow = Scene(friction=0.5, impulse=Impulse(0.3, -0.1, dx=-0.01, dz=0.02), **BODY)
+    blow = Scene(friction=0.5, impulse=Impulse(jx=0.3, jz=-0.1, dx=-0.01, dz=0.02), **BODY)
     for scene, free, lost in (
         (ROLL, ("theta", "restitution"), ["restitution"]),
         (Scene(friction=0.3, **BODY), ("x", "friction"), ["friction"]),
@@ -147,6 +147,17 @@ def test_without_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     with pytest.raises(ImportError, match=r"pip install 'rolling_ellipse\[fit\]'"):
         fit_motion(TIMES, **FILM, scene=DROP, free=FREE)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.4])
+def test_angles_alone_roll(start: float) -> None:
+    """The centre of the angles of an equation of motion is that of rolling."""
+    t = np.linspace(start, 1.0, 4000)
+    motion = simulate(ROLL.replace(theta=start, x=7.0), t, model="rolling")
+    mine = Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
+    for name in ("x", "z"):
+        assert getattr(mine, name) == pytest.approx(getattr(motion, name), rel=1e-14, abs=1e-14)
+    assert (mine.mode == Mode.ROLLING).all()
 
 
 def test_samples_from_arrays(tmp_path: Any) -> None:

@@ -102,8 +102,8 @@ def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
     along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
     return Impulse(
-        size * push,
-        size * rng.choice([-1.0, -1.0, 1.0]),
+        jx=size * push,
+        jz=size * rng.choice([-1.0, -1.0, 1.0]),
         dx=along * math.cos(theta) + across * math.sin(theta),
         dz=across * math.cos(theta) - along * math.sin(theta),
     )

@@ -128,7 +128,7 @@ def scene_arguments(draw: Draw, /, **given: Any) -> dict[str, Any]:
         reach = min(of["a"], of["b"])
         jx, jz = (draw(numbers(-2.0, 2.0)) * mass * speed for _ in range(2))
         dx, dz = (draw(numbers(-0.7, 0.7)) * reach for _ in range(2))
-        values["impulse"] = Impulse(jx, jz, dx=dx, dz=dz)
+        values["impulse"] = Impulse(jx=jx, jz=jz, dx=dx, dz=dz)
     return values
 
 

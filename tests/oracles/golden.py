@@ -116,7 +116,7 @@ def or_nan(value: float | None) -> float:
 def scene_of(row: tuple[float, ...]) -> rl.Scene:
     a, b, mass, gravity, inertia, slope, friction, restitution, theta, omega, x = row[:11]
     z, x_dot, z_dot = map(given, row[11:14])
-    blow = rl.Impulse(row[14], row[15], dx=row[16], dz=row[17]) if any(row[14:16]) else None
+    blow = rl.Impulse(jx=row[14], jz=row[15], dx=row[16], dz=row[17]) if any(row[14:16]) else None
     return rl.Scene(
         a, b, mass=mass, gravity=gravity, inertia=inertia, slope=slope, friction=friction,
         restitution=restitution, theta=theta, omega=omega, x=x, z=z, x_dot=x_dot, z_dot=z_dot,

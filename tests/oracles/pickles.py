@@ -60,7 +60,7 @@ def core_objects() -> dict[str, Any]:
     motion = rl.simulate(rl.scenes.bounce, 1.5)
     return {
         "Scene": motion.scene.core,
-        "Impulse": rl.Impulse(1.0).core,
+        "Impulse": rl.Impulse(jx=1.0).core,
         "Settings": motion.settings.core,
         "Solution": motion._solution,
     }

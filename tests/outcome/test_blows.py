@@ -36,7 +36,7 @@ def test_the_reports_blow() -> None:
     F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
     rocks, over = Outcome.ROCKS, Outcome.ROLLS_OVER
     expected = [rocks, rocks, over, over, Outcome.SLIPS, Outcome.LOSES_CONTACT]
-    assert np.array_equal(outcome(REPORT, Impulse(0.0, -F, dx=1.5)), expected)
+    assert np.array_equal(outcome(REPORT, Impulse(jx=0.0, jz=-F, dx=1.5)), expected)
     rough = replace(REPORT, friction=0.66)
     assert set(np.asarray(outcome(rough, Impulse.press(F[:5], 1.5))).tolist()) == {Outcome.SLIPS}
 
@@ -56,7 +56,7 @@ def test_starts_without_rolling() -> None:
         (Scene(2.0, 1.0, theta=math.pi / 2, omega=50.0), Outcome.LOSES_CONTACT),
     ):
         assert outcome(scene) is expected, scene
-        many = outcome(scene, Impulse([0.0, 0.0]))
+        many = outcome(scene, Impulse(jx=[0.0, 0.0]))
         assert np.array_equal(many, [expected] * 2), scene
 
 
@@ -103,7 +103,7 @@ def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
             for j in range(4):
                 one = Impulse.press(F[i, 0], d[j])
                 assert found[i, j] == outcome(scene, one) == outcome(replace(scene, impulse=one))
-        empty = outcome(scene, Impulse([]))
+        empty = outcome(scene, Impulse(jx=[]))
         assert isinstance(empty, np.ndarray) and empty.shape == (0,) and empty.dtype == np.int8
 
 
@@ -166,7 +166,7 @@ def test_required_friction_of_arrays_has_the_bits_of_scenes(to: Any) -> None:
             "slope": rng.choice([0.0, 0.0, 0.1, -0.3], 14)[::2], "inertia": 1.5,
         } | start  # fmt: skip
         if "impulse" in start:
-            given["impulse"] = Impulse(rng.normal(size=7), -3.0, dx=0.2, dz=0.0)
+            given["impulse"] = Impulse(jx=rng.normal(size=7), jz=-3.0, dx=0.2, dz=0.0)
         found = required_friction(given, to=to)
         assert isinstance(found, np.ndarray) and found.shape == (6, 7)
         for workers in (2, ThreadPoolExecutor(2)):
@@ -178,7 +178,7 @@ def test_required_friction_of_arrays_has_the_bits_of_scenes(to: Any) -> None:
                 if name != "impulse"
             }
             if "impulse" in start:
-                own["impulse"] = Impulse(float(given["impulse"].jx[j]), -3.0, dx=0.2, dz=0.0)
+                own["impulse"] = Impulse(jx=float(given["impulse"].jx[j]), jz=-3.0, dx=0.2, dz=0.0)
             assert found[i, j] == required_friction(Scene(**own), to=to), own
     alone = required_friction({"a": 2.0, "b": 1.0, "omega": 1.0}, to=to)
     assert type(alone) is float and required_friction({"a": [], "b": 1.0}).shape == (0,)  # type: ignore[union-attr]
@@ -197,8 +197,8 @@ def test_required_friction_where_it_is_known() -> None:
         (rl.scenes.drop, math.inf),
         (rl.scenes.slip, math.inf),
         (rl.scenes.slope, math.inf),
-        (replace(REPORT, impulse=Impulse(0.0, 1.0)), math.inf),
-        (replace(REPORT, impulse=Impulse(1.0, 0.0)), math.inf),
+        (replace(REPORT, impulse=Impulse(jx=0.0, jz=1.0)), math.inf),
+        (replace(REPORT, impulse=Impulse(jx=1.0, jz=0.0)), math.inf),
     ):
         assert required_friction(scene) == pytest.approx(expected, rel=4e-15), scene
 
@@ -235,7 +235,7 @@ def test_required_friction_in_a_well(seed: int) -> None:
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
 def test_the_speed_that_was_asked_for(theta: float, distance: float, before: float) -> None:
     """The blow law gives omega from F within the rounding of the gain and of both speeds."""
-    scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(3.0))
+    scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(jx=3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
     wanted = before + math.copysign(0.9, distance - lead)
     blow = blow_to(scene, distance, omega=wanted)

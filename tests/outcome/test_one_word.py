@@ -263,5 +263,5 @@ def test_a_blow_in_the_air_lifts_nothing() -> None:
     pressed = scenes.drop.replace(impulse=Impulse.press(6.17, 1.36)).initial_state
     told = "the body is in the air, and the blow changes its flight only; the body flies"
     assert pressed.reason == told
-    lifted = Scene(2.0, 1.0, impulse=Impulse(0.0, 1.0)).initial_state
+    lifted = Scene(2.0, 1.0, impulse=Impulse(jx=0.0, jz=1.0)).initial_state
     assert lifted.reason == "with the blow the body leaves the ground; the body flies"

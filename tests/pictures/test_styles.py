@@ -129,7 +129,7 @@ def test_properties_of_lines_are_taken(
         shown = picture(motions, ax=new_axes(), alpha=0.4, lw=3.3)
         for line in curves_of(shown):
             assert (line.get_alpha(), line.get_linewidth()) == (0.4, 3.3)
-    with pytest.raises(AttributeError, match="nonsense"):
+    with pytest.raises(TypeError, match="nonsense"):
         picture(several[0], ax=new_axes(), nonsense=1)
 
 

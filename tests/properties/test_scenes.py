@@ -48,7 +48,7 @@ def mirrored(scene: Scene) -> Scene:
     if scene.x_dot is not None:
         changes["x_dot"] = -scene.x_dot
     if (blow := scene.impulse) is not None:
-        changes["impulse"] = Impulse(-blow.jx, blow.jz, dx=-blow.dx, dz=blow.dz)
+        changes["impulse"] = Impulse(jx=-blow.jx, jz=blow.jz, dx=-blow.dx, dz=blow.dz)
     return scene.replace(**changes)
 
 

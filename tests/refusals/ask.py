@@ -42,8 +42,8 @@ REFUSALS: list[Row] = [
         friction=[-0.1, -1e-300, -INF, NAN, 1e7], restitution=[-0.1, 1.0000001, *NOT_FINITE],
         theta=[*NOT_FINITE, 1e51], omega=[*NOT_FINITE, 1e51, 1e8], x=[*NOT_FINITE, 1e51],
         x_dot=[*NOT_FINITE, 1e8], z=[*NOT_FINITE, 1e13, 0.5, 0.9], z_dot=[*NOT_FINITE, -0.1, 1e8],
-        impulse=[1, 48.0, (0.0, -48.0), "press", Impulse(1e9), Impulse([1.0, 2.0]),
-                 Impulse(0.0, -1.0, dx=3.0)],
+        impulse=[1, 48.0, (0.0, -48.0), "press", Impulse(jx=1e9), Impulse(jx=[1.0, 2.0]),
+                 Impulse(jx=0.0, jz=-1.0, dx=3.0)],
     ),
     *(("a/b", lambda _, a=a, b=b: Scene(a, b))
       for a, b in ((1e4, 1.0), (1000.1, 1.0), (1.0, 1000.1), (1e-9, 1.0), (1.0, 1e-20))),

@@ -141,7 +141,7 @@ REFUSALS: list[Row] = [
         ("['b'][1, 0]", {"b": [[1], [math.nan]], "theta": [0, 1, 2]}),
         ("['z'][1]", {"z": [2.0, math.nan]}), ("['z'][1]", {"z": [2, 0.5]}),
         ("['inertia']", {"inertia": math.nan}), ("['impulse']", {"impulse": 1}),
-        ("[1]", {"a": [2.0, 1e5]}), ("[1]", {"impulse": rl.Impulse(0, -1, dx=[0, 4])}))),
+        ("[1]", {"a": [2.0, 1e5]}), ("[1]", {"impulse": rl.Impulse(jx=0, jz=-1, dx=[0, 4])}))),
     ("scenes[0]", many([1])), ("scenes[3]", many([SCENE] * 3 + ["rocking"])),
     ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),
     *wrong(rl.simulate_many, {"scenes": [], "t": 1.0},

@@ -124,7 +124,7 @@ REFUSALS: list[Row] = [
            a=["2"], density=NOT_POSITIVE, thickness=NOT_POSITIVE),
     *wrong(rl.outcome, {"scene": ROLLING}, impulse=[1, Impulse.press(1.0, [0.0, 5.0])]),
     *wrong(rl.outcome, {}, scene=["flat"]),
-    ("impulse", lambda _: rl.outcome(Scene(2.0, 1.0, mass=1e-20), Impulse([0.0, 1e40], dz=1.0))),
+    ("impulse", lambda _: rl.outcome(Scene(2.0, 1.0, mass=1e-20), Impulse(jx=[0.0, 1e40], dz=1.0))),
     *wrong(rl.blow_to, {"distance": 1.0}, scene=[None, AIR, scenes.drop, scenes.rolling]),
     *wrong(rl.blow_to, {"scene": ROLLING}, distance=["1", 3.0, INF, NAN]),
     *wrong(rl.blow_to, {"scene": AT_REST, "distance": 1.0}, omega=["1", 0.0, NAN]),

@@ -175,6 +175,8 @@ REFUSALS: list[Row] = [
     *wrong(rl.animate(MOTION, **FILM).save, {"filename": "roll.gif"},
            writer=[WRONG, 42, [], np.array(["pillow"]), "no_such"]),
     ("options", lambda folder: page(folder, codec="x")),
+    (TypeError, lambda _: MOTION.plot_strobe(title="x")),
+    *(("path", lambda _, name=name: MOTION.plot(name)) for name in ("theta", "normal_force")),
     # players
     ("t_end", long_film),
     *wrong(rl.explore, {}, scene=[None, 42, "report", scenes, MOTION]),

@@ -117,6 +117,8 @@ def test_a_picture_that_is_refused_leaves_no_figure(all_provoked: list[Provoked]
 
 
 ours: Any = rolling_ellipse  # types refuse these calls, too
+HIT = {**dict.fromkeys(("theta", "x_dot", "z_dot", "omega", "friction"), 0.3), "restitution": 0}
+AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
 
 
 @pytest.mark.parametrize(
@@ -133,7 +135,13 @@ ours: Any = rolling_ellipse  # types refuse these calls, too
         ("did you mean impact?", lambda: ours.simulate(ours.scenes.report, 1.0).when(event="hit")),
         ("mean lift_off?", lambda: ours.simulate(ours.scenes.report, 1.0).when(event="Lift-Off")),
         ("did you mean rk4?", lambda: ours.simulate(ours.scenes.report, 1.0, method="RK-4")),
-        ("mean stronge?", lambda: ours.impacts.fit([[1]] * 4, [[1]] * 3, a=1, b=1, law="Strong")),
+        ("savefig('st.pdf')", lambda: ours.plot_strobe(AT_REST, "st.pdf")),
+        ("belongs to the Axes that are drawn on: their set(title", lambda: AT_REST.plot(title="x")),
+        ("their set(xlim=...)", lambda: AT_REST.plot_forces(xlim=(0, 1))),
+        ("did you mean color?", lambda: AT_REST.plot_phase(colour="r")),
+        ("no artist has", lambda: AT_REST.plot_paths(glow=True)),
+        ("plot(motion.t, motion.omega)", lambda: AT_REST.plot("omega")),
+        ("mean stronge?", lambda: ours.impacts.collide(**HIT, a=1, b=1, law="Strong")),
     ],
 )
 def test_a_word_of_habit_is_answered_with_ours(said: str, call: Any) -> None:

@@ -50,7 +50,7 @@ def random_scenes(count: int, seed: int = 5) -> list[Scene]:
         along_a, along_b = a * share * math.cos(place), b * share * math.sin(place)
         dx = along_a * math.cos(theta) + along_b * math.sin(theta)
         dz = along_b * math.cos(theta) - along_a * math.sin(theta)
-        impulse = Impulse(6 * jx, 6 * jz, dx=dx, dz=dz)
+        impulse = Impulse(jx=6 * jx, jz=6 * jz, dx=dx, dz=dz)
         inertia = MASS * max(a, b) ** 2 * rng.uniform(0.05, 0.6)
         start = {"theta": float(theta), "omega": float(omega), "inertia": float(inertia)}
         scenes.append(Scene(a, b, mass=MASS, friction=friction, impulse=impulse, **start))
@@ -139,12 +139,14 @@ def test_the_random_impulses_meet_every_outcome() -> None:
 def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
     """The product inf * 0 of mu = inf and Lambda_z = 0 is not formed. For a push at G, lying flat:
     m (k^2 + b^2) omega = J b."""
-    found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(push, 0.0)).initial_state
+    found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(jx=push, jz=0.0)).initial_state
     assert found.mode == Mode.ROLLING
     assert found.omega == pytest.approx(push * 1.0 / 2.25, rel=4 * EPS)
     assert found.reaction_z == 0
     assert found.reaction_x == pytest.approx(found.omega - push, rel=8 * EPS)
-    limited = Scene(2.0, 1.0, mass=1.0, friction=5.0, impulse=Impulse(push, 0.0)).initial_state
+    limited = Scene(
+        2.0, 1.0, mass=1.0, friction=5.0, impulse=Impulse(jx=push, jz=0.0)
+    ).initial_state
     assert limited.mode == Mode.SLIDING and limited.omega == 0 and limited.reaction_x == 0
 
 
@@ -162,7 +164,7 @@ def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
 
 def test_a_press_that_pulls_is_said_so() -> None:
     with pytest.warns(ValidityWarning, match=r"^F = -48\.0 N s pulls"):
-        assert Impulse.press(-48.0, 1.5) == Impulse(0.0, 48.0, dx=1.5)
+        assert Impulse.press(-48.0, 1.5) == Impulse(jx=0.0, jz=48.0, dx=1.5)
     assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # without a warning
 
 
@@ -191,7 +193,7 @@ def test_a_blow_beside_the_body_is_refused(
             1e-3 * max(axes),
             -1e3 * max(axes),
         ):  # in both directions, at any point of the line
-            blow = Impulse(size * jx, size * jz, dx=dx + 0.7 * a * jx, dz=dz + 0.7 * a * jz)
+            blow = Impulse(jx=size * jx, jz=size * jz, dx=dx + 0.7 * a * jx, dz=dz + 0.7 * a * jz)
             if meets:
                 assert Scene(a, b, theta=theta, impulse=blow).impulse == blow
             else:
@@ -203,11 +205,11 @@ def test_no_blow_is_nowhere() -> None:
     assert Scene(2.0, 1.0, impulse=Impulse(dx=5.0)).initial_state.omega == 0
     for size in (5e-324, 1e50):  # a blow of any size has a line
         with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
-            Scene(2.0, 1.0, impulse=Impulse(0.0, size, dx=5.0))
+            Scene(2.0, 1.0, impulse=Impulse(jx=0.0, jz=size, dx=5.0))
 
 
 def test_in_the_air_nothing_reacts() -> None:
-    scene = Scene(2.0, 1.0, mass=2.0, z=3.0, impulse=Impulse(1.0, -6.0, dx=0.5, dz=0.2))
+    scene = Scene(2.0, 1.0, mass=2.0, z=3.0, impulse=Impulse(jx=1.0, jz=-6.0, dx=0.5, dz=0.2))
     found = scene.initial_state
     assert found.mode == Mode.FLIGHT and found.reaction_x == found.reaction_z == 0
     assert (found.x_dot, found.z_dot) == (0.5, -3.0)
@@ -223,7 +225,7 @@ def test_restitution_does_not_take_part_in_an_applied_impulse() -> None:
                 theta=0.5,
                 friction=friction,
                 restitution=restitution,
-                impulse=Impulse(-1.0, -4.0, dx=0.6),
+                impulse=Impulse(jx=-1.0, jz=-4.0, dx=0.6),
             ).initial_state
             for restitution in (0.0, 0.9)
         )
@@ -240,7 +242,7 @@ def test_no_impulse_changes_nothing() -> None:
 
 @pytest.mark.parametrize("friction", [0.5, math.inf])
 def test_a_spin_that_counts_as_none_leaves_no_slip(friction: float) -> None:
-    blow = Impulse(0.0, -1.0, dx=1e-169)
+    blow = Impulse(jx=0.0, jz=-1.0, dx=1e-169)
     found = Scene(1.0, 1.0, friction=friction, impulse=blow).initial_state
     assert (found.omega, found.x_dot) == (0.0, 0.0)
     assert found.mode == Mode.REST

@@ -77,7 +77,7 @@ def test_what_was_gained_downhill_is_not_typed_again() -> None:
     reached = motion.scene_at(motion.t_end)
     energy = reached.omega**2 * (reached.gyration2 + 4.0) / (reached.gravity * 2.0)
     assert energy > MOST
-    for change in ({"omega": reached.omega}, {"impulse": Impulse(1.0)}):
+    for change in ({"omega": reached.omega}, {"impulse": Impulse(jx=1.0)}):
         with pytest.raises(ValueError, match=r"^omega must be at most .* for this body, got"):
             reached.replace(**change)
     # No ground holds it: it slips, or leaves where c = g cos(alpha) + h'' omega^2 is negative. The
@@ -133,6 +133,6 @@ def test_a_blow_brings_no_more_than_is_typed() -> None:
     """The largest impulse through the centre of a body at rest has J^2/2m = 1e12 m g L."""
     scene = Scene(2.0, 1.0, mass=3.0)
     most = 3.0 * math.sqrt(2 * MOST * 9.81 * 2.0)
-    scene.replace(impulse=Impulse(0.0, -most * (1 - 64 * EPS)))
+    scene.replace(impulse=Impulse(jx=0.0, jz=-most * (1 - 64 * EPS)))
     with pytest.raises(ValueError, match=r"^impulse must be weak enough .*, got 10000000000"):
-        scene.replace(impulse=Impulse(0.0, -most * (1 + 64 * EPS)))
+        scene.replace(impulse=Impulse(jx=0.0, jz=-most * (1 + 64 * EPS)))

@@ -36,34 +36,64 @@ def test_impulse_refuses_wrong_values_of_arrays_with_their_index(name: str, valu
 
 def test_an_impulse_of_arrays() -> None:
     jx = np.array([[1.0], [2.0]])
-    many = Impulse(jx, -3, dx=[0.0, 0.5, 1.0])
+    many = Impulse(jx=jx, jz=-3, dx=[0.0, 0.5, 1.0])
     jx[:] = 7.0
     assert many.shape == (2, 3) and many.jz == -3.0 and type(many.jz) is float
     assert np.array_equal(many.jx, [[1.0], [2.0]])
     assert not many.jx.flags.writeable and not many.dx.flags.writeable
-    assert Impulse(1.0).shape == () and Impulse([1.0]).shape == (1,) and Impulse([]).shape == (0,)
-    assert type(Impulse(np.array(1.0)).jx) is float
+    assert (
+        Impulse(jx=1.0).shape == ()
+        and Impulse(jx=[1.0]).shape == (1,)
+        and Impulse(jx=[]).shape == (0,)
+    )
+    assert type(Impulse(jx=np.array(1.0)).jx) is float
     with pytest.raises(ValueError, match=r"broadcast.*jx \(2,\), dz \(3,\)"):
-        Impulse([1.0, 2.0], dz=[1.0, 2.0, 3.0])
+        Impulse(jx=[1.0, 2.0], dz=[1.0, 2.0, 3.0])
     with pytest.raises(
         ValueError, match=r"one blow, got an Impulse of shape \(2, 3\): use outcome"
     ):
         scene(impulse=many)
 
 
+@pytest.mark.parametrize("bare", [(48.0, 1.5), (0.0, -1.0), (3,), ([1.0, 2.0], 1.0)])
+def test_components_without_names_are_warned_of(bare: tuple[Any, ...]) -> None:
+    with pytest.warns(
+        DeprecationWarning, match=r"components jx, jz .* Impulse\.press\(F, d\)"
+    ) as seen:
+        blow = Impulse(*bare)
+    assert seen[0].filename == __file__
+    assert blow == Impulse(**dict(zip(("jx", "jz"), bare, strict=False)))
+
+
+@pytest.mark.parametrize(
+    ("angle", "doubted"),
+    [({"theta": 90}, True), ({"omega": 180.0}, True), ({"theta": -45.0}, True),
+     ({"x": 90.0}, False), ({"theta": 1.5}, False), ({"omega": 20.0}, False)],
+)  # fmt: skip
+def test_an_angle_that_looks_like_degrees_is_doubted_in_print_only(
+    angle: dict[str, float], doubted: bool
+) -> None:
+    body = scene(**angle)
+    assert ("(degrees? times pi/180)" in str(body)) == doubted and "degrees" not in repr(body)
+
+
 def test_impulses_of_arrays_are_equal_by_value() -> None:
-    one, other = Impulse([1.0, 0.0], dx=2.0), Impulse(np.array([1.0, -0.0]), dx=2.0)
+    one, other = Impulse(jx=[1.0, 0.0], dx=2.0), Impulse(jx=np.array([1.0, -0.0]), dx=2.0)
     assert one == other and hash(one) == hash(other) and one != "one"
-    for different in (Impulse([1.0, 2.0], dx=2.0), Impulse([[1.0, 0.0]], dx=2.0), Impulse(1.0)):
+    for different in (
+        Impulse(jx=[1.0, 2.0], dx=2.0),
+        Impulse(jx=[[1.0, 0.0]], dx=2.0),
+        Impulse(jx=1.0),
+    ):
         assert one != different
-    assert Impulse(1.0) != Impulse([1.0])
-    assert Impulse(1.0, 2.0, dx=3.0) == Impulse(1, 2, dx=3, dz=0.0)
-    assert hash(Impulse(1.0, 2.0)) == hash(Impulse(1.0, 2.0))
+    assert Impulse(jx=1.0) != Impulse(jx=[1.0])
+    assert Impulse(jx=1.0, jz=2.0, dx=3.0) == Impulse(jx=1, jz=2, dx=3, dz=0.0)
+    assert hash(Impulse(jx=1.0, jz=2.0)) == hash(Impulse(jx=1.0, jz=2.0))
 
 
 def test_presses_of_arrays() -> None:
     found = Impulse.press([[1.0], [2.0]], [0.5, -0.5])
-    assert found == Impulse(0.0, [[-1.0], [-2.0]], dx=[0.5, -0.5]) and found.shape == (2, 2)
+    assert found == Impulse(jx=0.0, jz=[[-1.0], [-2.0]], dx=[0.5, -0.5]) and found.shape == (2, 2)
     for name, given in (("F", ([1.0, NAN], 0.5)), ("d", (1.0, [0.5, INF]))):
         with pytest.raises(ValueError, match=rf"^{name} must be .*, got (nan|inf) at index 1$"):
             Impulse.press(*given)
@@ -84,7 +114,7 @@ def test_scene_equality_and_hash() -> None:
     changes: dict[str, Any] = {
         **{name: 1.5 for name in ("a", "b", "mass", "gravity", "inertia", "z", "x_dot", "z_dot")},
         **{name: 0.25 for name in ("slope", "friction", "restitution", "theta", "omega", "x")},
-        "impulse": Impulse(1.0),
+        "impulse": Impulse(jx=1.0),
     }
     for name, value in changes.items():
         assert scene() != scene(**{name: value}), name

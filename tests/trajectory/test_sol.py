@@ -93,7 +93,7 @@ def test_scene_at_takes_another_impulse() -> None:
     """Another impulse changes omega: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
     whole = simulate(rl.scenes.report, 6.0)
     later = whole.scene_at(2.0)
-    again = dataclasses.replace(later, impulse=Impulse(2.0, -30.0, dx=0.3, dz=-0.1))
+    again = dataclasses.replace(later, impulse=Impulse(jx=2.0, jz=-30.0, dx=0.3, dz=-0.1))
     at = whole.sol(2.0)
     h, slope = at.z[0], at.contact_x[0] - at.x[0]
     moment = 2.0 * (h - 0.1) - 30.0 * (slope - 0.3)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, fields
-from typing import Any
+from functools import wraps
+from typing import Any, ParamSpec
 
 import numpy as np
 
 from .. import _core
 from .categories import ValidityWarning
-from .check import FloatArray, array, common_shape, copied, pieces
+from .check import FloatArray, array, common_shape, copied, pieces, shown
+
+_Given = ParamSpec("_Given")
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +28,9 @@ class Impulse:
     Parameters
     ----------
     jx, jz : float or array_like
-        Components along the ground and away from it [N s].
+        Components along the ground and away from it [N s], by name: without it, as in
+        ``Impulse(48, 1.5)``, they look like the force and the distance of `press`, and a
+        DeprecationWarning says so.
     dx, dz : float or array_like
         Point of attack relative to the centre, in ground axes [m].
 
@@ -81,7 +87,7 @@ class Impulse:
         force, distance = array("F", F), array("d", d)
         push = copied(force)
         try:
-            found = cls(0.0, np.negative(push, out=push), dx=distance)
+            found = cls(jz=np.negative(push, out=push), dx=distance)
         except ValueError:
             _let_the_core_refuse("jz", force, "F")
             _let_the_core_refuse("dx", distance, "d")
@@ -111,6 +117,25 @@ class Impulse:
         self.__dict__.update(state)
         for values in self._arrays.values():
             values.flags.writeable = False
+
+
+def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
+    """Warn of components without their names, which may be meant as those of `press`."""
+
+    @wraps(make)
+    def init(*given: _Given.args, **named: _Given.kwargs) -> None:
+        if len(given) > 1:  # the first is the impulse itself
+            said = (
+                f"Impulse({', '.join(map(shown, given[1:]))}) has the components jx, jz [N s]: "
+                "write their names, or Impulse.press(F, d) for a press F at the distance d"
+            )
+            warnings.warn(said, DeprecationWarning, stacklevel=2)
+        make(*given, **named)
+
+    return init
+
+
+Impulse.__init__ = _by_name(Impulse.__init__)  # type: ignore[method-assign]
 
 
 def numbers(name: str, value: Any) -> Any:

@@ -19,6 +19,7 @@ from .records import FieldsOnly, cached_property
 from .xml import to_mjcf, to_sdf
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
+_DEGREES = {"theta": 15.0, "omega": 45.0}  # whose multiples are more likely in degrees
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,7 +88,8 @@ class Scene(FieldsOnly, Listed):
         Mass [kg], acceleration of gravity [m/s^2].
     inertia : float, optional
         Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
-        a uniform disc, m (a^2 + b^2)/4.
+        None, a uniform disc, m (a^2 + b^2)/4. ``scene.mass * scene.gyration2`` is always its
+        number.
     slope : float
         Angle of the ground [rad], downwards in x; ``|slope| <= 1.5``.
     friction : float
@@ -261,13 +263,20 @@ class Scene(FieldsOnly, Listed):
         changed = self._changed()
         impulse = changed.pop("impulse", None)
         rows: list[Row] = [
-            (name, with_unit(value, SCENE_UNITS[name])) for name, value in changed.items()
+            (name, with_unit(value, SCENE_UNITS[name]) + _doubt(name, value))
+            for name, value in changed.items()
         ]
         start, after = self.initial_state, ""
         if impulse is not None:
             rows.append(("impulse", blow_in_words(impulse)))
             after = f", omega = {brief(start.omega)} rad/s after the blow"
         return [*rows, ("start", WHERE[start.mode] + after)]
+
+
+def _doubt(name: str, value: float) -> str:
+    """Return a word on a legal value in rad or rad/s that looks like one in degrees."""
+    whole = _DEGREES.get(name)
+    return " (degrees? times pi/180)" if whole and value and value % whole == 0 else ""
 
 
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)

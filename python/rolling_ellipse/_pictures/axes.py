@@ -19,7 +19,9 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox
 
-from .._ask.check import positive, shown
+from .._ask.check import file_name, positive, shown
+from .._ask.habits import meant
+from .._motion.quantities import QUANTITIES
 from .palette import Palette
 
 _Given = ParamSpec("_Given")
@@ -45,6 +47,7 @@ class Alone:
 # Figures opened by the running plot function
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
+_LOOKS = ("color", "linewidth", "linestyle", "alpha", "labels", "colors", "figsize", "ax", "count")
 _NARROW = 2.5  # width of axes with small letters [inch]
 _NAMED = 8  # most names of motions: more would fill the picture
 
@@ -126,9 +129,11 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
         before = _opened.set(figures)
         try:
             return draw(*args, **options)
-        except BaseException:
+        except BaseException as error:
             for figure in figures:
                 close(figure)
+            if isinstance(error, TypeError | AttributeError) and (hint := _hint(error, args)):
+                raise TypeError(f"{draw.__name__}() does not take {hint}") from None
             raise
         finally:
             _opened.reset(before)
@@ -139,6 +144,19 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
     text += "" if "\nReturns\n" in text else _RETURNS
     drawn.__doc__ = text.replace("{drawn}", draw.__annotations__["return"])
     return drawn
+
+
+def _hint(error: Exception, args: Sequence[Any]) -> str:
+    """Return what a picture was asked for in vain, and where it belongs, if that is known."""
+    name = str(error).partition("unexpected keyword argument ")[2].strip("'")
+    if hasattr(Axes, f"set_{name}"):
+        return f"{name}, which belongs to the Axes that are drawn on: their set({name}=...)"
+    if name:
+        return f"{name}, which no artist has{meant(name, _LOOKS)}"
+    files = [each for each in args if isinstance(each, str | os.PathLike)]
+    if files and "positional argument" in str(error):
+        return f"a path: the picture that it returns is written by savefig({shown(files[0])})"
+    return ""
 
 
 def axes_of(ax: Axes | None, size: tuple[float, float], figsize: Any = None) -> Axes:
@@ -192,6 +210,17 @@ def pyplot_figure(**options: Any) -> Figure:
         figure = plt.figure(**options)
         _opened.get().append(figure)
     return figure
+
+
+def picture_file(path: Any) -> str | None:
+    """Return the name of the file to write, if any, or raise an error; a quantity is none."""
+    name = None if path is None else file_name("path", path)
+    if any(name == each.name for each in QUANTITIES):
+        raise ValueError(
+            f"path must name a file such as '{name}.png', got {name!r}, which is a quantity: alone "
+            f"it is drawn by matplotlib's plot(motion.t, motion.{name})"
+        )
+    return name
 
 
 def write(drawn: Artists, name: str | None, *, new: bool) -> None:

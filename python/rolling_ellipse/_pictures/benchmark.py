@@ -10,8 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from .._ask.check import file_name
-from .axes import Artists, axes_of, name_curves, picture, title_beside_legend, write
+from .axes import Artists, axes_of, name_curves, picture, picture_file, title_beside_legend, write
 from .palette import palette_of
 
 if TYPE_CHECKING:  # _scores.py imports this file
@@ -34,7 +33,7 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     """Draw the scores; see `Scores.plot`."""
     if not scores:
         raise ValueError("scores must be of at least one problem, got none")
-    name = None if path is None else file_name("path", path)
+    name = picture_file(path)
     new = ax is None
     family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
     rows = sorted(family, key=family.__getitem__)

@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .._ask.check import file_name
-from .axes import Artists, figure_of, name_curves, picture, write
+from .axes import Artists, figure_of, name_curves, picture, picture_file, write
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import over_time
@@ -89,5 +88,5 @@ def _finished(chart: FitChart, whole: Figure, said: str, path: Any, own: bool) -
     whole.align_ylabels(chart.axes)
     width = whole.bbox.width / whole.get_figure(root=True).dpi
     whole.suptitle(fill(said, max(20, int(13 * width))), fontsize="medium")
-    write(chart, None if path is None else file_name("path", path), new=own)
+    write(chart, picture_file(path), new=own)
     return chart

@@ -12,10 +12,9 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from .._ask.check import file_name
 from .._motion.constraints import constraint_errors, energy_error, worst
 from .._motion.trajectory import Trajectory
-from .axes import Artists, figure_of, name_curves, picture, write
+from .axes import Artists, figure_of, name_curves, picture, picture_file, write
 from .comparison import Comparison
 from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
@@ -85,7 +84,7 @@ def plot(
     """
     check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
     shown = Comparison(trajectory).sampled(over_time)
-    name = None if path is None else file_name("path", path)
+    name = picture_file(path)
     whole = figure_of(figure, (8.6, 8.0), figsize)
     grid = whole.add_gridspec(4, 2, height_ratios=[1.6, 1, 1, 1])
     top = grid[0, :].subgridspec(1, 2, width_ratios=[2, 3])

@@ -80,7 +80,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
         return _core.outcome_array(scene.core, math.prod(shape), columns).reshape(shape)
     rows = np.broadcast_arrays(*columns)
     codes = [
-        _core.outcome(scene.replace(impulse=Impulse(jx, jz, dx=dx, dz=dz)).core)
+        _core.outcome(scene.replace(impulse=Impulse(jx=jx, jz=jz, dx=dx, dz=dz)).core)
         for jx, jz, dx, dz in zip(*rows, strict=True)
     ]
     return np.array(codes, dtype=np.int8).reshape(shape)

@@ -72,7 +72,8 @@ def simulate(
         Radau IIA of order 5 [4]_. "auto" is "exact".
     rtol, atol : float
         Allowed local error of the pairs in each component of the state (theta and omega, or the
-        five coordinates and their rates): atol + rtol times its size.
+        five coordinates and their rates): atol + rtol times its size. They do not matter where
+        ``motion.method`` is "exact": its errors are roundings.
     step : float, optional
         Size of steps [s]: required by "rk4", "gauss" and "radau"; with it "dop853" and "dopri5"
         take fixed steps without error control. The last step may be shorter.

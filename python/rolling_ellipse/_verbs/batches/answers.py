@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pickle
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -231,21 +231,8 @@ class MotionArrays(dict[str, FloatArray]):
         ImportError
             Without xarray: it comes with ``rolling_ellipse[data]``.
         """
-        found: Dataset = required("xarray", "to_xarray").Dataset(
-            {"status": (self.axes, self.status)},
-            {"t": ("t", self.t, attributes(TIME))},
-        )
-        for name, values in self.items():
-            found[name] = (*self.axes, "t"), values, attributes(_KNOWN[name])
-        for argument, column in zip((*NAMES, *BLOW), self._scenes.T, strict=True):
-            name, grid = name_of(argument), column.reshape(self.status.shape)
-            along = [axis for k, axis in enumerate(self.axes) if axis == name or _varies(grid, k)]
-            if along:
-                place = tuple(slice(None) if axis in along else 0 for axis in self.axes)
-                found.coords[name] = along, grid[place], {"units": _UNITS[argument] or "1"}
-            elif column.size and not np.isnan(column[0]):
-                found.attrs[name] = float(column[0])
-        return found
+        found = dataset_of(self, (*self.axes, "t"), self, self._scenes)
+        return found.assign_coords({"t": ("t", self.t, attributes(TIME))})
 
     def to_dataframe(self) -> DataFrame:
         """Return `to_xarray` as a pandas DataFrame: a row for each scene and time."""
@@ -253,6 +240,28 @@ class MotionArrays(dict[str, FloatArray]):
         frame: DataFrame = found.to_dataframe()
         frame.attrs = dict(found.attrs)
         return frame
+
+
+def dataset_of(
+    of: Any, dims: tuple[str, ...], values: Mapping[str, Any], scenes: FloatArray, **more: Any
+) -> Dataset:
+    """Return the status and quantities of motions as a Dataset, with the scenes as coordinates.
+
+    Columns of further arguments are treated as those of the scenes.
+    """
+    found: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
+    for name, array in values.items():
+        found[name] = dims, array, attributes(_KNOWN[name]) if name in _KNOWN else {}
+    columns = dict(zip((*NAMES, *BLOW), scenes.T, strict=True)) | more
+    for argument, column in columns.items():
+        name, grid = name_of(argument), column.reshape(of.status.shape)
+        along = [axis for k, axis in enumerate(of.axes) if axis == name or _varies(grid, k)]
+        if along:
+            place = tuple(slice(None) if axis in along else 0 for axis in of.axes)
+            found.coords[name] = along, grid[place], {"units": _UNITS.get(argument) or "1"}
+        elif grid.size and not np.isnan(grid.flat[0]):
+            found.attrs[name] = float(grid.flat[0])
+    return found
 
 
 def _varies(grid: FloatArray, axis: int) -> bool:

@@ -96,7 +96,7 @@ class SceneGrid:
         for name in ("a", "b"):
             if name not in arguments:
                 raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")
-        given = {**arguments}
+        given, self._beside = {**arguments}, beside
         if (impulse := given.pop("impulse", None)) is not None:
             if not isinstance(impulse, Impulse):
                 raise TypeError(
@@ -124,7 +124,7 @@ class SceneGrid:
         """Names of the axes: of the only argument that varies along it alone, or "scene"."""
         many = len(self.shape) > 1
         owners: list[list[str]] = [[] for _ in self.shape]
-        for name, values in self._arrays.items():
+        for name, values in (self._arrays | self._beside).items():
             first = len(self.shape) - values.ndim
             long = [k for k, size in enumerate(values.shape, first) if size != 1]
             if values.ndim == 1 or len(long) == 1:

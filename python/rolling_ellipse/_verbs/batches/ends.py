@@ -7,13 +7,13 @@ import pickle
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ... import _core
-from ..._ask.check import FloatArray, array, require
+from ..._ask.check import FloatArray, array, copied, require
 from ..._ask.habits import understood
 from ..._ask.progress import reporting
 from ..._ask.records import FieldsOnly
@@ -22,9 +22,13 @@ from ..._ask.settings import DEFAULTS, Settings
 from ..._motion.status import STATUSES, IntegrationError
 from ..simulate import simulate
 from ..workers import Lost
-from .answers import AT_AN_END, Tables
-from .asked import Chunk, asked
+from .answers import AT_AN_END, Tables, dataset_of
+from .asked import WIDTH, Chunk, SceneGrid, asked
 from .many import solved, worker_error
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
 
 Codes = npt.NDArray[np.int32]
 _NAMES = {code: each.name for code, each in STATUSES.items()} | {-1: "REFUSED"}
@@ -52,6 +56,10 @@ class Ends(FieldsOnly):
         Names of `Status`, or REFUSED.
     errors : dict
         The exceptions that `simulate` would raise, by the index of the scene, a tuple.
+    axes : tuple of str
+        Names of the axes, as of `MotionArrays`; "t" where the times vary alone.
+    t : ndarray
+        Times asked for [s].
     """
 
     theta: FloatArray
@@ -65,6 +73,29 @@ class Ends(FieldsOnly):
     first: npt.NDArray[np.int8]
     status: npt.NDArray[np.str_]
     errors: dict[tuple[int, ...], Exception]
+    axes: tuple[str, ...]
+    t: FloatArray
+    _scenes: SceneGrid | FloatArray
+
+    def to_xarray(self) -> Dataset:
+        """Return an xarray Dataset of the arrays; its quantities draw themselves, ``x.plot()``.
+
+        Arguments of the scenes and times that vary are coordinates, the others are in ``attrs``.
+
+        Raises
+        ------
+        ImportError
+            Without xarray: it comes with ``rolling_ellipse[data]``.
+        """
+        scenes = self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
+        names = (*STATE_UNITS, "mode", "events", "first")
+        values = {name: getattr(self, name) for name in names}
+        return dataset_of(self, self.axes, values, scenes, t=self.t)
+
+    def to_dataframe(self) -> DataFrame:
+        """Return `to_xarray` as a pandas DataFrame: a row for each scene."""
+        found = self.to_xarray()
+        return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{n} {name}" for name, n in Counter(self.status.flat).items())
@@ -147,7 +178,7 @@ def ends(
     if shape is not None and times.ndim:
         times = np.broadcast_to(times, shape)
     request, done = _Request(how, times.ravel()), 0
-    tables, errors = [_NONE], {}
+    tables, errors, rows = [_NONE], {}, [np.empty((0, WIDTH))]
     with reporting(progress, "scenes") as report:
         for chunk, found in solved(request, wanted.chunks(1), workers):
             if isinstance(found, Lost):
@@ -158,6 +189,7 @@ def ends(
                 index = (place,) if shape is None else np.unravel_index(place, shape)
                 errors[tuple(map(int, index))] = _error(chunk.scenes[k], request, place)
             done = chunk.begin + len(chunk.table)
+            rows += [chunk.table] if shape is None else []
             report(done, wanted.total)
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (done,) if shape is None else shape
@@ -167,6 +199,8 @@ def ends(
     return Ends(
         **state, mode=mode.astype(np.int8), events=events,
         first=first.astype(np.int8), status=names[ending + 1], errors=errors,
+        axes=wanted.axes, t=copied(np.broadcast_to(times, whole)),
+        _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),
     )  # fmt: skip
 
 
