@@ -1,7 +1,7 @@
 // Several doubles side by side, a Pack, and functions that give the same bits for a double and for
-// a Pack: templates over the number T. Files that include this are compiled once for every vector
-// level, as rolling/level/lanes_avx2.cpp. All names are in an anonymous namespace, so that no
-// function of a wide level can be linked into code for machines without it.
+// a Pack: templates over the number T. Some files that include this are compiled for every vector
+// level (rolling/level/kernel_code.hpp), the others once. All names are in an anonymous namespace,
+// so that no function of a wide level can be linked into code for machines without it.
 //
 // Every function that takes or returns a Pack is inlined: a call would pass it in other registers
 // in the wide version of a function (numerics/wide.hpp).

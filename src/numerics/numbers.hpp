@@ -17,8 +17,8 @@ inline constexpr double half_pi = 1.57079632679489655800e+00;
 // Largest difference [ulp] of numbers that count as equal: the rounding of a few operations.
 inline constexpr double equal_ulps = 8;
 
-// Largest size of positions, velocities, impulses, components of states and finite frictions:
-// products of a few of them stay within the doubles.
+// Largest size of positions, velocities, impulses and components of states: products of a few of
+// them stay within the doubles.
 inline constexpr double largest_number = 1e50;
 
 // 1.5 2^52: a sum with it is rounded to a whole number.

@@ -110,6 +110,14 @@ def test_the_tools_refuse_what_is_wrong(
     assert done.returncode == 1, done.stderr
 
 
+def test_contributors_are_told_to_format_every_source() -> None:
+    if not (ROOT / ".git").exists():
+        pytest.skip("no checkout, whose files git could list")
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    (listing,) = re.findall(r"^(git ls-files .*) \| xargs .*clang-format", page, re.MULTILINE)
+    assert {ROOT / name for name in run("sh", "-c", listing).split()} >= {*SOURCES} - {*GENERATED}
+
+
 # -------------------------------------------------------------- generated files and numbers
 
 
@@ -311,14 +319,18 @@ def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_pa
 
 
 def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., list[str]]) -> None:
-    """A compiler would fuse packed numbers; single fused numbers come from written calls of fma."""
+    """A compiler would fuse packed numbers; what is fused without its vectors is written so."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-    found = re.search(
-        r"set_source_files_properties\(([^)]*)PROPERTIES COMPILE_OPTIONS (.+)\)", build
-    )
-    assert found
-    for name in found[1].split():
-        assert all(each.endswith("sd") for each in fused(ROOT / name, found[2])), name
+    properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"
+    vectorized = [(name, flag) for names, flag in re.findall(properties, build)
+                  for name in names.split()]  # fmt: skip
+    assert len(vectorized) == 4 == 2 * build.count("COMPILE_OPTIONS -ftree-vectorize")
+    for name, flag in vectorized:
+        packed, written = (
+            [each for each in fused(ROOT / name, *more) if not each.endswith("sd")]
+            for more in ([flag], [])
+        )
+        assert packed == written and not any("addsub" in each for each in packed), name
 
 
 def test_every_source_is_built_and_included_once() -> None:

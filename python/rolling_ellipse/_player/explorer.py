@@ -45,7 +45,7 @@ def explore(
     language : str or mapping of str to str, optional
         "en" or "de"; or all texts, as `explore(scene).words` has them, with numbers in braces.
     live : bool, optional
-        Whether the page carries the core itself, compiled to WebAssembly (360 kB more), so that it
+        Whether the page carries the core itself, compiled to WebAssembly (0.4 MB more), so that it
         computes any blow between those of the table, too, with the numbers of `simulate`. Where a
         browser or a policy forbids WebAssembly, or this installation came without the file, it
         shows the nearest blow of its table, and says so.

@@ -1,1 +1,1 @@
-"""Motions in a shell, and methods of Trajectory that are imported late."""
+"""Motions in a shell."""
