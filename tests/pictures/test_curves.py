@@ -157,6 +157,11 @@ def test_values_have_the_digits_that_tell_them_apart(difference: float) -> None:
     assert shown == pytest.approx([3.2, other], rel=difference / 2, abs=0)
 
 
+def test_a_label_has_no_digits_that_tell_nothing_apart() -> None:
+    names = labels_of(motions(varied(friction=5 / 14), varied(friction=0.7)), None)
+    assert names == ["friction = 0.3571", "friction = 0.7"]
+
+
 def test_methods_come_first() -> None:
     other = dataclasses.replace(ROLLING, method="rk4")
     assert labels_of([ROLLING, other], None) == ["exact", "rk4"]

@@ -156,3 +156,26 @@ def test_bodies_in_one_place_do_not_pile_up_to_an_opaque_heap() -> None:
             alphas = pile(rl.plot_strobe(motion, ax=new_axes(4.0, 4.0), count=count))
             assert 1 - np.prod(1 - alphas) < 0.5
     assert np.all(pile(rl.plot_strobe(MOTIONS["report"], ax=new_axes())) > 0.09)
+
+
+def test_errors_that_only_the_rounding_of_the_angle_makes_are_under_its_line() -> None:
+    """Within two roundings: psi is a sum of two angles; the energy changes less with the angle."""
+    later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
+    panel = figure_of(later.ax).axes[-1]
+    (limit,) = (line for line in panel.lines if line.get_label() == "rounding of θ")
+    least = np.spacing(100.0)
+    for line in (later.position_error, later.velocity_error, later.energy_error):
+        assert (
+            np.nanmax(data(line)[1]) < 2 * np.max(data(limit)[1]) and data(limit)[1].min() >= least
+        )
+    short = rl.plot(MOTIONS["report"], figure=Figure())
+    assert "rounding of θ" not in [line.get_label() for line in figure_of(short.ax).axes[-1].lines]
+
+
+@pytest.mark.parametrize(("size", "unit"), [(1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (0.1, "m")])
+def test_the_figures_of_the_ground_are_short(size: float, unit: str) -> None:
+    body = rl.Scene(size, size / 2, omega=1.2 * rl.thresholds(size, size / 2).roll_over_speed)
+    film = rl.animate(rl.simulate(body, 3 * rl.period(body)), figure=Figure())
+    told = [label.get_text() for label in film.strips[0].ruler.labels]
+    assert all(text.endswith(f" {unit}") for text in told) and max(map(len, told)) <= 9
+    assert len(set(told)) == len(told)

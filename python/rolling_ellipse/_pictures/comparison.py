@@ -186,7 +186,7 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
 def _texts(name: str, values: list[Any]) -> list[str]:
     """Return the texts of one field of several scenes, with enough digits to differ."""
     texts: list[str] = []
-    for digits in (6, 12, 17):
+    for digits in (4, 6, 12, 17):
         texts = [_text(name, value, digits) for value in values]
         if len(set(texts)) == len(set(values)):
             break

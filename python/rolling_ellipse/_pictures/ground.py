@@ -118,6 +118,9 @@ class Ruler:
         on_slope = tilted(scene) + ax.transData
         steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
+        sizes = {1.0: "m", 1e3: "mm", 1e6: "µm"}
+        size = next((each for each in sizes if 5 * self.step * each > 9e-3), 1e6)
+        self._unit = size, sizes[size]
         self._fifths = math.ceil(span / (5 * self.step))
         self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
         grey = palette_of(ax).grey
@@ -143,4 +146,4 @@ class Ruler:
         for label, place in zip(self.labels, places[::5], strict=True):
             label.set_position((place, -2.2 * self._depth))
             label.set_visible(abs(place - x) < self._seen)
-            label.set_text(f"{place:.10g} m".replace("-", "−"))
+            label.set_text(f"{place * self._unit[0]:.10g} {self._unit[1]}".replace("-", "−"))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
@@ -18,12 +19,14 @@ from .axes import Artists, figure_of, name_curves, picture, picture_file, write
 from .comparison import Comparison
 from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
+from .palette import palette_of
 from .panels import draw_curves, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
 
 _STATES = {"theta": "θ [rad]", "omega": "ω [rad/s]", "z": "z of centre [m]"}
+_MANY = 100.0  # angle from which its rounding is drawn among the errors [rad]
 _SHARE = 0.16  # height of the bodies' axes over the width of the figure
 
 
@@ -66,7 +69,8 @@ def plot(
     """Draw one figure of a motion: positions, phase plane, curves over time and errors.
 
     Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
-    Where the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
+    From 100 rad on a line shows the rounding of the angle, which bounds exact motions, too. Where
+    the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
     ranges, as in `plot_forces`; the title then says so.
 
     Parameters
@@ -132,6 +136,10 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
     }
     word = "error, change" if trajectory.events else "relative error"
     position, velocity, energy = draw_errors(ax, shown, [errors], word)
+    if np.abs(trajectory.theta).max() > _MANY:  # an exact motion has these errors, too
+        limit = np.spacing(np.abs(trajectory.theta))
+        grey = palette_of(ax).grey
+        ax.plot(trajectory.t, limit, ":", color=grey, lw=1, zorder=1, label="rounding of θ")
     return position, velocity, energy
 
 
