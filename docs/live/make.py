@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from rolling_ellipse import Explorer, Scene, explore, geometry, scenes
-from rolling_ellipse._player.page import LANGUAGES, document, escaped, with_player, words
+from rolling_ellipse._ask.words import LANGUAGES
+from rolling_ellipse._player.page import document, escaped, with_player, words
 
 HERE = Path(__file__).resolve().parent
 

@@ -403,7 +403,7 @@ def test_two_motions_are_told_and_none_is_taken() -> None:
     c = GRAVITY + at.curvature * start.omega**2
     b = contact.normal - 2.0 * contact.coupling
     assert contact.slip > 0 and c < 0 and b < 0
-    assert start.mode is Mode.SLIDING and "two motions go on (Painleve)" in start.reason
+    assert start.mode is Mode.SLIDING and "Two motions are possible (Painleve)" in start.reason
     motion = simulate(INDETERMINATE, 1.0)
     assert motion.status is Status.JAMMED and "two motions" in motion.message
     assert kinds(motion) == [EventKind.JAM] and motion.t.tolist() == [0.0]
@@ -421,7 +421,7 @@ def test_a_blow_may_lead_to_two_motions() -> None:
     push = Impulse(jx=known(INDETERMINATE.x_dot) - start.x_dot)
     struck = dataclasses.replace(scene, impulse=push)
     assert struck.initial_state.mode is Mode.SLIDING
-    assert "two motions" in struck.initial_state.reason
+    assert "Two motions" in struck.initial_state.reason
     assert "two motions" in simulate(struck, 1.0).message
 
 
@@ -572,10 +572,10 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 
 IN_BALANCE = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
 STARTS = [
-    (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),
+    (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "Friction 0.05 cannot hold"),
     (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
-    (IN_BALANCE, Mode.REST, "no impulse; the body rests"),
-    (rl.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
+    (IN_BALANCE, Mode.REST, "There is no blow. It rests."),
+    (rl.scenes.report, Mode.ROLLING, "Free in the air it would turn at 5.76 rad/s. It rolls."),
 ]
 
 

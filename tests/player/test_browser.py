@@ -328,7 +328,7 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
     page.wait_for_function(f"{HOST}.player.t > 0.1")  # it plays after the release
     explorer = rl.explore(rl.scenes.report)
     assert blow(page) == (explorer.distances[0], explorer.strengths[-1])
-    assert page.locator(".said").inner_text().startswith("It rolls, then it slips.")
+    assert page.locator(".said").inner_text().startswith("It rolls, then it slips at t = ")
     page.locator(".where").fill("12")
     assert "It rests." in page.locator(".said").inner_text()
     page.get_by_role("button", name="copy as code").click()

@@ -1,15 +1,19 @@
 """The table of blows agrees with the motions of `simulate`."""
 
+import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.paths import ROOT
 from rolling_ellipse import Outcome
 from rolling_ellipse._player import blows
 
+BRACES = re.compile(r"\{\w+\}")
 SCENES = {
     "report": rl.scenes.report,
     "slope": rl.scenes.slope,
@@ -53,8 +57,10 @@ def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
     two, bounce = np.array([-1.36, 1.36]), rl.scenes.bounce
     found = blows.table(rl.scenes.drop, 5.4, two, np.array([6.17, 11.0]))
     assert found["outcomes"] == [Outcome.ROCKS] * 3 + [Outcome.ROLLS_OVER]
-    assert found["headlines"][3] == [["lands"], ["ROLLS_OVER_now"]]
-    assert blows.table(bounce, 5.4, two[:1], two[1:])["headlines"] == ([["bounces"]],)
+    struck = replace(rl.scenes.drop, impulse=rl.Impulse.press(11.0, 1.36))
+    lands = float(f"{rl.simulate(struck, 5.4).events[0].t:.4g}")
+    assert found["headlines"][3] == [["lands", {"t": lands}], ["ROLLS_OVER_now"]]
+    assert blows.table(bounce, 5.4, two[:1], two[1:])["headlines"] == [[["bounces"]]]
 
 
 def test_pages(tmp_path: Path) -> None:
@@ -69,3 +75,11 @@ def test_a_language_is_a_whole_table() -> None:
     german = rl.explore(rl.scenes.drop, language="de").words
     assert rl.explore(rl.scenes.drop, language=german).words == german
     assert {each.name for each in Outcome} < german.keys()
+    for folder in ("python/rolling_ellipse/_ask", "docs/live"):
+        english, german = (
+            json.loads((ROOT / folder / f"words_{each}.json").read_text("utf-8"))
+            for each in ("en", "de")
+        )
+        assert list(english) == list(german)
+        for key, text in english.items():  # both say the same numbers
+            assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(german[key])), key

@@ -103,7 +103,7 @@ def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
     assert lines["scene"] == "a = 2 m, b = 1 m, mass = 10 kg"
     assert lines["blow"] == "(0, -48) N s at (1.5, 0) m from the centre"
     assert lines["start"] == "on the ground, rolling, omega = 3.2 rad/s after the blow"
-    assert lines["reason"] == certificate.reason and lines["status"].startswith("COMPLETED: ")
+    assert lines["reason"] == trajectory.reason and lines["status"].startswith("COMPLETED: ")
     assert lines["full turn"] == f"{rl.period(rl.scenes.report):.12g} s"
     assert lines["distance"].startswith(f"{trajectory.x[-1]:.12g} m in 6 s, ")
     assert lines["distance"].endswith(f", {trajectory.turns[-1]:.6g} turns")
@@ -279,8 +279,8 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
     """A motion whose rolling ends continues: the body slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
     assert (code, err) == (0, "")
-    assert "COMPLETED" in out and "ends at theta" in out
-    assert named(out)["reason"].startswith("contact")
+    assert "COMPLETED" in out and "rolling is valid up to theta" in out
+    assert named(out)["reason"].startswith("It rolls, then it slips at t = ")
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]

@@ -157,7 +157,7 @@ def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -
     assert limit.mode is Mode.SLIDING
     assert "pull" in limit.reason and "cannot hold" not in limit.reason
     held = scene(**given, friction=0.01).initial_state
-    assert held.mode is Mode.SLIDING and "friction 0.01 cannot hold" in held.reason
+    assert held.mode is Mode.SLIDING and "Friction 0.01 cannot hold" in held.reason
 
 
 def test_gyration2() -> None:

@@ -56,8 +56,11 @@ def test_rolling_that_is_valid(scene: Scene) -> None:
         assert trajectory.status is Status.COMPLETED and trajectory.success
         assert trajectory.message == Status.COMPLETED.value
         assert trajectory.valid_until == math.inf and trajectory.events == ()
-        assert trajectory.reason == rl.certify(scene).reason
-        assert trajectory.reason.startswith("rolling: proved valid")
+        over = rl.outcome(scene) == rl.Outcome.ROLLS_OVER
+        does = "It rolls over." if over else "It rocks."
+        proved = rl.certify(scene).reason
+        assert trajectory.reason == f"{does} {proved}"
+        assert proved.startswith("Proved: it rolls for ever")
         assert trajectory.scene is scene
         assert np.all(trajectory.mode == Mode.ROLLING) and trajectory.mode.dtype == np.int8
         assert np.all(trajectory.normal_force > 0)
@@ -101,10 +104,14 @@ def test_rolling_that_ends(scene: Scene) -> None:
     assert spare(end * (1 + 1e-6))[0] < 0
     ends_at = rl.certify(scene).ends_at
     assert trajectory.sol(end).theta[0] == pytest.approx(ends_at, rel=1e-13)
-    assert "ends at theta" in trajectory.reason and trajectory.reason == rl.certify(scene).reason
+    assert ends_at is not None
+    proved = f"Proved: rolling is valid up to theta = {math.degrees(ends_at):.6g} deg, where "
+    assert rl.certify(scene).reason.startswith(proved)
+    told = f"It rolls, then it slips at t = {end:.6g} s. {rl.certify(scene).reason}"
+    assert trajectory.reason == told
     followed = simulate(scene, 10.0)
     assert followed.model == "contact" and followed.valid_until == math.inf
-    assert followed.reason == f"contact ({trajectory.reason})"
+    assert followed.reason == told
     assert followed.events[0].kind is rl.EventKind.SLIP and followed.events[0].t == end
     short = simulate(scene, 0.99 * end, model="rolling")  # a warning would be an error here
     assert short.status is Status.COMPLETED and short.valid_until == end
@@ -114,7 +121,7 @@ def test_what_cannot_start_rolling_is_valid_until_zero() -> None:
     with pytest.warns(ValidityWarning):
         trajectory = simulate(Scene(2.0, 1.0, theta=0.5, friction=0.01), 2.0, model="rolling")
     assert trajectory.valid_until == 0 and trajectory.t.size == 1001
-    assert "cannot start" in trajectory.reason
+    assert trajectory.reason == "It slips at once. Friction 0.01 cannot hold the contact."
 
 
 @pytest.mark.parametrize("theta", [0.0, math.pi / 2])
@@ -122,7 +129,7 @@ def test_rest(theta: float) -> None:
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0, friction=0.0)
     trajectory = simulate(scene, 5.0)
     assert trajectory.status is Status.COMPLETED and np.all(trajectory.mode == Mode.REST)
-    assert trajectory.reason.startswith("rest")
+    assert trajectory.reason.startswith("It rests. Proved: it stays at rest")
     for name in ("theta", "x", "z", "psi", "r"):
         assert np.all(getattr(trajectory, name) == getattr(trajectory, name)[0])
     for name in ("omega", "x_dot", "z_dot", "psi_dot", "r_dot", "turns"):
@@ -229,7 +236,7 @@ def test_the_default_settings_are_made_once() -> None:
 def test_reason_and_stats_are_found_when_asked_for() -> None:
     motion = simulate(Scene(2.0, 1.0, omega=3.2), [1.0])
     assert not {"reason", "stats"} & vars(motion).keys()
-    assert motion.reason == rl.certify(motion.scene).reason
+    assert motion.reason == f"It rolls over. {rl.certify(motion.scene).reason}"
     assert motion.stats == {"segments": 1, "steps": 0, "rejected_steps": 0, "evaluations": 0}
     assert motion.sol(0.5).reason is motion.reason
 

@@ -1,17 +1,19 @@
-"""The reason of an initial state: effect of the blow and motion after it, as codes and in words.
-
-The page of `explore` has sentences of its own for the codes.
-"""
+"""What a start does and what is proved of its rolling: sentences as keys of the words."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from .._core import Mode, Painleve
+from .. import _core
+from .._core import Mode, Painleve, Validity
+from .words import filled, numbers_in, table
 
 if TYPE_CHECKING:
     from .scene import Impulse, Scene
+
+Sentence = tuple[str, dict[str, float]]  # a key, and the numbers for the braces of its text
 
 WHERE = {
     Mode.ROLLING: "on the ground, rolling",
@@ -19,27 +21,22 @@ WHERE = {
     Mode.FLIGHT: "in the air",
     Mode.REST: "on the ground, at rest",
 }
-AS_IT_MOVES = "as_it_moves"  # the code of the motion that the velocities at the start suggest
-_SAID = {  # parts of the sentence about a start; numbers by their names in the core
-    "stopped": "{slip_removal}",
-    "no_blow": "no impulse",
-    "in_the_air": "the body is in the air, and the blow changes its flight only",
-    "thrown": "with the blow the body leaves the ground",
-    "slides_off": "the blow makes the contact slip: friction {friction:g} gives an impulse of "
-    "{reaction_x:.6g} N s against {reaction_z:.6g} N s of pressure",
-    "sticks": "the contact sticks: the ground gives {reaction_x:.6g} N s along and "
-    "{reaction_z:.6g} N s away from it; without it omega would be {free_omega:.6g} rad/s",
-    AS_IT_MOVES: "the body {does}",
-    "wedged": "the body rolls; {why_it_rolls}",
-    "no_motion": "the contact slides and jams: no motion of a rigid body goes on (Painleve)",
-    "two_motions": "the contact slides and two motions go on (Painleve), in flight and pressed "
-    "against the ground: rigid mechanics does not choose",
-    "no_grip": "friction {friction:g} cannot hold the contact: the body slides",
-    "pulled": "the ground would have to pull: the body flies",
-    "not_pressed": "the ground would have to pull: the body slides, not pressed "
-    "(infinite friction)",
-}
 _DOES = {Mode.ROLLING: "rolls", Mode.SLIDING: "slides", Mode.FLIGHT: "flies", Mode.REST: "rests"}
+_NO_MORE = ("wedged", "no_motion", "two_motions")  # keys that tell the motion, too
+_HELD = (Mode.ROLLING, Mode.REST)
+_VALIDITIES = tuple(Validity)  # members, at the places of their codes
+_ASCII = str.maketrans({"θ": "theta", "°": " deg", "é": "e", "−": "-", "∞": "inf"})
+
+
+def said(key: str, **numbers: float) -> Sentence:
+    """Return a sentence with those of the numbers that its text has."""
+    return key, {name: numbers[name] for name in numbers_in(key)}
+
+
+def in_words(sentences: Iterable[Sentence]) -> str:
+    """Return sentences in English, in letters that every console has."""
+    texts = (filled(table("en"), key, 6, **numbers) for key, numbers in sentences)
+    return " ".join(texts).translate(_ASCII)
 
 
 def blow_in_words(impulse: Impulse) -> str:
@@ -50,34 +47,89 @@ def blow_in_words(impulse: Impulse) -> str:
     )
 
 
-def effect(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the code of the effect of the blow on the contact."""
+def effect(scene: Scene, start: dict[str, Any]) -> Sentence:
+    """Return what the blow does to the contact."""
+    slides = "lifted" if scene.friction == math.inf else "slides_off"
+    by_mode = {Mode.FLIGHT: "thrown", Mode.SLIDING: slides}
     if start["slip_removal"]:
-        return "stopped"
-    if scene.impulse is None:
-        return "no_blow"
-    if not start["touching"]:
-        return "in_the_air"
-    by_mode = {Mode.FLIGHT: "thrown", Mode.SLIDING: "slides_off"}
-    return by_mode.get(start["mode_by_velocity"], "sticks")
+        key = "stopped"
+    elif scene.impulse is None:
+        key = "no_blow"
+    elif not start["touching"]:
+        key = "in_the_air"
+    else:
+        key = by_mode.get(start["mode_by_velocity"], "sticks")
+    return said(
+        key, energy=start["energy_lost"], along=start["reaction_x"], up=start["reaction_z"],
+        omega=start["free_omega"], mu=scene.friction,
+    )  # fmt: skip
 
 
-def motion_after(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the code of the motion after t = 0, and why if its velocities suggest another one."""
+def motion_after(scene: Scene, start: dict[str, Any]) -> list[Sentence]:
+    """Return why the motion after t = 0 is not the one that its velocities suggest."""
     mode = start["mode"]
     if start["why_it_rolls"]:
-        return "wedged"
+        return [said("wedged")]
     if start["paradox"] is not Painleve.DETERMINED:
-        return str(start["paradox"].name).lower()
+        return [said(start["paradox"].name.lower())]
     if mode is start["mode_by_velocity"] or mode is Mode.REST:
-        return AS_IT_MOVES
-    if mode is not Mode.SLIDING:
-        return "pulled"
-    return "no_grip" if scene.friction < math.inf else "not_pressed"
+        return []
+    grips = mode is not Mode.SLIDING or scene.friction == math.inf
+    return [said("pulled" if grips else "no_grip", mu=scene.friction)]
 
 
-def reason(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the sentence about a start."""
-    known = start | {"friction": scene.friction, "does": _DOES[start["mode"]]}
-    codes = effect(scene, start), motion_after(scene, start)
-    return "; ".join(_SAID[code].format_map(known) for code in codes)
+def limit(friction: float) -> Sentence:
+    """Return how much friction there is."""
+    return said("unlimited" if friction == math.inf else "friction", mu=friction)
+
+
+def proved(scene: Scene) -> dict[str, Any]:
+    """Return the numbers of a certificate by their names."""
+    found = _core.certify(scene.core)
+    del found["reason"]
+    return found | {"validity": _VALIDITIES[found["validity"]]}
+
+
+def rolling(scene: Scene, start: dict[str, Any], proof: dict[str, Any]) -> list[Sentence]:
+    """Return what is proved of rolling, by which friction, and what the blow needs."""
+    validity, angle = proof["validity"], proof["ends_at"]
+    if start["mode"] not in _HELD:
+        return []
+    if angle is not None:
+        ends = "ends_pull" if scene.friction == math.inf else "ends_grip"
+        key = "on_edge" if validity is Validity.EDGE else ends
+    elif start["mode"] is Mode.REST:
+        key = "stays"
+    else:
+        angle = proof["smallest_normal_force_angle"]
+        known = angle is not None and proof["largest_friction_needed"] < math.inf
+        key = "proved" if known and validity is Validity.VALID else "rolls"
+    found = [said(
+        key, N=proof["smallest_normal_force"], ratio=proof["largest_friction_needed"],
+        angle=math.degrees(angle or 0.0), mu=scene.friction,
+    )]  # fmt: skip
+    if key != "ends_grip":
+        found.append(limit(scene.friction))
+    needed = _core.sticking_friction(scene.core)
+    if effect(scene, start)[0] == "sticks" and 0 < needed < math.inf:
+        found.append(said("blow_needs", needed=needed))
+    return found
+
+
+def reason_of_start(scene: Scene, start: dict[str, Any]) -> str:
+    """Return what the blow does and how the body moves after it."""
+    after = motion_after(scene, start)
+    text = in_words([effect(scene, start), *after])
+    return text if after and after[0][0] in _NO_MORE else f"{text} It {_DOES[start['mode']]}."
+
+
+def reason_of_proof(scene: Scene, proof: dict[str, Any]) -> str:
+    """Return what a certificate proves of rolling."""
+    start = _core.initial_state(scene.core)
+    stopped = [each for each in (effect(scene, start),) if each[0] == "stopped"]
+    after = motion_after(scene, start)
+    if proof["validity"] is Validity.NO_PROOF:
+        return in_words([*stopped, said("no_proof")])
+    if start["mode"] not in _HELD:
+        return in_words([*stopped, said("cannot_start"), *after])
+    return in_words([*stopped, *after, *rolling(scene, start, proof)])

@@ -14,7 +14,7 @@ from .check import number, positive, shown
 from .habits import meant
 from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
-from .reason import WHERE, blow_in_words, reason
+from .reason import WHERE, blow_in_words, reason_of_start
 from .records import FieldsOnly, cached_property
 from .xml import to_mjcf, to_sdf
 
@@ -245,7 +245,7 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
-        return InitialState(**known, reason=reason(self, start))
+        return InitialState(**known, reason=reason_of_start(self, start))
 
     to_mjcf, to_sdf = to_mjcf, to_sdf
 

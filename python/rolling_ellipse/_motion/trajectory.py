@@ -37,6 +37,7 @@ from .samples import (
     vector,
 )
 from .status import STATUSES, Status
+from .told import reason
 
 if TYPE_CHECKING:
     import os
@@ -114,7 +115,8 @@ class Trajectory(FieldsOnly):
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
     scene, model, method, status, message, reason : Scene, str, str, Status, str, str
-        Scene, model and method used, how the motion ended, and what is proved of rolling.
+        Scene, model and method used, how the motion ended, and what happens in it: when rolling
+        ends, then what is proved of it, and the friction that it and the blow need.
     valid_until : float
         Time until which the model is true [s]; infinite if it always is.
     t_end : float
@@ -457,11 +459,6 @@ def _require_counts(stats: Any) -> None:
             raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
-def _reason(self: Trajectory) -> str:
-    """One sentence: the model, and what the certificate proves of rolling."""
-    return self._solution.reason(self.scene.core)
-
-
 def _valid_until(self: Trajectory) -> float:
     """Time until which the model is true [s]; infinite if it always is."""
     return self._solution.valid_until(self.scene.core)
@@ -479,7 +476,7 @@ def _told(meaning: str, read: Callable[[_core.Solution], Any]) -> Callable[[Traj
 
 find_late(
     Trajectory,
-    reason=_reason,
+    reason=reason,
     stats=_told(f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda s: s.stats),
     model=_told("Model used.", lambda s: s.model),
     method=_told("Method used.", lambda s: s.method),

@@ -11,8 +11,9 @@ const SAMPLE = ["x", "z", "theta", "x_dot", "z_dot", "omega", "normal_force", "f
 const KINDS_OF_EVENT = ["slip", "stick", "reverse", "lift off", "impact", "rest", "jam"];
 const OUTCOMES = ["RESTS", "ROCKS", "ROLLS_OVER", "SLIPS", "LOSES_CONTACT", "JAMS", "EDGE"];
 export const [COMPLETED, JAMMED, UNDETERMINED] = [0, 5, 6]; // codes of Ending
+const ENDS = { slip: "SLIPS", "lift off": "LOSES_CONTACT", jam: "JAMS" }; // of rolling
 const [ROLLING, REST] = [0, 3]; // of Mode, beside those of strip.js
-const [VALID, EDGE, NO_PROOF] = [0, 2, 3]; // of Validity
+const [VALID, EDGE] = [0, 2]; // of Validity
 
 export class Core {
   /** The core from its bytes; an error where the page may not use WebAssembly. */
@@ -56,41 +57,50 @@ function read(numbers, facts, samples) {
   found.columns = Object.fromEntries(SAMPLE.map((name) => [name, new Float64Array(samples)]));
   for (let i = 0; i < samples; i++)
     for (const name of SAMPLE) found.columns[name][i] = numbers[next++];
-  found.reason = wordsOf(numbers.subarray(next));
   return found;
 }
 
 /** The first outcome, its headline and its reasons, as keys of words with their numbers. */
-export function told(motion, { friction, jx }) {
-  const { start, landed, ground, proof, ending, until } = motion;
-  const headline = [], reasons = [[effectOf(start, jx), { ...start, mu: friction }]];
+export function told(motion, scene) {
+  const { start, landed, ground, proof, events, ending, until } = motion;
+  const { friction: mu } = scene, effect = effectOf(start, scene);
+  const headline = [], reasons = [[effect, { ...start, mu }]];
   if (Number.isNaN(landed))
-    return { name: "IN_THE_AIR", reasons, headline: [[motion.events.length ? "bounces"
-      : "flies_on"]] };
-  if (!start.touching) {
-    headline.push(["lands"]);
-    reasons.push(["landed", { t: landed }]);
-  }
+    return { name: "IN_THE_AIR", reasons, headline: [[events.length ? "bounces" : "flies_on"]] };
+  if (!start.touching) headline.push(["lands", { t: landed }]);
   const name = OUTCOMES[proof.outcome];
-  const later = (ground.mode === ROLLING || ground.mode === REST)
-    && ["SLIPS", "LOSES_CONTACT", "JAMS"].includes(name);
-  headline.push([`${name}_${later ? "later" : "now"}`]);
-  const after = motionAfter(ground, friction);
-  if (after) reasons.push([after, { mu: friction }]);
-  if (ground.mode === ROLLING && proof.validity !== NO_PROOF)
-    reasons.push([why(proof, friction), { ...proof, mu: friction,
-      angle: Number.isNaN(proof.ends) ? proof.angle : proof.ends }]);
-  if (ending !== COMPLETED)
+  const rolls = ground.mode === ROLLING || ground.mode === REST;
+  headline.push(rolls ? endOf(events, name, landed)
+    : [`${name}_${start.touching ? "now" : "then"}`]);
+  const after = motionAfter(ground, mu);
+  if (after) reasons.push([after, { mu }]);
+  if (rolls) {
+    const why = whyOf(proof, ground.mode, mu), angle = Number.isNaN(proof.ends) ? proof.angle
+      : proof.ends;
+    reasons.push([why, { ...proof, mu, angle: (angle * 180) / Math.PI }]);
+    if (why !== "ends_grip") reasons.push([mu === Infinity ? "unlimited" : "friction", { mu }]);
+    const needed = effect === "sticks" ? neededBy(start, scene) : 0;
+    if (needed > 0 && needed < Infinity) reasons.push(["blow_needs", { needed }]);
+  }
+  if (ending !== COMPLETED && (name !== "JAMS" || until > landed))
     reasons.push([{ [JAMMED]: "jammed", [UNDETERMINED]: "undetermined" }[ending] ?? "given_up",
       { t: until }]);
   return { name, headline, reasons };
 }
 
-function effectOf(start, jx) {
+function effectOf(start, { jx, friction }) {
   if (start.slip_removed) return "stopped";
   if (jx === null) return "no_blow";
   if (!start.touching) return "in_the_air";
-  return { [FLIGHT]: "thrown", [SLIDING]: "slides_off" }[start.by_velocity] ?? "sticks";
+  const slides = friction === Infinity ? "lifted" : "slides_off";
+  return { [FLIGHT]: "thrown", [SLIDING]: slides }[start.by_velocity] ?? "sticks";
+}
+
+/** How rolling ends, and when if the motion was followed so far. */
+function endOf(events, name, since) {
+  const end = events.find(([t, kind]) => t > since && kind in ENDS);
+  if (end) return [`${name === "JAMS" ? name : ENDS[end[1]]}_at`, { t: end[0] }];
+  return [`${name}_${Object.values(ENDS).includes(name) ? "later" : "now"}`];
 }
 
 /** Why the motion is not the one that the velocities at the start suggest. */
@@ -102,8 +112,15 @@ function motionAfter({ may_fly, paradox, mode, by_velocity }, friction) {
 }
 
 /** What proves that the body rolls for ever, or ends its rolling. */
-function why({ validity, ends, angle }, friction) {
+function whyOf({ validity, ends, angle, ratio }, mode, friction) {
   if (!Number.isNaN(ends))
     return validity === EDGE ? "on_edge" : friction === Infinity ? "ends_pull" : "ends_grip";
-  return Number.isNaN(angle) || validity !== VALID ? "rolls" : "proved";
+  if (mode === REST) return "stays";
+  return Number.isNaN(angle) || validity !== VALID || ratio === Infinity ? "rolls" : "proved";
+}
+
+/** Friction for a blow whose contact sticks, and for a slip that it stops not to start again. */
+function neededBy({ along, up }, { a, b, mass, inertia, theta }) {
+  const [h, lead] = support(theta, a, b), k2 = inertia ? inertia / mass : (a * a + b * b) / 4;
+  return Math.max(Math.abs(along) / up, Math.abs(h * lead) / (k2 + h * h));
 }

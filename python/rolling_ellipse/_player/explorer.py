@@ -13,9 +13,10 @@ import numpy as np
 from .._ask.check import FloatArray, file_name, flag, positive, require_near
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Impulse, Scene, require_scene
+from .._ask.words import filled
 from .._motion.export.atomic import replacing
 from . import blows
-from .page import core, document, escaped, filled, fragment, packaged, words
+from .page import core, document, escaped, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 

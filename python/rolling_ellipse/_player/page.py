@@ -1,7 +1,4 @@
-"""HTML that contains the player: a fragment for notebooks, a page for files, and their words.
-
-Words are a table for each language, in JSON files beside this one.
-"""
+"""HTML that contains the player: a fragment for notebooks, a page for files, and their words."""
 
 from __future__ import annotations
 
@@ -10,7 +7,6 @@ import gzip
 import hashlib
 import html
 import json
-import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -18,18 +14,17 @@ from string import Template
 from typing import Any
 
 from .._ask.check import choice, shown
+from .._ask.words import BRACES, LANGUAGES, table
 from .._motion.strobe_svg import strobe_svg
 from .._motion.trajectory import Trajectory
 from .._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 
-LANGUAGES = ("en", "de")
 _FILM = ("track", "strip", "player")
 SCRIPTS = {  # modules and style sheets by the class that starts the page
     "Player": (_FILM, ("player",)),
     "Explorer": ((*_FILM, "charts", "explorer"), ("player", "explorer")),
     "Live": ((*_FILM, "charts", "explorer", "core", "live"), ("player", "explorer")),
 }
-_BRACES = re.compile(r"\{(\w+)\}")
 LIGHT = {
     "paper": "#ffffff", "ink": INK, "blue": BLUE, "orange": ORANGE, "grey": GREY, "earth": EARTH,
     "plum": PLUM, "sky": SKY, "body": "#cadbe5", "faint": "#c9d0d8", "panel": "#f4f5f7",
@@ -107,22 +102,16 @@ def core() -> str:
     return base64.b64encode(file.read_bytes()).decode() if file.is_file() else ""
 
 
-@cache
-def _table(language: str) -> dict[str, str]:
-    found: dict[str, str] = json.loads(packaged(f"words_{language}.json"))
-    return found
-
-
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
     """Return the table of a language, or a copy of a mapping with the keys of the English one.
 
     A text must not ask for a number in braces that the English one does not have.
     """
     if isinstance(language, str):
-        return dict(_table(choice("language", language, LANGUAGES)))
+        return dict(table(choice("language", language, LANGUAGES)))
     if not isinstance(language, Mapping):
         raise TypeError(f"language must be a name or a mapping of texts, got {shown(language)}")
-    english, found = _table("en"), dict(language)
+    english, found = table("en"), dict(language)
     if odd := [*(key for key in english if key not in found), *(found.keys() - english.keys())]:
         raise ValueError(
             f"language must have the keys of explore(scene).words, got {len(found)} keys, and "
@@ -131,28 +120,12 @@ def words(language: str | Mapping[str, str]) -> dict[str, str]:
     for key, text in found.items():
         if not isinstance(text, str):
             raise TypeError(f"language[{key!r}] must be a string, got {shown(text)}")
-        known = _BRACES.findall(english[key])
-        if not set(_BRACES.findall(text)) <= set(known):
+        known = BRACES.findall(english[key])
+        if not set(BRACES.findall(text)) <= set(known):
             raise ValueError(
                 f"language[{key!r}] must have no braces but {known}, got {shown(text)}"
             )
     return found
-
-
-def written(value: float, words: dict[str, str]) -> str:
-    """Return a number with four digits as the language writes it."""
-    text = f"{value:.4g}".replace("inf", "∞").replace("-", "−")
-    return text.replace(".", words["decimal"])
-
-
-def numbers_in(key: str) -> list[str]:
-    """Return the names in braces of an English text."""
-    return _BRACES.findall(_table("en")[key])
-
-
-def filled(words: dict[str, str], key: str, **values: float) -> str:
-    """Return a text with numbers in its braces."""
-    return _BRACES.sub(lambda found: written(values[found[1]], words), words[key])
 
 
 def escaped(words: dict[str, str]) -> dict[str, str]:

@@ -22,9 +22,9 @@ from .. import _core, benchmark, scenes
 from .._ask.printing import text_table
 from .._ask.scene import Impulse, Scene
 from .._ask.settings import METHODS, MODELS
+from .._ask.words import LANGUAGES
 from .._core import Mode, Validity
 from .._motion.trajectory import Trajectory
-from .._player.page import LANGUAGES
 from .._verbs.certify import certify
 from .._verbs.flow import period
 from ..benchmark._run import require_simulator

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .. import _core
 from .._ask.printing import Listed
-from .._ask.records import trusted
+from .._ask.reason import proved, reason_of_proof
+from .._ask.records import FieldsOnly, find_late, trusted
 from .._ask.scene import Scene, require_scene
 from .._core import Validity
 
-_VALIDITIES = tuple(Validity)  # members, at the places of their codes
-
 
 @dataclass(frozen=True, repr=False)
-class Certificate(Listed):
+class Certificate(FieldsOnly, Listed):
     """Proof that rolling without slip is valid for the whole motion, or where it ends.
 
     Attributes
@@ -38,7 +36,7 @@ class Certificate(Listed):
         The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. The
         angle of the start for a moving body without friction, whose contact slides at once.
     reason : str
-        One sentence with the numbers.
+        What is proved in words, with the friction that it supposes and that the blow needs.
     """
 
     _units: ClassVar[dict[str, str]] = {
@@ -81,6 +79,7 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    found = _core.certify(require_scene(scene).core)
-    found["validity"] = _VALIDITIES[found["validity"]]
-    return trusted(Certificate, found)
+    return trusted(Certificate, {"_scene": scene, **proved(require_scene(scene))})
+
+
+find_late(Certificate, reason=lambda proof: reason_of_proof(vars(proof)["_scene"], vars(proof)))

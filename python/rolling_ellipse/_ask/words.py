@@ -1,0 +1,37 @@
+"""Words of reasons and pages, by their keys, in JSON files for each language beside this one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+LANGUAGES = ("en", "de")
+BRACES = re.compile(r"\{(\w+)\}")
+
+
+@cache
+def table(language: str) -> dict[str, str]:
+    """Return the words of a language, with numbers in braces."""
+    from json import loads  # with pathlib a tenth of the package's import
+    from pathlib import Path
+
+    file = Path(__file__).with_name(f"words_{language}.json")
+    found: dict[str, str] = loads(file.read_text(encoding="utf-8"))
+    return found
+
+
+def numbers_in(key: str) -> list[str]:
+    """Return the names in braces of an English text."""
+    return BRACES.findall(table("en")[key])
+
+
+def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
+    """Return a number as the language writes it."""
+    text = f"{value:.{digits}g}".replace("inf", "∞").replace("-", "−")
+    return text.replace(".", words["decimal"])
+
+
+def filled(words: Mapping[str, str], key: str, digits: int = 4, **values: float) -> str:
+    """Return a text with numbers in its braces."""
+    return BRACES.sub(lambda name: written(values[name[1]], words, digits), words[key])
