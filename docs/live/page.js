@@ -83,9 +83,10 @@ export class Workbench extends Live {
     slider.oninput = () => this.change({ [name]: name === "friction"
       && Number(slider.value) === most ? Infinity : Number(slider.value) });
     field.onchange = () => {
-      const value = numberIn(field.value);
-      if (Number.isNaN(value)) this.describe();
-      else this.change({ [name]: value });
+      const value = numberIn(field.value, unit);
+      if (!Number.isNaN(value)) return this.change({ [name]: value });
+      this.refusal = this.say("live_unread", { text: field.value });
+      this.describe();
     };
     row.append(label, slider, field, end);
     return { name, unit, least, most, step, group, row, slider, field };
@@ -146,11 +147,10 @@ export class Workbench extends Live {
   }
 
   describe() {
-    const { given, found, turned } = this;
+    const { given, turned } = this;
     this.tell();
-    const [why, refused] = [".why", ".refused"].map((name) => this.box.querySelector(name));
-    why.textContent = found.reason;
-    refused.textContent = this.refusal && this.say("live_refused", { why: this.refusal });
+    this.box.querySelector(".refused").textContent = this.refusal
+      && this.say("live_refused", { why: this.refusal });
     for (const { name, unit, most, slider, field } of this.rows) {
       const value = given[name], text = round(value, 6);
       slider.value = Math.min(value, most);
@@ -317,10 +317,16 @@ export class Workbench extends Live {
   }
 }
 
-/** A number as people write it, with comma or point, or infinite. */
-function numberIn(text) {
-  const plain = text.trim().replace(",", ".").replace("−", "-");
-  return /^(∞|inf|infinity)$/i.test(plain) ? Infinity : plain ? Number(plain) : NaN;
+/** A number as people write it, with comma or point, by pi, infinite, or an angle in degrees. */
+function numberIn(text, unit = "") {
+  const plain = text.trim().replace(",", ".").replace("−", "-").replace("π", "pi");
+  if (/^(∞|inf|infinity)$/i.test(plain)) return Infinity;
+  const [, times, over = 1] = plain.match(/^([-+.\d]*) *\*? *pi *(?:\/ *([.\d]+))?$/i) ?? [];
+  if (times !== undefined)
+    return (Number(/\d/.test(times) ? times : `${times}1`) * Math.PI) / Number(over);
+  const [, degrees] = plain.match(/^(.*\S) *(?:°|deg)$/i) ?? [];
+  if (degrees !== undefined) return unit === "rad" ? (Number(degrees) * Math.PI) / 180 : NaN;
+  return plain ? Number(plain) : NaN;
 }
 
 const inAddress = (hash) => Object.fromEntries(new URLSearchParams(hash.slice(1)));

@@ -365,7 +365,7 @@ def test_the_reason_is_spoken_when_another_one_holds(opened: Opened) -> None:
     page.locator(".hard").press("End")
     assert page.locator(".hard").get_attribute("aria-valuetext") == "99,7 Newtonsekunden"
     heard = page.locator(".spoken").inner_text()
-    assert heard.startswith("Sie rollt, dann rutscht sie.") and "Das Rollen endet" in heard
+    assert heard.startswith("Sie rollt, dann rutscht sie bei t = 0,112 s.") and "Rollen" in heard
     page.locator(".hard").press("ArrowDown")
     assert page.locator(".spoken").inner_text() == heard
 
