@@ -226,7 +226,7 @@ def throughput() -> str:
     known = json.loads(path.read_text(encoding="utf-8"))
     exact, contact, pool = known["exact"], known["contact"], known["pool"]
     return (
-        f"To plan by, as measured on {known['machine']['processor']}: with `out=` an exact motion "
+        f"For planning (measured on {known['machine']['processor']}): with `out=` an exact motion "
         f"with one sample takes\n{1e6 * exact['seconds']:.2g} µs of one core and "
         f"{exact['bytes']:.0f} bytes, and {exact['bytes a sample']:.0f} for each further sample; "
         f"one with slips and jumps\n{1e3 * contact['seconds']:.2g} ms, {contact['bytes']:.0f} "

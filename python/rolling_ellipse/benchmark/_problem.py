@@ -75,7 +75,8 @@ class Problem(FieldsOnly):
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
-        Given times [s]; their condition numbers, and the forces on the body [N].
+        Given times [s]; their condition numbers (change of the state, in its scales, per relative
+        change of all inputs but mass and inertia), and the forces on the body [N].
     states : ndarray, shape (n, 6)
         States at the given times.
     events : tuple of KnownEvent
