@@ -15,7 +15,7 @@ _FAINT = 25.0  # rise of chi2 from which on a rival does not count
 _APART = 9.0  # rise of chi2 from which on a rival far away does not make a parameter unknown
 _UNEVEN = 0.125  # share of a range over which residuals are not linear
 _FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
-_SAME = 0.5  # rise of the cost within one standard error
+_SAME = 0.1  # rise of the cost that no film tells
 _AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # shares of the way from the guess
 
 
