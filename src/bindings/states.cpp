@@ -128,7 +128,7 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
     const auto row = [&](double angle, double speed) {
         const Geometry at = geometry(scene.axes(), angle);
         const ContactForce force = rolling.force(scene.mass, at, speed);
-        const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
+        const State state = without_slip(at, angle, speed, 0.0, Mode::rolling);
         return std::tuple(state.z, state.x_dot, state.z_dot, force.normal, force.friction);
     };
     return named({"z", "x_dot", "z_dot", "normal_force", "friction_force"},

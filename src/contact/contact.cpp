@@ -158,7 +158,7 @@ class ContactRun {
         if (!advance(lasts)) return;
         const auto [end, omega, x] = sample(*kept, lasts);
         const double theta = count_from_quarter({end, 0.0}).high;
-        state_ = in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
+        state_ = without_slip(geometry(axes(), theta), theta, omega, x, Mode::rolling);
         go_on_by_forces(false);
     }
 
@@ -195,7 +195,7 @@ class ContactRun {
             return go_on_with({Mode::flight}, EventKind::lift_off, before);
         }
         const Geometry at = geometry(axes(), before.theta);
-        state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
+        state_ = without_slip(at, before.theta, before.omega, before.x, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
         // A body that slides keeps its x_dot: h omega would add a rounding.
         if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
@@ -211,9 +211,7 @@ class ContactRun {
         add_segment(free);
         if (!advance(lasts)) return;
         const State moved = state_at(free, lasts);
-        const Geometry at = geometry(axes(), moved.theta);
-        const double slip = next_.mode == Mode::sliding ? slip_velocity(moved, at) : 0.0;
-        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip, next_.mode);
+        state_ = grazing(geometry(axes(), moved.theta), moved, next_.mode);
         next_ = continuation(scene_, state_);
     }
 

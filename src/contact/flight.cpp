@@ -39,6 +39,13 @@ BeyondSmall beyond_small(double x) {
     return {-x * y2 / 6 * value(series[0], y2), -square(x) * y2 / 12 * value(series[1], y2)};
 }
 
+// By how much h grows as the body turns, with the sum of both h, physics (55):
+// h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + turned) sin(turned).
+double rise(const Axes& axes, double theta, double turned, double sum) {
+    const auto [a, b] = axes;
+    return (a - b) * (a + b) * std::sin(2 * theta + turned) * std::sin(turned) / sum;
+}
+
 // The gap between the body and the ground.
 class Gap {
   public:
@@ -51,18 +58,15 @@ class Gap {
     }
 
     // The gap as the sum of its start and its change: hops far lower than the body keep their
-    // digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t), physics (55).
+    // digits.
     double value(double t) const {
         const State& s = flight_.start;
         const double fallen = 0.5 * flight_.gravity.into * t;
         if (const auto rise = rise_over_tangent(t)) {
             return (s.z - start_.h) + (t * (flight_.gap_rate - fallen) - rise->height);
         }
-        const auto [a, b] = flight_.axes;
-        const double turned = s.omega * t;
-        const double rise = (a - b) * (a + b) * std::sin(2 * s.theta + turned) * std::sin(turned) /
-                            (at(t).h + start_.h);
-        return (s.z - start_.h) + (t * (s.z_dot - fallen) - rise);
+        const double risen = rise(flight_.axes, s.theta, s.omega * t, at(t).h + start_.h);
+        return (s.z - start_.h) + (t * (s.z_dot - fallen) - risen);
     }
 
     double rate(double t) const {
@@ -276,6 +280,12 @@ State state_at(const Flight& flight, double t) {
             flight.mode};
 }
 
+State grazing(const Geometry& at, const State& free, Mode mode) {
+    const auto& [theta, omega, x, z, x_dot, z_dot, flight] = free;
+    return mode == Mode::sliding ? on_ground(at, theta, omega, x, x_dot, mode)
+                                 : without_slip(at, theta, omega, x, mode);
+}
+
 double most_height(const Axes& axes) {
     return std::max(axes.a, axes.b) * (1 + equal_ulps * epsilon);
 }
@@ -348,9 +358,13 @@ Settling settling(const Scene& scene, const State& start, const Bounce& first) {
     const double theta = angle.high;
     const double slip = slip_velocity(moving, at);
     const bool is_rounding = std::abs(slip) <= equal_ulps * epsilon * std::abs(moving.x_dot);
-    const State end =
-        in_contact(geometry(scene.axes(), theta), theta, zero_if_negligible(moving.omega),
-                   start.x + moved, is_rounding ? 0.0 : slip, Mode::flight);
+    const Geometry there = geometry(scene.axes(), theta);
+    const double omega = zero_if_negligible(moving.omega);
+    const double x_dot =
+        is_rounding
+            ? there.h * omega
+            : moving.x_dot + rise(scene.axes(), start.theta, turned, there.h + at.h) * omega;
+    const State end = on_ground(there, theta, omega, start.x + moved, x_dot, Mode::flight);
     return {scene.axes(), lasts, start, end, angle};
 }
 

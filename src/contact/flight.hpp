@@ -19,6 +19,9 @@ struct Flight {
 
 State state_at(const Flight& flight, double t);
 
+// A state of free flight as that of the grazing contact which it follows.
+State grazing(const Geometry& at, const State& free, Mode mode);
+
 // The height of the centre above which the body does not touch the ground, however h is rounded.
 double most_height(const Axes& axes);
 

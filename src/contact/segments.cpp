@@ -34,8 +34,7 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
         if (flight.mode == Mode::flight) {
             state.z = std::max(state.z, at.h);
         } else {
-            const double slip = flight.mode == Mode::sliding ? slip_velocity(state, at) : 0.0;
-            state = in_contact(at, state.theta, state.omega, state.x, slip, flight.mode);
+            state = grazing(at, state, flight.mode);
         }
     }
 }
@@ -79,7 +78,7 @@ void convert(const Scene& scene, const Law&, const std::vector<FlowSample>& from
     const RollingEquation rolling(scene.body(), scene.slope);
     for (const auto& [theta, omega, x] : from) {
         const Geometry at = geometry(scene.axes(), theta);
-        *to++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
+        *to++ = {without_slip(at, theta, omega, x, Mode::rolling),
                  rolling.force(scene.mass, at, omega)};
     }
 }

@@ -48,8 +48,8 @@ Bernstein<N> from_place(const Polynomial<N>& law, double x) {
 Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     prepare(flow, time);
     const FlowSample last = sample(flow, time);
-    const State state = in_contact(geometry(scene.axes(), last.theta), last.theta, last.omega,
-                                   last.x, 0.0, Mode::rolling);
+    const State state = without_slip(geometry(scene.axes(), last.theta), last.theta, last.omega,
+                                     last.x, Mode::rolling);
     const Mode next = first_continuation(scene, state, false).mode;
     return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }

@@ -103,7 +103,7 @@ struct Climb {
     }
 
     State on_ground(double theta, double omega, double x, Mode mode) const {
-        return in_contact(geometry(scene.axes(), theta), theta, omega, x, 0.0, mode);
+        return without_slip(geometry(scene.axes(), theta), theta, omega, x, mode);
     }
 
     // The end of a segment of rolling; empty if the body gets over the tip or turns back.

@@ -191,10 +191,15 @@ inline double slip_velocity(const State& state, const Geometry& at) {
     return state.x_dot - at.h * state.omega;
 }
 
-// The state of a body that stays in contact.
-inline State in_contact(const Geometry& at, double theta, double omega, double x, double slip,
-                        Mode mode) {
-    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
+// The state of a body on the ground, which slides with x_dot.
+inline State on_ground(const Geometry& at, double theta, double omega, double x, double x_dot,
+                       Mode mode) {
+    return {theta, omega, x, at.h, x_dot, at.dh * omega, mode};
+}
+
+// The state of a body on the ground without slip.
+inline State without_slip(const Geometry& at, double theta, double omega, double x, Mode mode) {
+    return on_ground(at, theta, omega, x, at.h * omega, mode);
 }
 
 // The acceleration c into the ground that the lowest point has without a contact force: gravity
