@@ -103,7 +103,7 @@ class SlideIntegration {
           bounds_(bounds),
           at_(geometry(slide.body.axes, slide.last.angle)) {
         const double b = response(slide.body, at_, last_.omega.high).b;
-        if (slide.body.may_jam() && b < small_response) clock_ = SlideClock::slowed;
+        if (slide.body.may_jam() && b < small_response) slow_down();
     }
 
     // Adds a piece. Returns the reason if the slide stops there.
@@ -112,10 +112,11 @@ class SlideIntegration {
         const double unit = std::ldexp(1.0, -std::ilogb(rate()));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
-        SlideSeries series = slide_series(body,
-                                          {at_.sin, at_.cos, double(from.omega) * unit,
-                                           double(from.slip) * unit, double(from.x_dot) * unit},
-                                          clock_);
+        SlideSeries series =
+            slide_series(body,
+                         {at_.sin, at_.cos, double(from.omega) * unit, double(from.slip) * unit,
+                          double(from.x_dot) * unit, scaled_response_},
+                         clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
         // Largest reach of a piece in units of its time: 1 + 15 times the time slid so far, for
         // circles, whose series never lose their digits. h omega and pressure bound the reach, too:
@@ -123,7 +124,7 @@ class SlideIntegration {
         const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
-        omega[0] = series.slip[0] = x_dot[0] = 0.0;
+        omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
         SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large
         piece.centre = from;
         piece.clock = clock_;
@@ -140,9 +141,11 @@ class SlideIntegration {
         next.energy = next.energy + work;
         worked_ += std::abs(work);
         next.slip = next.slip + value(series.slip, reach_) / unit;
+        if (scaled_response_) *scaled_response_ += value(series.response, reach_);
         last_ = next;
         at_ = geometry(slide_.body.axes, last_.angle);
         keep_energy();
+        keep_slip();
         return end_ ? end() : std::nullopt;
     }
 
@@ -165,6 +168,15 @@ class SlideIntegration {
         if (!(std::abs(change) < rounding * std::abs(omega))) return;
         last_.omega = {omega, 0.0};
         last_.slip = last_.slip + -at_.h * change;
+    }
+
+    // Takes the slip from x_dot and h omega where both are smaller than the slip has been: as a sum
+    // of changes it has the roundings of its largest value.
+    void keep_slip() {
+        const double rolled = at_.h * double(last_.omega);
+        const double size = std::abs(double(last_.x_dot)) + std::abs(rolled);
+        if (size < most_slip_) last_.slip = last_.x_dot + -rolled;
+        most_slip_ = std::min(size, std::max(most_slip_, std::abs(double(last_.slip))));
     }
 
     // 1 + the rate of turning + the rate at which the force changes B, where that is large. In
@@ -244,14 +256,23 @@ class SlideIntegration {
                 return SlideStop::out_of_bounds;
             case End::recovery:
                 clock_ = SlideClock::time;
+                scaled_response_.reset();
                 return std::nullopt;
             case End::response:
                 break;
         }
         if (!slide_.body.may_jam()) return SlideStop::jams;
         if (clock_ == SlideClock::slowed) return last_moment();
-        clock_ = SlideClock::slowed;
+        slow_down();
         return std::nullopt;
+    }
+
+    // Goes over to the slower clock. From here on V is a sum of its changes, which shrink with it:
+    // so it keeps its digits where the body turns away from B = 0, however near that is.
+    void slow_down() {
+        clock_ = SlideClock::slowed;
+        const double b = response(slide_.body, at_, double(last_.omega)).b;
+        scaled_response_ = slide_.body.gyration2 * square(at_.h) * b;
     }
 
     // Whether c, now 0 to rounding, will fall below 0: only on the way to the tip, where h'' is
@@ -287,8 +308,10 @@ class SlideIntegration {
     const SlideBounds& bounds_;
     Geometry at_;  // geometry at the last point
     double most_kinetic_ = 0.0;
+    double most_slip_ = 0.0;
     double worked_ = 0.0;  // sum of the sizes of the work of friction [energy per mass]
     SlideClock clock_ = SlideClock::time;
+    std::optional<double> scaled_response_;  // V of the slower clock
     double reach_ = 0.0;
     std::optional<End> end_;
     // True once c was found to be 0 within rounding, not negative: beside B = 0 a slide under

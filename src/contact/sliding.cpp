@@ -61,12 +61,13 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 
-// The last moment: the impulse of N changes omega and slip in a fixed ratio, physics (54).
+// The last moment: the impulse of N changes omega and slip in a fixed ratio, physics (54). At B = 0
+// what a unit of force adds to omega is 1/h': its terms in a light body all but cancel.
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
     const auto [c, b] = response(body, at, omega);
-    const double turn_by_force = spin(body, at);
+    const double turn_by_force = body.normal_share / at.dh;
     const double slip_by_turning = body.friction_share / turn_by_force - at.h;
     const double without_slip = omega - slip / slip_by_turning;
     const double without_c = std::copysign(std::sqrt(-body.gravity.into / at.ddh), omega);
@@ -127,6 +128,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     double p = c2 * sin * cos;
     double q = c2 * ((cos - sin) * (cos + sin));
     double impulse = 0.0;
+    const double l0 = centre.response ? (*centre.response - nu * k2 * u0) / p : nu * p + phi * u0;
     u[0] = u0;
     w[0] = centre.omega;
     angle[0] = path[0] = time[0] = work[0] = 0.0;
@@ -145,11 +147,13 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
             return known[lane] + ends;
         };
         const double h = k == 0 ? h0 : (u[k] - curves[2]) * over_2h0;
-        const double l = nu * p + phi * u[k];
+        const double l = k == 0 ? l0 : nu * p + phi * u[k];
         const double omega2 = k == 0 ? w[0] * w[0] : squares[0] + 2 * (squared[0][0] * w[k]);
         const double bend = k == 0 ? bend0 : -(squares[1] + 2 * (squared[0][1] * u[k]));
         const double weight = product(levers, lever, by_lever, 1, u[k], h);
-        const double v = nu * k2 * u[k] + product(levers, lever, by_lever, 0, p, l);
+        const double v = k == 0 && centre.response
+                             ? *centre.response
+                             : nu * k2 * u[k] + product(levers, lever, by_lever, 0, p, l);
         const double c =
             body.gravity.into * weight + product(curves, curve, by_curve, 3, bend, omega2);
         const double load = product(levers, lever, by_lever, 2, u[k], v);

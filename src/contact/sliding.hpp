@@ -2,6 +2,8 @@
 // power series about a state; and the mode in which a body on the ground goes on.
 #pragma once
 
+#include <optional>
+
 #include "numerics/series.hpp"
 #include "scene/scene.hpp"
 
@@ -56,13 +58,15 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 
 enum class SlideClock { time, slowed };
 
-// The centre of the series: sine and cosine of the angle, and velocities.
+// The centre of the series: sine and cosine of the angle, velocities and, near B = 0, the response
+// V, which sine and cosine give with the roundings of far larger terms.
 struct SlideCentre {
     double sin;
     double cos;
     double omega;
     double slip;
     double x_dot;
+    std::optional<double> response;
 };
 
 // The series that samples are taken from. Angle, path and time are 0 at the centre.

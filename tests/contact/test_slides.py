@@ -118,6 +118,62 @@ def test_a_slide_after_another_one_has_the_angle_of_its_body() -> None:
         assert abs(getattr(motion, name)[0] - value) <= 8 * unit, name
 
 
+def test_a_fallen_thin_body_reverses_its_slip_without_a_change_of_energy() -> None:
+    """Its slip had been a thousand times larger than x_dot and h omega are where it vanishes.
+
+    The numbers are those of reference/contact_motion.py in 42 digits; two units of its table hold
+    them, and not the 1.4e-14 of a slip that keeps the roundings of its largest value."""
+    scene = Scene(1.0, 0.0016, inertia=0.0044, friction=0.0037, theta=0.63, omega=-3e-4)
+    motion = simulate(scene, [0.36], model="contact")
+    assert [event.kind.name for event in motion.events] == ["REVERSE", "REVERSE"]
+    known = {
+        "theta": (-0.0446624538562898052999921, 4.49e-16),
+        "omega": (-3.266074769492619414919441, 2.53e-15),
+        "z_dot": (3.260720563141271925222366, 3.27e-15),
+    }
+    for name, (value, unit) in known.items():
+        assert abs(getattr(motion, name)[0] - value) <= 2 * unit, name
+
+
+LIGHT = {"a": 0.25, "b": 1.0, "inertia": 2e-4, "friction": 0.43, "theta": 1.618, "x_dot": 0.485}
+NEAR_A_JAM = (
+    (
+        {**LIGHT, "omega": 0.2},
+        {"theta": 1.599323398755544488754998, "omega": 1.29346665214560174586835,
+         "x_dot": 0.3253337978567120004527393, "x": 0.01323532985564371077085194},
+        0.0273834571435412624128249,
+    ),
+    (
+        {**LIGHT, "omega": 0.3},
+        {"theta": 1.599323396737381234371344, "omega": 1.288301393290143687287922,
+         "x_dot": 0.3240346274181342521637297, "x": 0.01426770088088693368524975},
+        0.02951978641232682896540519,
+    ),
+    (
+        {"a": 1.0, "b": 0.42, "inertia": 3e-4, "friction": 0.91, "theta": -2.7, "omega": 1.0,
+         "x_dot": 0.64},
+        {"theta": -2.86589545180799213705477, "omega": -0.7383006081905798229145073,
+         "x_dot": -0.3597508473148692873303238, "x": 0.1262618950951499124850119},
+        0.2020524919228253077133528,
+    ),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("given", "known", "t"), NEAR_A_JAM)
+def test_a_slide_near_a_jam_keeps_its_digits(
+    given: dict[str, float], known: dict[str, float], t: float
+) -> None:
+    """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
+
+    The numbers are those of reference/impulse_clock.py in 45 digits. A start in doubles has their
+    roundings, two by two; some 60 pieces add one each, by chance of either sign."""
+    end = simulate(Scene(**given), 1.0, raise_on_failure=False).events[0]
+    assert end.kind is EventKind.STICK
+    assert abs(end.t - t) <= 8 * EPSILON * t
+    for name, value in known.items():
+        assert abs(getattr(end.state_after, name) - value) <= 8 * EPSILON * abs(value), name
+
+
 def test_few_pieces_make_a_slide() -> None:
     """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
