@@ -26,7 +26,9 @@ wrong           other events without a reason
 refused         no scene accepts the state
 
 A unit of a number is the effect of a rounding of each input of the motion, and of each input of the
-new start, by differences, and two ulp of the number. A state that depends on the inputs by more
+new start, by differences, and two ulp of the number. On the ground it has that of an ulp of theta
+on h, h' omega and, without slip, h omega, too: both states carry those of their theta as rounded,
+by half an ulp. A state that depends on the inputs by more
 than a linear effect is beside a tie.
 """
 
@@ -167,6 +169,18 @@ def units(v: Values, t: Any) -> tuple[Any, Any]:
     return total, tie | tie_of_finer | bent.any(axis=0)
 
 
+def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
+    """Effect of an ulp of theta on what it determines on the ground."""
+    theta, omega = state[:2]
+    sine, cosine = np.sin(theta), np.cos(theta)
+    c2, h = (v["a"] - v["b"]) * (v["a"] + v["b"]), np.hypot(v["a"] * sine, v["b"] * cosine)
+    slope = c2 * sine * cosine / h
+    bend = (c2 * (cosine**2 - sine**2) - slope**2) / h
+    none, rolls = np.zeros_like(h), mode == rl.Mode.ROLLING
+    effects = np.array([none, none, none, slope, rolls * slope * omega, bend * omega])
+    return np.abs(effects) * np.spacing(np.abs(theta)) * (mode != rl.Mode.FLIGHT)
+
+
 def freed(v: Values, mode: Any) -> Values:
     """Starts without what their mode determines, so that inputs can be changed."""
     ground, rolls = mode != rl.Mode.FLIGHT, ~np.isin(mode, [rl.Mode.FLIGHT, rl.Mode.SLIDING])
@@ -190,7 +204,8 @@ def study_ends(rng: Any, n: int) -> Iterator[Finding]:
     more, tie_of_new = units(freed(new, codes[0]), second)
     long, clock = np.maximum(v["a"], v["b"]), clocks(v)
     least = ULP * np.array([clock / clock, 1 / clock, long, long, long / clock, long / clock])
-    off = np.abs(later - whole) / (unit + more + 2 * ULP * np.abs(whole) + least / 1000)
+    rounded = 2 * ULP * np.abs(whole) + by_rounded_angle(v, whole, expected[0])
+    off = np.abs(later - whole) / (unit + more + rounded + least / 1000)
     for i in range(len(first)):
         differs = codes[1, i] + got[1, i] - expected[1, i], got[0, i] - expected[0, i], got[3, i]
         scene, worst = scene_of(new, i), float(off[:, i].max())
