@@ -115,7 +115,9 @@ class SlideIntegration {
         SlideSeries series =
             slide_series(body,
                          {at_.sin, at_.cos, double(from.omega) * unit, double(from.slip) * unit,
-                          double(from.x_dot) * unit, scaled_response_},
+                          double(from.x_dot) * unit,
+                          scaled_response_ ? scaled_response_
+                                           : cancelled_response(slide_.body, at_, from.angle)},
                          clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
         // Largest reach of a piece in units of its time: 1 + 15 times the time slid so far, for
@@ -150,17 +152,16 @@ class SlideIntegration {
     }
 
   private:
-    // Takes omega from the energy where the body creeps over the tip. The series carry the
-    // roundings of the fast motion before; the energy, counted from the tip, has smaller ones,
+    // Takes omega from the energy where the body slows down on its way to the tip. The series carry
+    // the roundings of the fast motion before; the energy, counted from the tip, has smaller ones,
     // unless friction has done much work: its roundings are in the energy.
     void keep_energy() {
-        constexpr double slow = 0.02;       // kinetic energy below this share of its maximum
-        constexpr double near = 10;         // g times height under the tip over kinetic energy
+        constexpr double small = 0.25;  // the terms of the energy, over its largest kinetic part
         constexpr double rounding = 1e-12;  // a larger relative change of omega is no rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
         most_kinetic_ = std::max(most_kinetic_, kinetic);
-        if (!(kinetic < slow * most_kinetic_ && fallen < near * kinetic)) return;
+        if (!(kinetic > 0 && kinetic + fallen < small * most_kinetic_)) return;
         if (square(worked_) > 4 * kinetic * most_kinetic_) return;
         const double inertia = slide_.body.gyration2 + square(at_.dh);
         const double omega = std::copysign(std::sqrt(2 * kinetic / inertia), last_.omega.high);
@@ -271,8 +272,7 @@ class SlideIntegration {
     // so it keeps its digits where the body turns away from B = 0, however near that is.
     void slow_down() {
         clock_ = SlideClock::slowed;
-        const double b = response(slide_.body, at_, double(last_.omega)).b;
-        scaled_response_ = slide_.body.gyration2 * square(at_.h) * b;
+        scaled_response_ = cancelled_response(slide_.body, at_, last_.angle);
     }
 
     // Whether c, now 0 to rounding, will fall below 0: only on the way to the tip, where h'' is

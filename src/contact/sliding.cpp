@@ -45,6 +45,22 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
     return {c, body.normal_share * gnn + body.friction_share * gtn};
 }
 
+std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
+                                         const DoubleDouble& angle) {
+    constexpr double little = 0x1p-4;  // of the terms that is left
+    const auto [a, b] = body.axes;
+    const double nu = body.normal_share;
+    const double phi = body.friction_share;
+    const double terms = body.gyration2 + square(at.dh) + std::abs(phi * at.h * at.dh);
+    if (!body.may_jam() || response(body, at, 0.0).b * body.gyration2 > little * terms) return {};
+    const auto [quarters, rest] = quarter_view(angle);
+    const auto [sine, cosine] = sine_cosine_of_rest(rest);
+    const double c2 = (is_odd(quarters) ? b - a : a - b) * (a + b);
+    const DoubleDouble u = sine * sine * c2 + square(is_odd(quarters) ? a : b);
+    const DoubleDouble p = sine * cosine * c2;
+    return double(u * (nu * body.gyration2) + p * (p * nu + u * phi));
+}
+
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega) {
     const auto [c, b] = response(body, at, omega);
     const double force = body.mass * (std::max(c, 0.0) / b);  // c < 0 at lift-off is rounding

@@ -35,6 +35,11 @@ struct Response {
 };
 Response response(const SlidingBody& body, const Geometry& at, double omega);
 
+// V = k^2 h^2 B where its terms all but cancel, as they do in a light body near B = 0: by the
+// digits of the angle beyond a double.
+std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
+                                         const DoubleDouble& angle);
+
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega);
 
 // The rate of the slip velocity, physics (51).
@@ -58,8 +63,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 
 enum class SlideClock { time, slowed };
 
-// The centre of the series: sine and cosine of the angle, velocities and, near B = 0, the response
-// V, which sine and cosine give with the roundings of far larger terms.
+// The centre of the series: sine and cosine of the angle, velocities and the response V, if it has
+// more digits than sine and cosine give it.
 struct SlideCentre {
     double sin;
     double cos;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 namespace rolling_ellipse {
@@ -85,6 +86,16 @@ inline DoubleDouble operator*(const DoubleDouble& x, double y) {
     return quick_two_sum(product.high, std::fma(x.low, y, product.low));
 }
 
+inline DoubleDouble operator*(const DoubleDouble& x, const DoubleDouble& y) {
+    const DoubleDouble product = two_product(x.high, y.high);
+    return quick_two_sum(product.high, product.low + (x.high * y.low + x.low * y.high));
+}
+
+inline DoubleDouble operator/(const DoubleDouble& x, double y) {
+    const double quotient = x.high / y;
+    return quick_two_sum(quotient, (std::fma(-quotient, y, x.high) + x.low) / y);
+}
+
 inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-17};
 
 // Largest angle [rad] that nearest_quarter takes.
@@ -134,6 +145,31 @@ inline SineCosine sine_cosine_of_rest(double angle) {
     const double sine = (s0 + z2 * s1) + z4 * (s2 + z2 * s3);
     const double cosine = (c0 + z2 * c1) + z4 * (c2 + z2 * c3);
     return {angle + angle * z * sine, (1.0 - 0.5 * z) + z2 * cosine};
+}
+
+struct LongSineCosine {
+    DoubleDouble sine;
+    DoubleDouble cosine;
+};
+
+// Sine and cosine for |angle| <= pi/4 to 1e-18: their first terms have 106 bits.
+inline LongSineCosine sine_cosine_of_rest(const DoubleDouble& angle) {
+    const DoubleDouble squared = angle * angle;
+    const double z = squared.high;
+    double s = 0.0;
+    double c = 0.0;
+    for (const double factorial :
+         {355687428096000.0, 1307674368000.0, 6227020800.0, 39916800.0, 362880.0, 5040.0, 120.0}) {
+        s = 1 / factorial - z * s;
+    }
+    for (const double factorial :
+         {20922789888000.0, 87178291200.0, 479001600.0, 3628800.0, 40320.0, 720.0}) {
+        c = 1 / factorial - z * c;
+    }
+    const DoubleDouble cubic = angle * squared / -6;
+    const DoubleDouble quartic = squared * squared / 24;
+    return {angle + (cubic + angle.high * z * z * s),
+            (squared / -2 + 1.0) + (quartic + -z * z * z * c)};
 }
 
 }  // namespace rolling_ellipse

@@ -174,6 +174,20 @@ def test_a_slide_near_a_jam_keeps_its_digits(
         assert abs(getattr(end.state_after, name) - value) <= 8 * EPSILON * abs(value), name
 
 
+def test_a_light_body_rocks_against_a_jam_in_time() -> None:
+    """Some twenty swings in 0.3 s, at each end of which B all but vanishes.
+
+    The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
+    turn the body by 1.5 rad/s and change omega by 600 rad/s^2 in each of them."""
+    light = {"inertia": 2.67e-4, "friction": 0.412, "slope": -0.41}
+    scene = Scene(0.25, 1.0, theta=1.542, omega=-1.4, x_dot=-0.5, **light)
+    motion = simulate(scene, [0.3], model="contact")
+    assert not motion.events
+    late = 8 * 0.3 * EPSILON
+    assert abs(motion.omega[0] - 0.1373591786099516807622028) <= 600 * late
+    assert abs(motion.theta[0] - 1.530610922571990750118888) <= 1.5 * late + EPSILON
+
+
 def test_few_pieces_make_a_slide() -> None:
     """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
