@@ -74,6 +74,7 @@ KIND_LIMIT = 1e-4  # largest unit of a time / time; up to it the inputs fix the 
 MOST_STEPS = 260  # most steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
 ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
+SHORTEST = 1e-6  # least interval with samples / natural time: a hop may be lower than tolerances
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # slightly changed scenes that distinguish a limit from a fault
 ROUTES = ("event", "table", "alone", "sol")
@@ -485,7 +486,7 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
     times = []
     bounds = [0.0, *ends, end]
     for low, high in pairwise(bounds):
-        if high - low > 1e6 * ROUNDING * high:
+        if high - low > max(1e6 * ROUNDING * high, SHORTEST * natural(case.scene)[1]):
             times += [low + (high - low) * rng.uniform(0.05, 0.95) for _ in range(2)]
     if len(times) > 12:
         times = rng.sample(times, 12)
