@@ -286,7 +286,7 @@ def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> 
 @pytest.mark.parametrize("restitution", [0.3, 0.61, 0.9])
 def test_summed_bounces_of_a_spinning_disc_conserve_momentum(restitution: float) -> None:
     """x' = x0' + mu (g t - z0'), as friction is mu times the impulse of N; the rim runs 30 m/s."""
-    disc = {"friction": 1e-3, "omega": 30.0, "x_dot": 0.02, "z_dot": 1.1}
+    disc: dict[str, Any] = {"friction": 1e-3, "omega": 30.0, "x_dot": 0.02, "z_dot": 1.1}
     scene = Scene(1.0, 1.0, z=1.05, restitution=restitution, **disc)
     motion = simulate(scene, [8.0])
     assert [event.kind for event in motion.events[-2:]] == [EventKind.IMPACT, EventKind.SLIP]

@@ -161,7 +161,7 @@ NEAR_A_JAM = (
 
 @pytest.mark.parametrize(("given", "known", "t"), NEAR_A_JAM)
 def test_a_slide_near_a_jam_keeps_its_digits(
-    given: dict[str, float], known: dict[str, float], t: float
+    given: dict[str, Any], known: dict[str, float], t: float
 ) -> None:
     """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
 
@@ -179,7 +179,7 @@ def test_a_light_body_rocks_against_a_jam_in_time() -> None:
 
     The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
     turn the body by 1.5 rad/s and change omega by 600 rad/s^2 in each of them."""
-    light = {"inertia": 2.67e-4, "friction": 0.412, "slope": -0.41}
+    light: dict[str, Any] = {"inertia": 2.67e-4, "friction": 0.412, "slope": -0.41}
     scene = Scene(0.25, 1.0, theta=1.542, omega=-1.4, x_dot=-0.5, **light)
     motion = simulate(scene, [0.3], model="contact")
     assert not motion.events
