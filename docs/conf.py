@@ -49,4 +49,4 @@ def setup(app: Sphinx) -> None:
     app.connect("builder-inited", keep_pictures_in_the_site)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows
     live.mkdir(parents=True, exist_ok=True)
-    run_path(str(HERE / "live" / "make.py"))["write"](live / "index.html")
+    run_path(str(HERE / "makers" / "live.py"))["write"](live / "index.html")

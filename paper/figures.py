@@ -11,7 +11,7 @@ from rolling_ellipse import benchmark
 from rolling_ellipse._pictures.palette import BLUE, INK, ORANGE, PLUM
 
 HERE = Path(__file__).parent
-ENGINES = HERE.parent / "docs" / "engines.json"
+ENGINES = HERE.parent / "docs" / "data" / "engines.json"
 CURVES = {"roll.rock": INK, "hit.bounce": ORANGE, "brink.over": PLUM, "rest.lie": BLUE}
 MARKS = {"MuJoCo": ("o", BLUE), "Drake": ("s", ORANGE), "pymunk": ("^", PLUM)}
 

@@ -19,7 +19,7 @@ from oracles.pickles import fitted
 from rolling_ellipse._motion.events import Events
 
 SCENES = {name: getattr(rl.scenes, name) for name in rl.scenes.__all__}
-RACE = Path(__file__).parents[2] / "docs" / "peers_R_1.37.json"
+RACE = Path(__file__).parents[2] / "docs" / "data" / "peers_R_1.37.json"
 WEIRD = rl.Scene(
     3e-20, 2e-17, mass=1e30, gravity=1e-30, inertia=1e-5, slope=-1.5, friction=0.0, theta=1e50,
     omega=-0.0, x=-1e50,

@@ -291,6 +291,6 @@ def test_tables_of_impacts_without_an_answer(
 
 
 def test_the_sheets_have_the_tasks() -> None:
-    make = runpy.run_path(str(ROOT / "docs/course/make.py"))
+    make = runpy.run_path(str(ROOT / "docs/makers/course.py"))
     for path, _ in zip(make["SHEETS"], make["POINTS"], strict=True):
         assert path.read_text(encoding="utf-8") == make["with_tasks"](path), path.name

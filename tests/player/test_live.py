@@ -114,7 +114,7 @@ def test_any_blow_is_computed_where_it_is_given(opened: Opened) -> None:
 
 
 def test_sliders_move_the_motion_and_code_and_link_repeat_it(opened: Opened) -> None:
-    write = runpy.run_path(str(ROOT / "docs" / "live" / "make.py"))["page"]
+    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
     page = opened(write(rl.explore(rl.scenes.jump, live=True)), reduced_motion="reduce")
     for name in page.evaluate(f"{PLAYER}.rows.map(({{ name }}) => name)"):
         before = page.evaluate(f"{PLAYER}.found")

@@ -1,4 +1,4 @@
-"""Measured figures in text, charts and notebooks agree with the data in docs."""
+"""Measured figures in text, charts and notebooks agree with the data in docs/data."""
 
 import hashlib
 import json
@@ -13,6 +13,7 @@ from PIL import Image
 from rolling_ellipse import WorkPrecision
 
 DOCS = ROOT / "docs"
+DATA, MAKERS = DOCS / "data", DOCS / "makers"
 PROSE = {
     name: (ROOT / name).read_text(encoding="utf-8")
     for name in (
@@ -20,7 +21,7 @@ PROSE = {
         *(f"docs/{page}.md" for page in ("start", "speed", "constraints", "many", "benchmark")),
     )
 }
-RACE = DOCS / "peers_R_10.37.json"
+RACE = DATA / "peers_R_10.37.json"
 NOTEBOOK = ROOT / "notebooks" / "06_speed_and_accuracy.ipynb"
 # pattern of a time below a second, or a ratio ("25 × 16" is a size)
 MEASURED = re.compile(r"\d\s*(?:µs|us|ms|ns|microseconds?|nanoseconds?)\b|\d\s*×(?!\s*\d)")
@@ -29,7 +30,7 @@ MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTAL
 
 @pytest.fixture(scope="module")
 def make() -> dict[str, Any]:
-    return runpy.run_path(str(DOCS / "make.py"))
+    return runpy.run_path(str(MAKERS / "make.py"))
 
 
 def cells(path: Path, kind: str) -> list[Any]:
@@ -45,7 +46,7 @@ def printed(path: Path) -> str:
 def test_the_figures_of_the_pages_are_those_of_the_data(make: dict[str, Any]) -> None:
     for name in make["PAGES"]:
         page = PROSE[f"{name}.md"]
-        assert make["quoted"](page) == page, "python docs/make.py text"
+        assert make["quoted"](page) == page, "docs/makers/make.py text"
 
 
 def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:
@@ -61,22 +62,22 @@ def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:
 def test_every_race_of_the_data_is_quoted(make: dict[str, Any]) -> None:
     text = make["speed"]()
     rows = sum(text.count(f"| {name.partition(',')[0]},") for name in make["MOTIONS"].values())
-    assert rows == len(list(DOCS.glob("peers_*.json"))) > 0
+    assert rows == len(list(DATA.glob("peers_*.json"))) > 0
 
 
 @pytest.mark.parametrize("name", ["speed", "engine_mujoco", "engine_drake", "engine_pymunk"])
 def test_the_chart_shows_the_data(name: str) -> None:
     with Image.open(DOCS / f"{name}.png") as picture:
         source = picture.info["Source"]
-    data = (RACE if name == "speed" else DOCS / "engines.json").read_bytes()
-    assert source == hashlib.sha256(data).hexdigest(), "python docs/make.py pictures"
+    data = (RACE if name == "speed" else DATA / "engines.json").read_bytes()
+    assert source == hashlib.sha256(data).hexdigest(), "docs/makers/make.py pictures"
 
 
 def test_the_pages_of_problems_are_those_of_their_data(make: dict[str, Any]) -> None:
-    made = runpy.run_path(str(DOCS / "make_problems.py"))
+    made = runpy.run_path(str(MAKERS / "problems.py"))
     page = (DOCS / "benchmark.md").read_text(encoding="utf-8")
     listed = make["with_part"](page, "problems", made["listed"]())
-    assert listed == page, "python docs/make.py problems"
+    assert listed == page, "docs/makers/make.py problems"
     pages, folder = made["pages"](), DOCS / "problems"
     assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 20
     for name, page in pages.items():
@@ -85,7 +86,7 @@ def test_the_pages_of_problems_are_those_of_their_data(make: dict[str, Any]) -> 
 
 
 def test_the_notebook_shows_the_data() -> None:
-    assert WorkPrecision.load(RACE).verdict() in printed(NOTEBOOK), "python docs/make.py notebooks"
+    assert WorkPrecision.load(RACE).verdict() in printed(NOTEBOOK), "docs/makers/make.py notebooks"
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)

@@ -80,7 +80,7 @@ def test_one_command_writes_the_address(tmp_path: Path) -> None:
     """A second address takes the place of the first."""
     names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml")
     (tmp_path / "recipe").mkdir()
-    write = runpy.run_path(str(ROOT / "docs" / "address.py"))["write"]
+    write = runpy.run_path(str(ROOT / "tools" / "address.py"))["write"]
     for name in names:
         (tmp_path / name).write_bytes((ROOT / name).read_bytes())
     for address in ("https://one.example/who/re", "https://two.example/re"):

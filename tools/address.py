@@ -1,4 +1,4 @@
-"""Write the project's public address into every place that needs one: python docs/address.py URL
+"""Write the project's public address into every place that needs one: python tools/address.py URL
 
 The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
 `main`. Until it is known, the README has relative links, which PyPI cannot follow. Run again with

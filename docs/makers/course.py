@@ -1,4 +1,4 @@
-"""Make the pictures and the tasks of the sheets beside this file: python docs/course/make.py
+"""Make the pictures and the tasks of the sheets in docs/course: python docs/makers/course.py
 
     pictures   01.png to 10.png
     tasks      the marked parts of the sheets, from the questions and data that `course` marks by
@@ -21,9 +21,8 @@ from matplotlib.patches import Ellipse
 from rolling_ellipse import course
 from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 
-HERE = Path(__file__).resolve().parent
-SHEETS = sorted(HERE.glob("[01][0-9]_*.md"))
-BEGIN, END = "<!-- tasks: made by docs/course/make.py -->\n", "<!-- end of tasks -->\n"
+SHEETS = sorted((Path(__file__).resolve().parents[1] / "course").glob("[01][0-9]_*.md"))
+BEGIN, END = "<!-- tasks: made by docs/makers/course.py -->\n", "<!-- end of tasks -->\n"
 POINTS = {  # of the four tasks of each sheet; ten in all
     1: (2, 2, 3, 3), 2: (2, 3, 2, 3), 3: (2, 3, 3, 2), 4: (2, 2, 4, 2), 5: (3, 2, 3, 2),
     6: (2, 2, 3, 3), 7: (2, 3, 3, 2), 8: (3, 2, 2, 3), 9: (3, 3, 2, 2), 10: (2, 2, 3, 3),
@@ -396,11 +395,10 @@ PICTURES: dict[int, Callable[[], Figure]] = dict(
 
 
 def pictures() -> None:
-    sys.path.insert(0, str(HERE.parent))
-    import make_pictures
+    from pictures import save  # beside this file, which tests load from elsewhere
 
     for number, draw in PICTURES.items():
-        make_pictures.save(draw(), f"course/{number:02}.png")
+        save(draw(), f"course/{number:02}.png")
 
 
 def tasks() -> None:

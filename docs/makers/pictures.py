@@ -1,4 +1,4 @@
-"""Make the pictures of README and site beside this file; a step of `make.py`.
+"""Make the pictures of README and site; a step of `make.py`.
 
 The chart of speed against accuracy is drawn from `peers_R_10.37.json`, whose digest it carries.
 """
@@ -19,9 +19,9 @@ from PIL import Image, PngImagePlugin
 from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM
 from rolling_ellipse.benchmark import Score, Scores
 
-HERE = Path(__file__).parent
-RACE = HERE / "peers_R_10.37.json"
-ENGINES = HERE / "engines.json"
+DOCS = Path(__file__).resolve().parents[1]
+RACE = DOCS / "data" / "peers_R_10.37.json"
+ENGINES = DOCS / "data" / "engines.json"
 METHODS = {
     "rk4, 0.02 s": {"method": "rk4", "step": 0.02},
     "dop853, rtol 1e-10": {"method": "dop853"},
@@ -37,7 +37,7 @@ STEP = 2.0**-7
 
 
 def main() -> None:
-    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25, blow=True)
+    rl.animate(rl.simulate(rl.scenes.report, 6.0), DOCS / "roll.gif", fps=25, blow=True)
     friction()
     save(methods(), "methods.png")
     save(speed(), "speed.png", RACE, dpi=150)
@@ -53,7 +53,7 @@ def friction() -> None:
     """Film of three motions: the same blow on three floors."""
     motions = [rl.simulate(replace(rl.scenes.report, friction=mu), 4.0) for mu in (1.0, 0.1, 0.0)]
     labels = ["friction 1", "friction 0.1", "no friction"]
-    rl.animate(motions, HERE / "friction.gif", labels=labels, fps=25, width=560)
+    rl.animate(motions, DOCS / "friction.gif", labels=labels, fps=25, width=560)
 
 
 def methods() -> Figure:
@@ -188,7 +188,7 @@ def save(figure: Figure, name: str, source: Path | None = None, dpi: int = 120) 
     picture = BytesIO()
     figure.savefig(picture, dpi=dpi)
     colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the size
-    colours.save(HERE / name, optimize=True, pnginfo=facts)
+    colours.save(DOCS / name, optimize=True, pnginfo=facts)
 
 
 if __name__ == "__main__":

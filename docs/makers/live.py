@@ -1,7 +1,7 @@
-"""Write the page with the core itself: python docs/live/make.py [page.html]
+"""Write the page with the core itself: python docs/makers/live.py [page.html]
 
 It is the page of `explore(scenes.report, live=True)` with sliders for the whole scene, a map of
-half turns and the energies, by the files beside this one; where WebAssembly is forbidden, it is
+half turns and the energies, by the files of docs/live; where WebAssembly is forbidden, it is
 that of `explore`. It needs no other file and no network.
 """
 
@@ -15,7 +15,7 @@ from rolling_ellipse import Explorer, Scene, explore, geometry, scenes
 from rolling_ellipse._ask.words import LANGUAGES
 from rolling_ellipse._player.page import document, escaped, with_player, words
 
-HERE = Path(__file__).resolve().parent
+FOLDER = Path(__file__).resolve().parents[1] / "live"
 
 
 def write(target: Path) -> None:
@@ -36,8 +36,8 @@ def page(explorer: Explorer) -> str:
         "usual": {name: getattr(usual, name) for name in ("mass", "gravity", "slope",
                   "restitution", "theta", "omega", "x")},
     }  # fmt: skip
-    style = (HERE / "page.css").read_text(encoding="utf-8")
-    module = (HERE / "page.js").read_text(encoding="utf-8")
+    style = (FOLDER / "page.css").read_text(encoding="utf-8")
+    module = (FOLDER / "page.js").read_text(encoding="utf-8")
     content = explorer._fragment("Workbench", module, page=data, style=style)
     return document(languages["en"]["words"]["live_title"], content)
 
@@ -93,12 +93,12 @@ def row(group: str, name: str, unit: str, least: float, most: float) -> dict[str
 
 def language(name: str) -> dict[str, Any]:
     """Words and markup of the page in a language."""
-    own = json.loads((HERE / f"words_{name}.json").read_text(encoding="utf-8"))
+    own = json.loads((FOLDER / f"words_{name}.json").read_text(encoding="utf-8"))
     known = words(name) | own
-    html = (HERE / "page.html").read_text(encoding="utf-8")
+    html = (FOLDER / "page.html").read_text(encoding="utf-8")
     kept = escaped(known) | {"player": "{player}"}
     return {"words": known, "markup": with_player(html.format_map(kept), known)}
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "index.html")
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER / "index.html")

@@ -13,7 +13,7 @@ import numpy as np
 import sksundae
 from rolling_ellipse import benchmark
 
-PAGE = Path(__file__).with_name("benchmark_dae.md")
+PAGE = Path(__file__).parents[1] / "benchmark_dae.md"
 NAMES = [
     "rest.lie", "roll.circle", "roll.rock", "roll.roll", "roll.thin", "brink.back", "brink.over"
 ]  # fmt: skip

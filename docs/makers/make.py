@@ -1,16 +1,16 @@
-"""Make all measurements, pictures and the text that quotes them: python docs/make.py
+"""Make all measurements, pictures and the text that quotes them: python docs/makers/make.py
 
 On a quiet machine, with `pip install '.[test,peers,engines]'`, gfortran (for numbalsoda), g++ and
 Boost's headers; it takes about an hour, and everything is then of one commit and one machine:
 
-    races      docs/peers_*.json, by benchmarks/bench_peers.py
-    batches    docs/batches.json, by benchmarks/bench_batches.py
-    engines    docs/engines.json, by the adapters of rolling_ellipse.benchmark
-    pictures   docs/*.png and *.gif, by docs/make_pictures.py; paper/*.png, by paper/figures.py
-    problems   docs/problems/* and the table in docs/benchmark.md, by docs/make_problems.py
+    races      docs/data/peers_*.json, by benchmarks/bench_peers.py
+    batches    docs/data/batches.json, by benchmarks/bench_batches.py
+    engines    docs/data/engines.json, by the adapters of rolling_ellipse.benchmark
+    pictures   docs/*.png and *.gif, by pictures.py; paper/*.png, by paper/figures.py
+    problems   docs/problems/* and the table in docs/benchmark.md, by problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
-    dae        the tables of docs/benchmark_dae.md, by SUNDIALS IDA and solve_dae
+    dae        the tables of docs/benchmark_dae.md, by dae_table.py
 
 Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
 works; its figures are not for keeping.
@@ -36,7 +36,8 @@ from nbclient import NotebookClient
 from rolling_ellipse import Scene, WorkPrecision, benchmark, simulate
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent
+DOCS = HERE.parent
+DATA, ROOT = DOCS / "data", DOCS.parent
 PAGES = ("README", "docs/speed", "docs/many", "docs/benchmark")  # that quote measurements
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
@@ -55,11 +56,11 @@ POOLTOOL = 0.14562399883500798  # [s]
 
 def races(quick: bool) -> None:
     few = ["--rounds", "2", "--seconds", "5"] if quick else []
-    run(BENCHMARKS / "bench_peers.py", "--save", HERE, *few)
+    run(BENCHMARKS / "bench_peers.py", "--save", DATA, *few)
 
 
 def batches(quick: bool) -> None:
-    run(BENCHMARKS / "bench_batches.py", "--save", HERE)
+    run(BENCHMARKS / "bench_batches.py", "--save", DATA)
 
 
 def engines(quick: bool) -> None:
@@ -80,20 +81,20 @@ def engines(quick: bool) -> None:
         }
     plain = json.dumps(found)  # has NaN, which JSON does not know
     known = json.loads(plain, parse_constant=lambda name: None)
-    (HERE / "engines.json").write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    (DATA / "engines.json").write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
     text(quick)
 
 
 def pictures(quick: bool) -> None:
-    run(HERE / "make_pictures.py")
+    run(HERE / "pictures.py")
     run(ROOT / "paper" / "figures.py")
 
 
 def problems(quick: bool) -> None:
-    import make_problems
+    import problems
 
-    make_problems.main()
-    write_part(HERE / "benchmark.md", "problems", make_problems.listed())
+    problems.main()
+    write_part(DOCS / "benchmark.md", "problems", problems.listed())
 
 
 def run(*command: str | Path) -> None:
@@ -128,7 +129,7 @@ def dae(quick: bool) -> None:
     import dae_table
 
     for made in (dae_table.ida, dae_table.radau, dae_table.reference):
-        write_part(HERE / "benchmark_dae.md", made.__name__, made())
+        write_part(DOCS / "benchmark_dae.md", made.__name__, made())
 
 
 STEPS: dict[str, Callable[[bool], None]] = {
@@ -142,7 +143,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 def quoted(page: str) -> str:
     """A page with its marked parts made anew."""
     parts = {"speed": speed, "batches": throughput, "engines": engine_table, "others": others}
-    found = [name for name in parts if f"<!-- {name}: made by docs/make.py -->\n" in page]
+    found = [name for name in parts if f"<!-- {name}: made by docs/makers/make.py -->\n" in page]
     if not found:
         raise ValueError(f"the page must have a mark of {', '.join(parts)}")
     for name in found:
@@ -152,7 +153,7 @@ def quoted(page: str) -> str:
 
 def with_part(page: str, name: str, made: str) -> str:
     """A page with another text between the marks of a part."""
-    begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
+    begin, end = f"<!-- {name}: made by docs/makers/make.py -->\n", f"<!-- end of {name} -->\n"
     before, _, rest = page.partition(begin)
     _, closed, after = rest.partition(end)
     if not closed:
@@ -170,11 +171,11 @@ def speed() -> str:
 
     rows = []
     for name, motion in MOTIONS.items():
-        for path in sorted(HERE.glob(f"peers_{name}_*.json"), key=half_turns):
+        for path in sorted(DATA.glob(f"peers_{name}_*.json"), key=half_turns):
             race = WorkPrecision.load(path)
             cells = [bench_peers.factor(race, decade) for decade in COLUMNS]
             rows.append([f"{motion.format(half_turns(path))}", *cells])
-    drawn = WorkPrecision.load(HERE / "peers_R_10.37.json")
+    drawn = WorkPrecision.load(DATA / "peers_R_10.37.json")
     head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     if any("*" in line for line in lines[2:]):
@@ -190,7 +191,7 @@ def speed() -> str:
 
 def others() -> str:
     """Table of what other programs do, with a figure for each."""
-    race = WorkPrecision.load(HERE / "peers_R_10.37.json")
+    race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     rows = [["others", "what they do", "beside this package"]]
     for name in ("SciPy", "heyoka"):
@@ -199,7 +200,7 @@ def others() -> str:
         figure = f"ten half turns within 1e-8: {ratio:g} × the time"
         rows.append([name, "integrates; no contact", figure])
     for name in ("MuJoCo", "Drake"):
-        scores = json.loads((HERE / "engines.json").read_text(encoding="utf-8"))["engines"][name]
+        scores = json.loads((DATA / "engines.json").read_text(encoding="utf-8"))["engines"][name]
         finest = min(score["setting"] for score in scores["scores"])
         passed = [score["passed"] for score in scores["scores"] if score["setting"] == finest]
         figure = f"passes {sum(passed)} of {len(passed)} known answers at steps of {finest:g} s"
@@ -220,7 +221,7 @@ def half_turns(path: Path) -> float:
 
 def throughput() -> str:
     """Sentences with the figures for planning a large run, if they were measured."""
-    path = HERE / "batches.json"
+    path = DATA / "batches.json"
     if not path.exists():
         return ""
     known = json.loads(path.read_text(encoding="utf-8"))
@@ -237,7 +238,7 @@ def throughput() -> str:
 
 def engine_table() -> str:
     """Settings and verdicts of the engines, and a table of problems and steps."""
-    known = json.loads((HERE / "engines.json").read_text(encoding="utf-8"))
+    known = json.loads((DATA / "engines.json").read_text(encoding="utf-8"))
     on, lines = known["machine"], []
     cells: dict[str, list[str]] = {}
     head, seconds = ["problem"], 0.0
@@ -252,7 +253,7 @@ def engine_table() -> str:
     table = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     stamp = (
         f"{seconds:.0f} s for all of it on {on['processor']}, {on['date']}; every score is in "
-        "[`engines.json`](engines.json)."
+        "[`engines.json`](data/engines.json)."
     )
     return "\n".join([*table, "", *lines, "", stamp]) + "\n"
 

@@ -14,9 +14,9 @@ import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from rolling_ellipse import benchmark
 
-HERE = Path(__file__).resolve().parent
-FOLDER = HERE / "problems"
-DATA = HERE.parent / "python" / "rolling_ellipse" / "benchmark" / "problems"
+DOCS = Path(__file__).resolve().parents[1]
+FOLDER = DOCS / "problems"
+DATA = DOCS.parent / "python" / "rolling_ellipse" / "benchmark" / "problems"
 FIELDS = {  # fields of a scene, with their units
     "a": "m", "b": "m", "mass": "kg", "inertia": "kg m²", "gravity": "m/s²", "slope": "rad",
     "friction": "", "restitution": "", "x": "m", "z": "m", "theta": "rad", "x_dot": "m/s",
@@ -36,12 +36,12 @@ ORDER = ("roll", "brink", "slide", "leave", "hit", "law", "rest", "jam")
 
 
 def main() -> None:
-    import make_pictures  # found beside this file, which tests load from elsewhere
+    from pictures import save  # beside this file, which tests load from elsewhere
 
     FOLDER.mkdir(exist_ok=True)
     for name, text in pages().items():
         (FOLDER / f"{name}.md").write_text(text, encoding="utf-8")
-        make_pictures.save(picture(name), f"problems/{name}.png")
+        save(picture(name), f"problems/{name}.png")
 
 
 # ------------------------------------------------------------------------------ text
