@@ -34,6 +34,7 @@ from typing import Any
 import nbformat
 from nbclient import NotebookClient
 from rolling_ellipse import Scene, WorkPrecision, benchmark, simulate
+from rolling_ellipse._motion.export.strict import in_lines
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent
@@ -43,6 +44,7 @@ BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
 LADDER = [1e-2, 1e-3]  # steps of the engines [s]
+SCORES = 4  # depth of the scores in the file of the engines, one a line
 MOTIONS = {
     "R": "rolling over, {:g} half turns",
     "L": "rocking, {:g} half swings",
@@ -81,7 +83,7 @@ def engines(quick: bool) -> None:
         }
     plain = json.dumps(found)  # has NaN, which JSON does not know
     known = json.loads(plain, parse_constant=lambda name: None)
-    (DATA / "engines.json").write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    (DATA / "engines.json").write_text(in_lines(known, SCORES), encoding="utf-8")
     text(quick)
 
 

@@ -175,4 +175,7 @@ def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
     def none(literal: str) -> float:
         raise AssertionError(literal)
 
-    json.loads(path.read_text(encoding="utf-8"), parse_constant=none)  # plain JSON has no NaN
+    text = path.read_text(encoding="utf-8")
+    json.loads(text, parse_constant=none)  # plain JSON has no NaN
+    rows = [line for line in text.splitlines() if line.startswith('  { "name": ')]
+    assert len(rows) == len(RUNS) + len(found.references) and '"t_end": 2.0 }' in rows[0]

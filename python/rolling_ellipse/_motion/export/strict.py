@@ -1,6 +1,6 @@
-"""Strict reading of files that may be damaged or foreign.
+"""Strict reading of files that may be damaged or foreign, and JSON with a record a line.
 
-They must have every required name once, and no other name.
+Files must have every required name once, and no other name.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import io
 import json
 import math
 import os
+import re
 import stat
 import zipfile
 from collections.abc import Callable, Collection, Iterable
@@ -81,6 +82,13 @@ def parsed(name: str, text: str) -> Any:
         return found
 
     return json.loads(text, parse_constant=constant, object_pairs_hook=once)
+
+
+def in_lines(found: Any, depth: int) -> str:
+    """Return JSON with a line for each value down to a depth, such as that of a list's records."""
+    text = json.dumps(found, indent=1, allow_nan=False)
+    deeper, closing = " " * (depth + 1), " " * depth
+    return re.sub(rf"\n({deeper} *|{closing}(?=[\]}}]))", " ", text) + "\n"
 
 
 def field_names(kind: type[Any]) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from ..._ask.check import choice, file_name, number, shown
 from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
-from ..._motion.export.strict import OBJECT, parsed, restored
+from ..._motion.export.strict import OBJECT, in_lines, parsed, restored
 from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, made, plain
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..._pictures.work_precision import WorkPrecisionChart
 
 _SCHEMA = 2
+_RUNS = 2  # depth of the runs in a file, one a line
 _DECADES = tuple(10.0**-k for k in range(2, 15))
 _POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
@@ -276,12 +277,12 @@ class WorkPrecision:
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a file of JSON, which appears whole or not at all."""
+        """Write everything to a file of JSON, a run a line, which appears whole or not at all."""
         name = file_name("path", path)
-        text = json.dumps(self._about(), indent=1, allow_nan=False)
+        text = in_lines(self._about(), _RUNS)
         self._restored(text.encode())
         with replacing(name) as new:
-            new.write_text(text + "\n", encoding="utf-8")
+            new.write_text(text, encoding="utf-8")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
