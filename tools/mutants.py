@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Folders of tests for a folder of sources, of which the innermost counts. A folder that is not
-# listed has its tests in a folder of its name.
+# Folders of tests for a folder of sources, of which the innermost counts, or for a file in none.
+# One that is not listed has its tests in a folder of its name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -60,7 +60,7 @@ NEAREST = {
     "scene": ["scene", "contact", "refusals"],
     "_ask": ["scene", "refusals", "border"],
     "_motion": ["trajectory", "contact", "border"],
-    "_show": ["project", "border", "trajectory"],
+    "_command_line": ["project", "border", "trajectory"],
     "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling"],
     "batches": ["batches", "refusals"],
     "export": ["export", "refusals", "trajectory"],
@@ -249,7 +249,7 @@ def renew(source: str, target: str) -> None:
 def nearest(path: str) -> list[str]:
     parts = Path(path).parts
     side, begin = ("core", 1) if parts[0] == "src" else ("python", 2)
-    for folder in reversed(parts[begin:-1]):
+    for folder in reversed(parts[begin:-1] or [Path(path).stem]):
         own = folder.removeprefix("_")
         if folder in NEAREST or (ROOT / "tests" / own).is_dir():
             return NEAREST.get(folder, [own])

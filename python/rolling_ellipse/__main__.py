@@ -17,10 +17,7 @@ from matplotlib import rcParams
 
 from . import StabilityWarning, Status, Trajectory, examples, simulate
 from ._ask.printing import printable
-from ._motion.export.atomic import replacing
-from ._pictures.animation.movies import film_suffix
-from ._player import animate, explore
-from ._show.command_line import (
+from ._command_line import (
     PROGRAM,
     act,
     benchmark_parser,
@@ -32,6 +29,9 @@ from ._show.command_line import (
     require_file,
     summary,
 )
+from ._motion.export.atomic import replacing
+from ._pictures.animation.movies import film_suffix
+from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)

@@ -24,14 +24,14 @@ from oracles.units import (
 )
 from rolling_ellipse import Impulse, Scene, _core
 from rolling_ellipse._ask.settings import DEFAULTS, Settings
-from rolling_ellipse._motion.export.files import event_row, event_values
-from rolling_ellipse._motion.export.strict import scene_of
-from rolling_ellipse._show.command_line import (
+from rolling_ellipse._command_line import (
     NOT_TYPED,
     SCENE_OPTIONS,
     chosen_scene,
     motion_parser,
 )
+from rolling_ellipse._motion.export.files import event_row, event_values
+from rolling_ellipse._motion.export.strict import scene_of
 
 FIELDS = list(UNITS["Scene"])
 BLOW = Impulse(jx=3.0, jz=-5.0, dx=0.3, dz=-0.2)

@@ -38,7 +38,7 @@ FOLDERS = (
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
     "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "benchmark",
-    "course", "_pictures", "_player", "_show", "", "__main__",
+    "course", "_pictures", "_player", "_command_line", "", "__main__",
 )  # fmt: skip
 SLOW = "_pictures"
 COMPLEX_PRODUCTS = """

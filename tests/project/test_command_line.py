@@ -23,8 +23,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 from rolling_ellipse import __main__ as command_line
 from rolling_ellipse.__main__ import main
+from rolling_ellipse._command_line import SCENE_OPTIONS
 from rolling_ellipse._pictures.animation import film
-from rolling_ellipse._show.command_line import SCENE_OPTIONS
 
 KEYS = {
     "scene", "start", "model", "method", "status", "message", "reason", "valid_until",

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rolling_ellipse import Scene, benchmark
-from rolling_ellipse._show.command_line import act, benchmark_parser
+from rolling_ellipse._command_line import act, benchmark_parser
 from rolling_ellipse.benchmark.adapters import engine
 
 from refusals import Row, wrong

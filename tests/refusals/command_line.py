@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from rolling_ellipse.__main__ import _motion
-from rolling_ellipse._show.command_line import motion_parser
+from rolling_ellipse._command_line import motion_parser
 
 from refusals import Row
 

@@ -18,17 +18,17 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .. import _core, benchmark, scenes
-from .._ask.printing import text_table
-from .._ask.scene import Impulse, Scene
-from .._ask.settings import METHODS, MODELS
-from .._ask.words import LANGUAGES
-from .._core import Mode, Validity
-from .._motion.trajectory import Trajectory
-from .._verbs.certify import certify
-from .._verbs.flow import period
-from ..benchmark._run import require_simulator
-from ..benchmark.adapters import ENGINES
+from . import _core, benchmark, scenes
+from ._ask.printing import text_table
+from ._ask.scene import Impulse, Scene
+from ._ask.settings import METHODS, MODELS
+from ._ask.words import LANGUAGES
+from ._core import Mode, Validity
+from ._motion.trajectory import Trajectory
+from ._verbs.certify import certify
+from ._verbs.flow import period
+from .benchmark._run import require_simulator
+from .benchmark.adapters import ENGINES
 
 SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",
