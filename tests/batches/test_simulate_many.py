@@ -16,6 +16,7 @@ from oracles.batches import ENDLESS, NAMED, TIMES, singly
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
+from rolling_ellipse._ask.settings import Options
 from rolling_ellipse._verbs.batches.asked import sizes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all
 
@@ -177,7 +178,7 @@ def test_arguments_are_those_of_simulate() -> None:
     for name in ("scene", "scenes", "workers", "progress", "out", "returns"):
         mine.pop(name, None)
         others.pop(name, None)
-    assert mine == others
+    assert mine == others and Options.__annotations__.keys() == mine.keys() - {"t"}
 
 
 # ---------------------------------------------------------------------------- chunks and progress

@@ -60,7 +60,9 @@ KINDS = {
                       ("python/rolling_ellipse/_pictures/comparison.py",)),
     "a verb": Kind(of_room("_verbs"), ("tests/border/test_layout.py",)),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
-    "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),
+    "a setting": Kind([field.name for field in fields(Settings)], (
+        "tests/border/test_fields.py", "tests/batches/test_simulate_many.py",
+    )),
     "a field of Scene": Kind([field.name for field in fields(Scene)], (
         "python/rolling_ellipse/_motion/export/files.py",
         "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",

@@ -47,13 +47,14 @@ def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
         try:
             return function(*given, **named)
         except TypeError as error:
-            if error.__traceback__ is None or error.__traceback__.tb_next:
-                raise  # of the function itself
-            takes = signature(function).parameters.values()
+            takes = signature(call).parameters.values()
             names = [each.name for each in takes]
             unknown = [meant(name, names) for name in named if name not in names]
+            if not unknown and (error.__traceback__ is None or error.__traceback__.tb_next):
+                raise  # of the function itself
             plain = Signature([each.replace(annotation=Parameter.empty) for each in takes])
             hint = "".join(unknown) or f"; it is called as {function.__name__}{plain}"
-            raise TypeError(f"{error}{hint}") from None
+            wrong = str(error).rpartition("() ")[2]  # without the name of an inner function
+            raise TypeError(f"{function.__name__}() {wrong}{hint}") from None
 
     return call

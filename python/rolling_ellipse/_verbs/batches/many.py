@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from inspect import Signature, signature
 from typing import Any, TypeAlias, Unpack, overload
 
 from numpy.typing import ArrayLike
@@ -13,9 +14,9 @@ from ..._ask.check import flag, shown
 from ..._ask.habits import understood
 from ..._ask.progress import reporting
 from ..._ask.scene import Scene
-from ..._ask.settings import DEFAULTS, Method, Model, Options, Stabilization, settings
+from ..._ask.settings import Options, Settings
 from ..._motion.status import WorkerError
-from ..simulate import sample_times
+from ..simulate import sample_times, simulate
 from ..workers import Lost, in_order, threads_of
 from .answers import Answer, MotionArrays, Request, answers, gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
@@ -49,18 +50,8 @@ def simulate_many(
     progress: _Progress = False,
     out: str | os.PathLike[str] | None = None,
     returns: str | Iterable[str] | None = None,
-    model: Model = DEFAULTS.model,
-    method: Method = DEFAULTS.method,
-    rtol: float = DEFAULTS.rtol,
-    atol: float = DEFAULTS.atol,
-    step: float | None = DEFAULTS.step,
-    stages: int | None = DEFAULTS.stages,
-    stabilization: Stabilization = DEFAULTS.stabilization,
-    baumgarte: tuple[float, float] = DEFAULTS.baumgarte,
-    max_steps: int = DEFAULTS.max_steps,
-    max_events: int = DEFAULTS.max_events,
-    rest_speed: float | None = DEFAULTS.rest_speed,
     raise_on_failure: bool = True,
+    **options: Any,
 ) -> Any:
     """Simulate many scenes, each with the bits of `simulate`, by any workers.
 
@@ -90,8 +81,8 @@ def simulate_many(
     returns : str or iterable of str, optional
         Names of quantities of a trajectory: they are returned as `MotionArrays`, of the shape of
         the scenes, then of the times. "theta", "omega" and "x" need no objects of Python.
-    model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
-    max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
+    raise_on_failure, **options
+        As of `simulate`, from ``model`` to ``rest_speed``.
 
     Returns
     -------
@@ -113,10 +104,7 @@ def simulate_many(
     OSError
         If ``out`` cannot be written; finished chunks are kept.
     """
-    how = settings(
-        model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
-        rest_speed,
-    )  # fmt: skip
+    how = Settings(**options)
     times = sample_times(t)
     _core.validate_settings(how.core, float(times[-1]))
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
@@ -141,6 +129,11 @@ def simulate_many(
                 [tables] * len(chunk.table) if lost else answers(request, chunk.scenes, tables)
             )
         return listed
+
+
+# Help and completion show the options of `simulate`.
+_own, _options = ([*signature(each).parameters.values()] for each in (simulate_many, simulate))
+simulate_many.__signature__ = Signature([*_own[:-2], *_options[2:]])  # type: ignore[attr-defined]
 
 
 def _parts(
