@@ -75,52 +75,52 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _scene_parser(prog: str, description: str, epilog: str | None = None) -> OneLineParser:
-    found = OneLineParser(
+    parser = OneLineParser(
         prog=prog, description=f"{description} {_BASE}", epilog=epilog, allow_abbrev=False
     )
-    found._negative_number_matcher = _NEGATIVE
+    parser._negative_number_matcher = _NEGATIVE
     for name, meaning in SCENE_OPTIONS.items():
-        found.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
-    found.add_argument(
+        parser.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
+    parser.add_argument(
         "--press", type=float, nargs=2, metavar=("F", "D"),
         help="press down by F [N s] at D [m] from the centre instead",
     )  # fmt: skip
-    return found
+    return parser
 
 
 def motion_parser() -> OneLineParser:
     """Return the parser of the command that simulates a scene."""
-    found = _scene_parser(
+    parser = _scene_parser(
         PROGRAM,
         "Simulate an ellipse on the ground, and say what happens.",
         f"{PROGRAM} explore [options] writes a page to play with the scene in a browser; "
         f"{PROGRAM} benchmark tests other simulators; {PROGRAM} examples DIR writes notebooks.",
     )
-    found.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
+    parser.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
     for name, known, meaning in (
         ("model", MODELS, "how it moves"), ("method", METHODS, "how it is computed")
     ):  # fmt: skip
-        found.add_argument(
+        parser.add_argument(
             f"--{name}", type=str.casefold, choices=known, default="auto", help=meaning
         )
-    found.add_argument("--step", type=float, metavar="S", help="size of fixed steps [s]")
-    found.add_argument("--save", metavar="FILE", help="write an animation (.gif, .mp4, .html)")
-    found.add_argument("--plot", metavar="FILE", help="write the overview figure")
-    found.add_argument("--version", action="version", version=f"{_SCRIPT} {version(_SCRIPT)}")
-    found.add_argument("--json", action="store_true", help="print the summary as JSON")
-    return found
+    parser.add_argument("--step", type=float, metavar="S", help="size of fixed steps [s]")
+    parser.add_argument("--save", metavar="FILE", help="write an animation (.gif, .mp4, .html)")
+    parser.add_argument("--plot", metavar="FILE", help="write the overview figure")
+    parser.add_argument("--version", action="version", version=f"{_SCRIPT} {version(_SCRIPT)}")
+    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
+    return parser
 
 
 def explore_parser() -> OneLineParser:
     """Return the parser of `explore`."""
-    found = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
-    found.add_argument("--time", type=float, metavar="S", help="how long motions are followed")
-    found.add_argument(
+    parser = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
+    parser.add_argument("--time", type=float, metavar="S", help="how long motions are followed")
+    parser.add_argument(
         "--language", type=str.casefold, choices=LANGUAGES, default="en", help="of the page"
     )
-    found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
-    found.add_argument("--no-open", action="store_true", help="write it and open no browser")
-    return found
+    parser.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
+    parser.add_argument("--no-open", action="store_true", help="write it and open no browser")
+    return parser
 
 
 def examples_parser() -> OneLineParser:
@@ -166,8 +166,8 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
 
 def benchmark_parser() -> OneLineParser:
     """Return the parser of `benchmark`."""
-    found = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
-    actions = found.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
+    parser = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
+    actions = parser.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
     actions.add_parser("list", help="print the problems and what they need")
     export = actions.add_parser("export", help="write problems and empty tables for results")
     export.add_argument("folder", metavar="DIR")
@@ -179,13 +179,13 @@ def benchmark_parser() -> OneLineParser:
         "--ladder", type=float, nargs="+", default=[None], metavar="SETTING",
         help="settings, such as steps [s], from coarse to fine (default: one, which is None)",
     )  # fmt: skip
-    for parser in (score, run):
-        parser.add_argument("--json", action="store_true", help="print the scores as JSON")
-        parser.add_argument("--problem", nargs="+", metavar="ID", help="these only (default: all)")
-        parser.add_argument(
+    for each in (score, run):
+        each.add_argument("--json", action="store_true", help="print the scores as JSON")
+        each.add_argument("--problem", nargs="+", metavar="ID", help="these only (default: all)")
+        each.add_argument(
             "--tags", metavar="A,B", help="problems that need no other abilities than these"
         )
-    return found
+    return parser
 
 
 def act(options: argparse.Namespace) -> tuple[int, str]:
@@ -238,18 +238,18 @@ def _function(name: str) -> Any:
         raise ValueError(f"run must be {', '.join(ENGINES)} or module:function, got {name!r}")
     sys.path.insert(0, "")
     try:
-        found = getattr(import_module(module), function, None)
+        simulator = getattr(import_module(module), function, None)
     except ImportError:
         raise
     except Exception as error:
         raise _failed(module, error) from error
-    if not callable(found):
+    if not callable(simulator):
         raise ValueError(f"run must name a function of {module}, got {function!r}")
     try:
-        require_simulator("run", found)
+        require_simulator("run", simulator)
     except TypeError as error:
         raise ValueError(str(error)) from error
-    return found
+    return simulator
 
 
 def _failed(name: str, error: Exception, hint: str = "") -> RuntimeError:
@@ -265,7 +265,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
     certificate, start = certify(scene), scene.initial_state
     # the numbers of the certificate are about rolling: for other motions they are left out
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
-    found: dict[str, Any] = {
+    facts: dict[str, Any] = {
         "scene": _scene_facts(scene),
         "start": {"mode": start.mode.name.lower(), "omega": start.omega, "reason": start.reason},
         "model": trajectory.model,
@@ -282,7 +282,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
     if trajectory.t.size:
         residuals = trajectory.constraint_residuals()
         touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
-        found |= {
+        facts |= {
             "outcome": _core.outcome(scene.core).name.lower(),
             "period": _period(scene) if rolls else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
@@ -292,7 +292,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
             "largest_gap": _largest(residuals.gap[touching]),
             "largest_slip": _largest(residuals.slip[rolling]),
         }
-    return found
+    return facts
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:
@@ -315,7 +315,7 @@ def _finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def lines(found: dict[str, Any], trajectory: Trajectory) -> list[str]:
+def lines(facts: dict[str, Any], trajectory: Trajectory) -> list[str]:
     """Return the result of `summary` as lines of text."""
     scene = {name: value for name, value in trajectory.scene._rows()}
     start, blow = scene.pop("start"), scene.pop("impulse", "none")
@@ -323,43 +323,43 @@ def lines(found: dict[str, Any], trajectory: Trajectory) -> list[str]:
         ("scene", ", ".join(f"{name} = {value}" for name, value in scene.items())),
         ("blow", blow),
         ("start", start),
-        ("reason", found["reason"]),
-        ("status", f"{found['status']}: {found['message']}"),
+        ("reason", facts["reason"]),
+        ("status", f"{facts['status']}: {facts['message']}"),
     ]
-    if "distance" in found:
-        rows += _motion_rows(found, trajectory)
-    rows += [("written", name) for name in found["files"]]
+    if "distance" in facts:
+        rows += _motion_rows(facts, trajectory)
+    rows += [("written", name) for name in facts["files"]]
     return [f"{name:<17} {value}" for name, value in rows]
 
 
-def _motion_rows(found: dict[str, Any], trajectory: Trajectory) -> list[tuple[str, str]]:
-    end = f"{trajectory.t[-1]:g} s, {found['turns']:.6g} turns"
-    rows = [_repeat(found, trajectory), ("distance", f"{found['distance']:.12g} m in {end}")]
-    if found["smallest_normal_force"] is not None:
-        needed = found["largest_friction_needed"]
+def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[str, str]]:
+    end = f"{trajectory.t[-1]:g} s, {facts['turns']:.6g} turns"
+    rows = [_repeat(facts, trajectory), ("distance", f"{facts['distance']:.12g} m in {end}")]
+    if facts["smallest_normal_force"] is not None:
+        needed = facts["largest_friction_needed"]
         rows += [
-            ("smallest N", f"{found['smallest_normal_force']:.6g} N"),
+            ("smallest N", f"{facts['smallest_normal_force']:.6g} N"),
             ("largest |F|/N", "unbounded" if needed is None else f"{needed:.6g}"),
         ]
-    rows += [(kind, f"at {t:.9g} s") for t, kind in found["events"][:_SHOWN_EVENTS]]
-    if len(found["events"]) > _SHOWN_EVENTS:
-        rows.append(("…", f"and {len(found['events']) - _SHOWN_EVENTS} events more"))
+    rows += [(kind, f"at {t:.9g} s") for t, kind in facts["events"][:_SHOWN_EVENTS]]
+    if len(facts["events"]) > _SHOWN_EVENTS:
+        rows.append(("…", f"and {len(facts['events']) - _SHOWN_EVENTS} events more"))
     residuals = (
-        f"position {found['largest_position_residual']:.2g}, velocity "
-        f"{found['largest_velocity_residual']:.2g}, gap {found['largest_gap']:.2g} m, "
-        f"slip {found['largest_slip']:.2g} m/s"
+        f"position {facts['largest_position_residual']:.2g}, velocity "
+        f"{facts['largest_velocity_residual']:.2g}, gap {facts['largest_gap']:.2g} m, "
+        f"slip {facts['largest_slip']:.2g} m/s"
     )
     return [*rows, ("residuals", residuals)]
 
 
-def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
+def _repeat(facts: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
     """Return the row with the time after which a motion repeats, or with why it never does."""
-    if found["period"] is not None:
-        return _REPEATS.get(found["outcome"], "swing or turn"), f"{found['period']:.12g} s"
+    if facts["period"] is not None:
+        return _REPEATS.get(facts["outcome"], "swing or turn"), f"{facts['period']:.12g} s"
     name = "swing or turn"
     if trajectory.model == "contact":
         return name, "none: it slides, leaves the ground or hits it"
-    if found["outcome"] == "rests":
+    if facts["outcome"] == "rests":
         return name, "none: it rests"
     if trajectory.scene.slope != 0:
         return name, "none: it runs downhill for ever"

@@ -129,16 +129,16 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
     if kind is float or (kind is list and len(value) <= _FEW and {*map(type, value)} == _FLOATS):
         return np.array(value)
     if type(value) is np.ndarray and value.dtype is _DOUBLE:
-        found = value
+        doubles = value
     else:
         _require_plain(name, value)
         converted = _converted(name, value)
         if converted is None:
             return None
-        found = converted
-    if found.ndim > _MOST_AXES:
-        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
-    return found
+        doubles = converted
+    if doubles.ndim > _MOST_AXES:
+        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {doubles.ndim}")
+    return doubles
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
@@ -146,19 +146,19 @@ def _converted(name: str, value: Any) -> FloatArray | None:
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
-        found: npt.NDArray[Any] = value if type(value) is np.ndarray else np.asarray(value)
-        dtype = found.dtype
+        numbers: npt.NDArray[Any] = value if type(value) is np.ndarray else np.asarray(value)
+        dtype = numbers.dtype
         if dtype.kind in "biuf" and dtype.itemsize <= _DOUBLE.itemsize:
-            return found if dtype is _DOUBLE else copied(found)
+            return numbers if dtype is _DOUBLE else copied(numbers)
         if dtype.kind != "f" and (dtype.kind != "O" or hasattr(type(value), "__array__")):
             return None
         # Decimals, Fractions, ints of more than 64 bits and long doubles convert themselves
-        doubles = np.array(vector("d", found.ravel().tolist())).reshape(found.shape)
+        doubles = np.array(vector("d", numbers.ravel().tolist())).reshape(numbers.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
     except (TypeError, ValueError):  # NumPy refuses ragged sequences and signalling NaNs
         return None
-    require(name, _KNOWN, found, ~np.isinf(doubles) | (found == doubles))
+    require(name, _KNOWN, numbers, ~np.isinf(doubles) | (numbers == doubles))
     return doubles
 
 
@@ -264,13 +264,13 @@ def finite(name: str, value: Any) -> FloatArray:
 
 def coordinates(name: str, value: Any) -> FloatArray:
     """Return ``value`` as an array of finite numbers with 5 coordinates along its last axis."""
-    found = finite(name, value)
-    if found.ndim == 0 or found.shape[-1] != COORDINATES:
+    values = finite(name, value)
+    if values.ndim == 0 or values.shape[-1] != COORDINATES:
         raise ValueError(
             f"{name} must have 5 entries (x, z, theta, psi, r) along its last axis, "
-            f"got shape {found.shape}"
+            f"got shape {values.shape}"
         )
-    return found
+    return values
 
 
 def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
@@ -367,16 +367,16 @@ def require_near(name: str, size: float, farthest: float) -> None:
 
 def file_name(name: str, value: Any) -> str:
     """Return the path of a file as text, or raise an error naming the argument."""
-    found = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
-    if not isinstance(found, str):
+    path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(path, str):
         raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
     try:
-        named = bool(os.fsencode(found)) and "\0" not in found
+        named = bool(os.fsencode(path)) and "\0" not in path
     except UnicodeEncodeError:  # a lone surrogate, which no file name can have
         named = False
     if not named:
-        raise ValueError(f"{name} must name a file, got {found!r}")
-    return found
+        raise ValueError(f"{name} must name a file, got {path!r}")
+    return path
 
 
 def choice(name: str, value: Any, valid: tuple[_Name, ...]) -> _Name:

@@ -87,7 +87,7 @@ class Impulse:
         force, distance = array("F", F), array("d", d)
         push = copied(force)
         try:
-            found = cls(jz=np.negative(push, out=push), dx=distance)
+            blow = cls(jz=np.negative(push, out=push), dx=distance)
         except ValueError:
             _let_the_core_refuse("jz", force, "F")
             _let_the_core_refuse("dx", distance, "d")
@@ -96,7 +96,7 @@ class Impulse:
         if pull < 0:
             said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
             warnings.warn(said, ValidityWarning, stacklevel=2)
-        return found
+        return blow
 
     def _values(self) -> tuple[Any, ...]:
         """Return the values that decide equality: floats, and the shape and bits of arrays."""

@@ -51,7 +51,7 @@ class _Part(NamedTuple):
 def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | None:
     """Return the derivatives by several inputs, or None where a part has no derivative."""
     rows = len(motion.t) + len(motion.events)
-    found = Chained(np.zeros((len(STATE), rows, len(names))), *np.zeros((2, rows, len(names))))
+    whole = Chained(np.zeros((len(STATE), rows, len(names))), *np.zeros((2, rows, len(names))))
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
     growth = 1.0  # of changes of the inputs, or of the state after the first part
@@ -72,12 +72,12 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
         for change, made in since:
             passed += size(np.abs(step @ change).sum(axis=-1))[:, None] * made
         kept = np.arange(len(error)) != last
-        found.value[:, own], found.error[own] = value[:, kept], passed[kept]
-        found.parted[own] = _ROUNDINGS * np.finfo(float).eps * growth * size(found.value[:, own])
+        whole.value[:, own], whole.error[own] = value[:, kept], passed[kept]
+        whole.parted[own] = _ROUNDINGS * np.finfo(float).eps * growth * size(whole.value[:, own])
         start = value[:, last]
         since = [(step[:, last] @ change, made) for change, made in since]
         since.append((np.eye(len(STATE)), error[last]))
-    return found
+    return whole
 
 
 def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray] | None:

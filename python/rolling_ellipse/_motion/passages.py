@@ -111,9 +111,9 @@ def when(
     if values.ndim > 1:
         raise ValueError(f"{name} must be a number or a 1-D array, got shape {values.shape}")
     if name == "function":
-        found, unproved = motion._solution.zeros(_measure(motion, asked), sense)
+        times, unproved = motion._solution.zeros(_measure(motion, asked), sense)
     else:
-        found, unproved = motion._solution.passages(Quantity[name], values.ravel(), sense)
+        times, unproved = motion._solution.passages(Quantity[name], values.ravel(), sense)
     if unproved:
         warnings.warn(
             f"the times at which {name} passes are not proved to be all of them "
@@ -121,9 +121,9 @@ def when(
             CompletenessWarning,
             stacklevel=2,
         )
-    if name == "theta" and not any(each.size for each in found):
+    if name == "theta" and not any(each.size for each in times):
         _ask_for_radians(motion, values)
-    return found if values.ndim == 1 else found[0]
+    return times if values.ndim == 1 else times[0]
 
 
 def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
@@ -156,15 +156,15 @@ def _measure(
     """Return the caller's function of a Trajectory as a function of an array of times."""
 
     def measure(times: FloatArray) -> FloatArray:
-        found = array("function's result", function(motion.sol(times)))
-        if found.shape != times.shape:
+        values = array("function's result", function(motion.sol(times)))
+        if values.shape != times.shape:
             raise ValueError(
                 f"function must return one number a sample, shape {times.shape}, "
-                f"got shape {found.shape}"
+                f"got shape {values.shape}"
             )
-        if np.isnan(found).any():
-            first = float(times[np.isnan(found)][0])
+        if np.isnan(values).any():
+            first = float(times[np.isnan(values)][0])
             raise ValueError(f"function must return numbers, got nan at t = {first!r}")
-        return found
+        return values
 
     return measure

@@ -88,15 +88,15 @@ class Comparison:
 
     def motion_handles(self, *, solid: bool) -> list[Line2D]:
         """Return entries of a legend for the motions: dashes, or `solid` lines with markers."""
-        found = [
+        handles = [
             Line2D(
                 [], [], color=style.colour, label=style.label, ms=3, mew=0.8,
                 ls="-" if solid else style.dash, marker=style.marker if solid else "",
             )
             for style in some_of(self.styles)
         ]  # fmt: skip
-        self.restyle(*found)
-        return found
+        self.restyle(*handles)
+        return handles
 
 
 def require_motion(trajectory: object) -> None:

@@ -124,7 +124,7 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
         dots.append(_dotted(corners * page, size / 3) if len(corners) else corners)
     lines = np.vstack(dots)
     lines = lines[np.all((lines > -size) & (lines < page + size), axis=1)]
-    taken, found = np.empty((0, 2)), {}
+    taken, placed = np.empty((0, 2)), {}
     for key, label in labels.items():
         for text in label.texts:
             last = label.must and text == label.texts[-1]
@@ -134,9 +134,9 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
                 grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 40), (-0.5, 0.0, 0.5)), axis=-1)
                 frame = np.array([spot.lead, (-spot.lead[1], spot.lead[0])])
                 taken = np.vstack([taken, spot.middle + (grid.reshape(-1, 2) * extent) @ frame])
-                found[key] = _written(ax, text, label, spot, size)
+                placed[key] = _written(ax, text, label, spot, size)
                 break
-    return found
+    return placed
 
 
 class _Spot(NamedTuple):

@@ -142,17 +142,17 @@ def half_turns(motion: Trajectory) -> float:
             swing = period(motion.scene)
     if swing is not None:
         return 2 * (end - begin) / swing if math.isfinite(swing) else 1.0
-    found = 0.0
+    turned = 0.0
     for count in _COUNTS:
         places = (np.arange(count) + (np.arange(count) * _GOLDEN) % 1) / count
         seen = motion.sol(np.minimum(begin + places * (end - begin), end))
         moving = seen.omega[seen.omega != 0]
         back = np.count_nonzero(moving[1:] * moving[:-1] < 0)
         tips = np.floor((seen.theta - flat_angle(motion.scene)) / math.pi + 0.5)
-        before, found = found, float(np.sum(np.abs(np.diff(tips)))) + back
-        if found <= max(_STEADY * before, 1.0):
+        before, turned = turned, float(np.sum(np.abs(np.diff(tips)))) + back
+        if turned <= max(_STEADY * before, 1.0):
             break
-    return found
+    return turned
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
@@ -234,10 +234,10 @@ def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)
     moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))
     used = np.maximum.accumulate(np.maximum(turned, moved)) / turns
-    found = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
+    end = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
     speed = getattr(seen, rate)
     swung = int(speed[0] != 0)  # turning points before the end of a swing; 0 from a turning point
     for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[swung : swung + 1]:
         zero = t[i] + (t[i + 1] - t[i]) * speed[i] / (speed[i] - speed[i + 1])
-        found = min(found, float(zero))
-    return found
+        end = min(end, float(zero))
+    return end

@@ -68,16 +68,16 @@ class WorkPrecisionChart(Artists):
 
 @picture
 def draw(
-    found: WorkPrecision, x: str, y: str, tags: Sequence[str] | None, ax: Axes | None,
+    results: WorkPrecision, x: str, y: str, tags: Sequence[str] | None, ax: Axes | None,
     highlight: Sequence[str] | None, by: str | None, t_end: float | None,
 ) -> WorkPrecisionChart:  # fmt: skip
     """Draw the runs; see `WorkPrecision.plot`."""
     x, y = choice("x", x, ERRORS), choice("y", y, QUANTITIES)
-    runs = found.of(t_end)
+    runs = results.of(t_end)
     if tags is not None:
         chosen = _chosen("tags", tags, runs)
         runs = tuple(run for run in runs if run.name in chosen)
-    race = _Race(found, x, y, runs, highlight)
+    race = _Race(results, x, y, runs, highlight)
     if by is not None:
         choice("by", by, ("library",))
         if ax is not None:
@@ -86,7 +86,7 @@ def draw(
     own_figure = ax is None
     ax = axes_of(ax, (8, 5.6))
     chart = WorkPrecisionChart((ax,), race.gaps, **_drawn(ax, race, None))
-    below = _below(ax, race, chart.gaps, found.machine) if own_figure else None
+    below = _below(ax, race, chart.gaps, results.machine) if own_figure else None
     ax.get_figure(root=True).draw_without_rendering()  # type: ignore[union-attr]
     return WorkPrecisionChart(**{**vars(chart), **_named(ax, race, chart), "below": below})
 
@@ -145,14 +145,14 @@ class _Race:
 
 def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
     """Return the names along a front, each with the corners of its steps."""
-    found, before = [], _MOST
+    named, before = [], _MOST
     for name, held in groupby(front, key=front.__getitem__):
         corners = []
         for at, value in held:
             corners += [(before, value), (at, value)]
             before = at
-        found.append((name, corners))
-    return found
+        named.append((name, corners))
+    return named
 
 
 def _least(front: dict[Point, str], error: float) -> tuple[float, str]:

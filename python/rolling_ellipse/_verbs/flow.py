@@ -103,15 +103,15 @@ def flow(
             if threads is None:
                 k2 = uniform_disc(a, b) if gyration2 is None else gyration2
                 columns = [times.ravel(), *(np.array([float(v)]) for v in (*one, k2))]
-                found = shared(workers, _times)(times.size, columns)
+                states = shared(workers, _times)(times.size, columns)
             else:
-                found = _core.flow_times(times.ravel(), *one, gyration2, threads)
-            return shaped(found, times.shape)  # type: ignore[no-any-return]
-    found = evaluate(
+                states = _core.flow_times(times.ravel(), *one, gyration2, threads)
+            return shaped(states, times.shape)  # type: ignore[no-any-return]
+    states = evaluate(
         shared(workers, _core.flow_array), t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
         gyration2=gyration2,
     )  # fmt: skip
-    return found  # type: ignore[no-any-return]
+    return states  # type: ignore[no-any-return]
 
 
 def _times(n: int, columns: list[FloatArray], threads: int) -> Any:

@@ -100,14 +100,14 @@ def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns
             pickle.dumps((function, end - begin, _rows(columns, begin, end)))
             for begin, end in _ranges(n)
         )
-        found = []
+        pieces = []
         for _, result in in_order(workers, _evaluate, tasks):
             if isinstance(result, Lost):
                 raise result.error
-            found.append(result)
-        if isinstance(found[0], tuple):
-            return tuple(np.concatenate(parts) for parts in zip(*found, strict=True))
-        return np.concatenate(found)
+            pieces.append(result)
+        if isinstance(pieces[0], tuple):
+            return tuple(np.concatenate(parts) for parts in zip(*pieces, strict=True))
+        return np.concatenate(pieces)
 
     return compute
 

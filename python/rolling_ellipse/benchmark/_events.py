@@ -35,28 +35,28 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
     kinds = _kinds(gap - least_gap, slip, least_slip)
     starts = _starts(problem, t, states, kinds)
     shortest = _SHORTEST * math.sqrt(length / scene.gravity)
-    found: list[tuple[str, float]] = []
+    events: list[tuple[str, float]] = []
     before = kinds[0]
     rebounds = False  # whether the body flies on after an impact and a run too short to count
     for start, end in pairwise(starts):
         kind = kinds[start]
         lasts = t[end] - t[start] if end < len(t) else math.inf
         if before == _FLIES and not rebounds:
-            found.append(("IMPACT", _touch(problem, t[start - 1], states[start - 1])))
+            events.append(("IMPACT", _touch(problem, t[start - 1], states[start - 1])))
         turns = kind == _ROLLS and before != _FLIES and end < len(t) and kinds[end] == -before
         if kind != _FLIES and lasts < shortest * (2 if turns and before else 1):
             rebounds = before == _FLIES
             continue
         if before != _FLIES and kind == _FLIES:
-            found.append(("LIFT_OFF", _passing(t, gap, least_gap, start)))
+            events.append(("LIFT_OFF", _passing(t, gap, least_gap, start)))
         elif before != _FLIES and kind != before:
             if kind and before:
-                found.append(("REVERSE", _passing(t, slip * kind, 0.0, start)))
+                events.append(("REVERSE", _passing(t, slip * kind, 0.0, start)))
             else:
                 passed = _passing(t, np.abs(slip), least_slip, start)
-                found.append(("STICK" if kind == _ROLLS else "SLIP", passed))
+                events.append(("STICK" if kind == _ROLLS else "SLIP", passed))
         before, rebounds = kind, False
-    return found
+    return events
 
 
 def _kinds(above: FloatArray, slip: FloatArray, least_slip: float) -> Any:

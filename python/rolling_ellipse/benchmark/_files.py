@@ -39,7 +39,7 @@ def read_folder(results: Any) -> dict[str, Result]:
     if not folder.is_dir():
         raise ValueError(f"results must be an existing folder, got {str(folder)!r}")
     known = {one.id: one for one in scored_ones(None)}
-    found = {}
+    by_problem = {}
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() != ".csv":
             continue
@@ -47,10 +47,10 @@ def read_folder(results: Any) -> dict[str, Result]:
         one = known[choice("results", name, tuple(known))]
         table = folder / f"{name}.csv"
         if path == table:
-            found[name] = read(one, path)
+            by_problem[name] = read(one, path)
         elif not table.exists():
             raise ValueError(f"results must have {table.name} beside {path.name}, got no such file")
-    return {name: result for name, result in found.items() if len(result.states)}
+    return {name: result for name, result in by_problem.items() if len(result.states)}
 
 
 def read(problem: Problem, path: Path) -> Result:

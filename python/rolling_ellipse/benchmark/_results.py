@@ -123,13 +123,13 @@ def _force(problem: Problem, name: str, given: Any, count: int) -> FloatArray:
 
 
 def _column(name: str, values: Any, count: int) -> FloatArray:
-    found = array(name, values)
-    if found.shape != (count,):
+    column = array(name, values)
+    if column.shape != (count,):
         raise ValueError(
             f"{name} must have one number for each of {count} rows of states, "
-            f"got shape {found.shape}"
+            f"got shape {column.shape}"
         )
-    return found
+    return column
 
 
 def _not_finite(t: FloatArray, within: Any, columns: dict[str, FloatArray]) -> str:
@@ -150,7 +150,7 @@ def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | No
     name = f"events of {problem.id}"
     if not isinstance(events, Iterable):
         raise TypeError(f"{name} must be pairs of kind and time, got {shown(events)}")
-    found = []
+    pairs = []
     for row, event in enumerate(events):
         pair = list(event) if isinstance(event, Iterable) and not isinstance(event, str) else []
         if len(pair) != 2:
@@ -161,5 +161,5 @@ def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | No
         t = number(f"t of {name}", pair[1])
         if not math.isfinite(t):
             raise ValueError(f"t of {name} must be finite, got {t} in row {row} ({kind})")
-        found.append((kind, t))
-    return tuple(sorted(found, key=lambda event: event[1]))
+        pairs.append((kind, t))
+    return tuple(sorted(pairs, key=lambda event: event[1]))

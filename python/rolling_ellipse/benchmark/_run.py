@@ -64,7 +64,7 @@ def run(
     require_simulator("mine", mine)
     tolerance, settings = positive("tolerance", tolerance), list(ladder)
     able = {one.id for one in able_to(tags)}
-    found = []
+    scores = []
     for one in scored_ones(problems):
         for setting in settings:
             times = one.output_times
@@ -74,11 +74,11 @@ def run(
                 result = mine(one, times, setting)
             except NotImplementedError as error:
                 why = str(error)
-                found.append(Score(one.id, setting, UNSUPPORTED, reason=why, tolerance=tolerance))
+                scores.append(Score(one.id, setting, UNSUPPORTED, reason=why, tolerance=tolerance))
                 continue
             with np.errstate(over="ignore", invalid="ignore"):  # states may be huge
-                found.append(scored(one, setting, checked(one, result, times), tolerance))
-    return Scores(found)
+                scores.append(scored(one, setting, checked(one, result, times), tolerance))
+    return Scores(scores)
 
 
 def require_simulator(name: str, mine: Any) -> None:

@@ -103,13 +103,13 @@ def require_names(what: str, found: Any, names: Iterable[str]) -> None:
         raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
 
 
-def scene_of(found: Any) -> Scene:
-    require_names("scene", found, field_names(Scene))
-    impulse = found["impulse"]
+def scene_of(values: Any) -> Scene:
+    require_names("scene", values, field_names(Scene))
+    impulse = values["impulse"]
     if impulse is not None:
         require_names("impulse", impulse, field_names(Impulse))
         impulse = Impulse(**impulse)
-    return reached_scene({**found, "impulse": impulse})
+    return reached_scene({**values, "impulse": impulse})
 
 
 def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
@@ -118,16 +118,16 @@ def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[
     Nothing is decompressed or unpickled, and no array is larger than the file. Any other content
     raises an exception of some kind.
     """
-    found: dict[str, npt.NDArray[Any]] = {}
+    arrays: dict[str, npt.NDArray[Any]] = {}
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for member in archive.infolist():
             name = member.filename.removesuffix(".npy")
-            if name in found or name not in names or name == member.filename:
+            if name in arrays or name not in names or name == member.filename:
                 raise ValueError(f"it must hold known arrays, once each, got {member.filename!r}")
             if member.compress_type != zipfile.ZIP_STORED:
                 raise ValueError(f"{name} must not be compressed")
-            found[name] = _array(name, archive.read(member))
-    return found
+            arrays[name] = _array(name, archive.read(member))
+    return arrays
 
 
 def _array(name: str, content: bytes) -> npt.NDArray[Any]:

@@ -104,7 +104,7 @@ def answers(
     times, text = frozen(np.array(request.times)), tables["text"].tobytes()
     span, settings, table = float(times[-1]), request.settings, tables["events"]
     taken, letters_taken, events_taken = dict.fromkeys(MODELS, 0), 0, 0
-    found: list[Answer] = []
+    results: list[Answer] = []
     known = columns("codes", tables) | columns("numbers", tables)
     code = {name: values.tolist() for name, values in known.items()}
     names = ("ending", "model", "method", "samples", "events", "letters", "t_end", "valid_until")
@@ -114,7 +114,7 @@ def answers(
         ending, model_code, method, samples, events, letters, t_end, valid_until = each
         message = text[letters_taken : (letters_taken := letters_taken + letters)].decode()
         if ending == REFUSED:
-            found.append(ValueError(message))
+            results.append(ValueError(message))
             continue
         status, model = STATUSES[ending], MODELS[model_code]
         here = slice(taken[model], taken[model] + samples)
@@ -131,8 +131,8 @@ def answers(
             facts["kept_events"] = made_events(scene, rows)
         made = trusted(Trajectory, facts)
         failed = request.raise_on_failure and status not in AT_AN_END
-        found.append(IntegrationError(made) if failed else made)
-    return found
+        results.append(IntegrationError(made) if failed else made)
+    return results
 
 
 def _samples(model: str, tables: Tables, here: slice, times: FloatArray) -> dict[str, Any]:
@@ -249,19 +249,19 @@ def dataset_of(
 
     Columns of further arguments are treated as those of the scenes.
     """
-    found: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
+    dataset: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
     for name, array in values.items():
-        found[name] = dims, array, attributes(_KNOWN[name]) if name in _KNOWN else {}
+        dataset[name] = dims, array, attributes(_KNOWN[name]) if name in _KNOWN else {}
     columns = dict(zip((*NAMES, *BLOW), scenes.T, strict=True)) | more
     for argument, column in columns.items():
         name, grid = name_of(argument), column.reshape(of.status.shape)
         along = [axis for k, axis in enumerate(of.axes) if axis == name or _varies(grid, k)]
         if along:
             place = tuple(slice(None) if axis in along else 0 for axis in of.axes)
-            found.coords[name] = along, grid[place], {"units": _UNITS.get(argument) or "1"}
+            dataset.coords[name] = along, grid[place], {"units": _UNITS.get(argument) or "1"}
         elif grid.size and not np.isnan(grid.flat[0]):
-            found.attrs[name] = float(grid.flat[0])
-    return found
+            dataset.attrs[name] = float(grid.flat[0])
+    return dataset
 
 
 def _varies(grid: FloatArray, axis: int) -> bool:
@@ -337,13 +337,13 @@ def _fill(
         others -= _TOUCH
     failed = request.raise_on_failure and not set(code["ending"]) <= _HELD
     if others or failed or REFUSED in code["ending"]:
-        for place, found in enumerate(answers(request, scenes_of(table), tables)):
-            motion = found.trajectory if isinstance(found, IntegrationError) else found
+        for place, answer in enumerate(answers(request, scenes_of(table), tables)):
+            motion = answer.trajectory if isinstance(answer, IntegrationError) else answer
             if isinstance(motion, Trajectory):
                 for name in others:
                     values[name][place, : motion.t.size] = getattr(motion, name)
-            if isinstance(found, Exception):
-                yield place, found
+            if isinstance(answer, Exception):
+                yield place, answer
 
 
 def _fill_rolling(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:

@@ -208,10 +208,10 @@ def _error(scene: Scene, request: _Request, place: int) -> Exception:
     """Return the exception that `simulate` raises for a scene."""
     t = request.times[0 if request.times.size == 1 else place]
     try:
-        found = simulate(
+        motion = simulate(
             scene, [t], max_events=request.settings.max_events,
             rest_speed=request.settings.rest_speed, raise_on_failure=False,
         )  # fmt: skip
     except ValueError as error:  # a time beyond what a double resolves
         return error
-    return IntegrationError(found)
+    return IntegrationError(motion)

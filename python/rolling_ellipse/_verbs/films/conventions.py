@@ -81,13 +81,13 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Conv
     if "gravity" in unknowns.names or 1 / _WRONG < fall < _WRONG:
         return []
     upright, size = Convention("", film) if fall > 0 else _flipped(film), abs(fall)
-    found = []
+    others = []
     if fall < 0 and 1 / _WRONG < size < _WRONG:
-        found += [upright, *(_then(upright, one) for one in _turned(upright.film)[:1])]
+        others += [upright, *(_then(upright, one) for one in _turned(upright.film)[:1])]
     units = [unit for unit in _UNITS if 1 / _NEAR < unit / math.sqrt(size) < _NEAR]
-    found += [_then(upright, _timed(upright.film, unit)) for unit in units or [math.sqrt(size)]]
+    others += [_then(upright, _timed(upright.film, unit)) for unit in units or [math.sqrt(size)]]
     lengths = [unit for unit in _LENGTHS if 1 / _NEAR < unit / size < _NEAR]
-    return found + [_then(upright, _scaled(upright.film, unit)) for unit in lengths]
+    return others + [_then(upright, _scaled(upright.film, unit)) for unit in lengths]
 
 
 def readings(film: Film) -> list[Convention]:
@@ -99,16 +99,16 @@ def readings(film: Film) -> list[Convention]:
     clock = Convention("t = t - t[0]", replace(film, t=film.t - film.t[0]))
     if film.t[0] > np.ptp(film.t):
         return [clock]
-    found = _turned(film) if theta else []
+    others = _turned(film) if theta else []
     if z:
         flipped = _flipped(film)
-        found += [Convention("z = z {z:+.3g}", replace(film, adrift=(Z,))), flipped]
-        found += [_then(flipped, one) for one in _turned(flipped.film)[:1] if theta]
+        others += [Convention("z = z {z:+.3g}", replace(film, adrift=(Z,))), flipped]
+        others += [_then(flipped, one) for one in _turned(flipped.film)[:1] if theta]
     if x:
-        found += [Convention("x = x {x:+.3g}", replace(film, adrift=(X,)))]
+        others += [Convention("x = x {x:+.3g}", replace(film, adrift=(X,)))]
     if x or z:
-        found += [_scaled(film, unit) for unit in _LENGTHS]
-    return [*found, clock] if film.t[0] > 0 else found
+        others += [_scaled(film, unit) for unit in _LENGTHS]
+    return [*others, clock] if film.t[0] > 0 else others
 
 
 def fitting(tries: list[Convention], unknowns: Unknowns, given: FloatArray, loss: str) -> str:

@@ -85,18 +85,18 @@ def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
     """
     scene, t = unknowns.scene, film.t[:count]
     pulls = scene.gravity * math.sin(scene.slope), -scene.gravity * math.cos(scene.slope)
-    found: dict[str, float] = {}
+    start: dict[str, float] = {}
     for k, pair in enumerate((("x", "x_dot"), ("z", "z_dot"))):
         rows = film.known[:count, k]
         powers = t[rows] ** np.arange(3)[:, None]
         values = film.data[:count, k][rows]
         if scene.initial_state.mode is Mode.FLIGHT:
             values, powers = values - pulls[k] / 2 * powers[2], powers[:2]
-        found |= _line(values, powers, dict(zip(pair, _known(unknowns, pair), strict=True)))
+        start |= _line(values, powers, dict(zip(pair, _known(unknowns, pair), strict=True)))
     rows = film.known[:count, 2]
     if rows.sum() > 2:
-        found |= _spin(t[rows], film.data[:count, 2][rows], unknowns)
-    return found if scene.impulse is None else {n: found[n] for n in PLACES if n in found}
+        start |= _spin(t[rows], film.data[:count, 2][rows], unknowns)
+    return start if scene.impulse is None else {n: start[n] for n in PLACES if n in start}
 
 
 def _known(unknowns: Unknowns, names: tuple[str, ...]) -> list[float | None]:

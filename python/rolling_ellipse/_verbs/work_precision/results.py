@@ -143,15 +143,15 @@ class WorkPrecision:
         """
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
-        found: dict[str, tuple[float, ...]] = {}
+        leads: dict[str, tuple[float, ...]] = {}
         for decade in _DECADES:
             least = self.least(decade, x=x, y=y, t_end=t_end)
             if self.not_run(decade, x=x, y=y, t_end=t_end):
                 continue
             for name, value in least.items():
                 if value <= margin * min(least.values()):
-                    found[name] = (*found.get(name, ()), decade)
-        return found
+                    leads[name] = (*leads.get(name, ()), decade)
+        return leads
 
     def verdict(self, *, t_end: float | None = None) -> str:
         """Summarise which method is fastest at each error level, by which factor, and which fail.
@@ -212,11 +212,11 @@ class WorkPrecision:
         has `to_dataframe`.
         """
         rows = []
-        for name, found in by_name(self.of(t_end)).items():
-            tried = [run for run in found if run.status != NOT_RUN]
+        for name, runs in by_name(self.of(t_end)).items():
+            tried = [run for run in runs if run.status != NOT_RUN]
             answers = [run for run in tried if run.completed]
-            for status in dict.fromkeys(run.status for run in found if not run.completed):
-                those = [run for run in found if run.status == status]
+            for status in dict.fromkeys(run.status for run in runs if not run.completed):
+                those = [run for run in runs if run.status == status]
                 ends = dict.fromkeys(f"{run.setting:.0e}" for run in (those[0], those[-1]))
                 where, reason = " to ".join(ends).replace("nan", "all"), those[0].reason
                 if status == NOT_RUN:
@@ -225,7 +225,7 @@ class WorkPrecision:
                     reason = f"no time left{so_far}"
                 rows.append(Gap(name, where, len(those), len(answers), status, reason))
             nearest = min((run.errors.largest for run in answers), default=0.0)
-            if nearest > _POOR and len(tried) == len(found):
+            if nearest > _POOR and len(tried) == len(runs):
                 reason = f"came no nearer than {nearest:.1e}"
                 rows.append(Gap(name, "any", len(answers), len(answers), COMPLETED, reason))
         return Gaps(rows)
@@ -333,13 +333,13 @@ class WorkPrecision:
         about = parsed("the file", content.decode("utf-8"))
         if (schema := about.get("schema")) != _SCHEMA:
             raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
-        found = made(cls, {name: about[name] for name in about.keys() - {"schema"}})
-        ends = {each.t_end for each in found.references}
-        if not ends or ends != {run.t_end for run in found.runs}:
+        race = made(cls, {name: about[name] for name in about.keys() - {"schema"}})
+        ends = {each.t_end for each in race.references}
+        if not ends or ends != {run.t_end for run in race.runs}:
             raise ValueError("runs must be there, and end where the references do")
-        if json.dumps(found._about(), sort_keys=True) != json.dumps(about, sort_keys=True):
+        if json.dumps(race._about(), sort_keys=True) != json.dumps(about, sort_keys=True):
             raise ValueError("it must hold what save writes, in its types")
-        return found
+        return race
 
 
 def _without_answer(gaps: Gaps) -> Iterator[str]:

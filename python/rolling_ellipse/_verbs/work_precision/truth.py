@@ -66,15 +66,15 @@ class Judge:
             floor = float(getattr(given, "floor", 0.0))
         self.reference = Reference(name, t_end, floor, attainable, growth)
 
-    def errors(self, found: Any, end: tuple[float, float, float]) -> Errors:
+    def errors(self, sampled: Any, end: tuple[float, float, float]) -> Errors:
         """Return the errors of a motion at `times` (None: samples are not known) and at its end."""
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
-        if found is None:
+        if sampled is None:
             return Errors(final=final)
-        motion = found
-        if not isinstance(found, Trajectory):  # energy and constraints follow from rolling states
+        motion = sampled
+        if not isinstance(sampled, Trajectory):  # energy and constraints follow from rolling states
             motion = Trajectory(
-                self.times, *found, scene=self.scene, model="rolling", method="exact",
+                self.times, *sampled, scene=self.scene, model="rolling", method="exact",
                 status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
                 t_end=self.t_end, span=self.t_end, settings=DEFAULTS,
             )  # fmt: skip
@@ -90,7 +90,7 @@ class Judge:
             slip=float(np.fmax.reduce(velocities["slip"])),
         )
 
-    def _apart(self, found: Any, exact: Any) -> FloatArray:
+    def _apart(self, states: Any, exact: Any) -> FloatArray:
         """Return the differences of theta, omega and x over their sizes, (3, n).
 
         They are subtracted first: the truth may have more digits than doubles.
@@ -98,7 +98,7 @@ class Judge:
         return np.array(
             [
                 np.abs(np.asarray(np.asarray(one) - other, dtype=np.float64)) / size
-                for one, other, size in zip(found, exact, self._sizes, strict=True)
+                for one, other, size in zip(states, exact, self._sizes, strict=True)
             ]
         )
 
