@@ -100,10 +100,3 @@ def test_a_table_of_ends_has_the_scenes_and_times() -> None:
     assert pickle.loads(pickle.dumps(found)).to_xarray().equals(table)
     assert len(rl.ends({"a": 2.0, "b": 1.0}, 1.0).to_dataframe()) == 1
     assert len(rl.ends([], 1.0).to_dataframe()) == 0
-
-
-def test_a_time_after_all_is_refused_with_a_reason() -> None:
-    with pytest.raises(
-        ValueError, match=r"^t must be finite \[s\], since most motions .* got inf$"
-    ):
-        rl.ends(SCENES, np.inf)

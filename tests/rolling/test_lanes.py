@@ -66,15 +66,6 @@ def test_a_scene_among_many_has_the_bits_that_it_has_alone(
         assert same(states(level, motions, workers), alone)
 
 
-def test_what_flow_gives_are_the_bits_of_single_calls() -> None:
-    motions = scenes(300, 4, ratio=10.0, half_turns=100.0)
-    found = np.array(flow(**motions))
-    assert same(found, states("best", motions))
-    for i in range(300):
-        one = {name: float(values[i]) for name, values in motions.items()}
-        assert same(found[:, i], np.array(flow(**one)))
-
-
 @each_level
 def test_neighbours_do_not_change_a_bit(level: str) -> None:
     """The bits agree in any order of scenes, and with any part of the lanes filled."""
