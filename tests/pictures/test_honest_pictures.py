@@ -172,10 +172,27 @@ def test_errors_that_only_the_rounding_of_the_angle_makes_are_under_its_line() -
     assert "rounding of θ" not in [line.get_label() for line in figure_of(short.ax).axes[-1].lines]
 
 
-@pytest.mark.parametrize(("size", "unit"), [(1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (0.1, "m")])
-def test_the_figures_of_the_ground_are_short(size: float, unit: str) -> None:
+@pytest.mark.parametrize(
+    ("size", "unit"),
+    [(1000.0, "km"), (1.0, "m"), (0.1, "m"), (0.01, "mm"), (1e-3, "mm"), (1e-6, "µm")],
+)
+def test_all_lengths_have_the_unit_of_the_body(size: float, unit: str) -> None:
     body = rl.Scene(size, size / 2, omega=1.2 * rl.thresholds(size, size / 2).roll_over_speed)
-    film = rl.animate(rl.simulate(body, 3 * rl.period(body)), figure=Figure())
+    motion = rl.simulate(body, 3 * rl.period(body))
+    overview = rl.plot(motion, figure=Figure(figsize=(8.6, 8.0)))
+    overview.figure.draw_without_rendering()
+    strobe = overview.strobe.ax
+    axes = [strobe.xaxis, strobe.yaxis, overview.axes[3].yaxis]
+    assert [axis.get_label_text() for axis in axes] == [
+        f"{name} [{unit}]" for name in ("x", "z", "z of centre")
+    ]
+    for axis in axes:
+        ticks = [tick for tick in axis.get_major_ticks() if tick.label1.get_visible()]
+        assert all(len(tick.label1.get_text()) <= 5 for tick in ticks)
+        shown = [float(tick.label1.get_text().replace("−", "-")) for tick in ticks]
+        metres = {"km": 1e3, "m": 1.0, "mm": 1e-3, "µm": 1e-6}[unit]
+        assert metres * np.array(shown) == pytest.approx([tick.get_loc() for tick in ticks])
+    film = rl.animate(motion, figure=Figure())
     told = [label.get_text() for label in film.strips[0].ruler.labels]
     assert all(text.endswith(f" {unit}") for text in told) and max(map(len, told)) <= 9
     assert len(set(told)) == len(told)

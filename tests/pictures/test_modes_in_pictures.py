@@ -1,5 +1,6 @@
 """Sliding, flight, rest and events, read back from the pictures that show them."""
 
+import dataclasses
 import itertools
 import math
 from typing import Any
@@ -16,6 +17,7 @@ from oracles.curves import Array, legend_of, new_axes, seen, two_axes
 from oracles.pictures import figure_of, legend_in, outline, support
 from rolling_ellipse._pictures import sampling
 
+EPS = np.finfo(float).eps
 SCENES = {
     "jump": rl.scenes.jump,  # rolls, slides, flies, hits the ground and rolls again
     "slope": rl.scenes.slope,  # slips twice, jumps twice
@@ -213,10 +215,28 @@ def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> N
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
-def test_energy_lost_to_the_ground_is_no_error(jump: rl.Trajectory) -> None:
+def test_energy_lost_to_the_ground_is_no_error(motion: rl.Trajectory) -> None:
+    """Errors of energy are some roundings of its largest share; friction has none of its own."""
+    (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
+    error, slides = np.asarray(line.get_ydata()), seen(motion, line).mode == rl.Mode.SLIDING
+    assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
+    assert np.nanmax(error, initial=0.0) < 32 * EPS
+    if motion.scene != SCENES["bounce"]:  # which is elastic
+        assert motion.energy[0] - motion.energy[-1] > 1e-3 * motion.energy[0]
+
+
+def test_a_loss_in_elastic_impacts_is_an_error() -> None:
+    dull = rl.simulate(SCENES["bounce"].replace(friction=0.0, restitution=0.9), 6.0)
+    elastic = dataclasses.replace(dull, scene=dull.scene.replace(restitution=1.0))
+    for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 at once
+        (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
+        assert least <= np.max(np.asarray(line.get_ydata())) <= most
+
+
+def test_what_motions_lose_is_drawn_unless_they_keep_it(jump: rl.Trajectory) -> None:
     report = rl.simulate(rl.scenes.report, 3.0)
-    for motions, what in (([report, report], "error"), ([report, jump], "change")):
-        assert rl.plot_energy(motions, ax=new_axes()).ax.get_ylabel() == f"relative energy {what}"
+    for motions, label in (([report] * 2, "relative energy error"), ([report, jump], "energy [J]")):
+        assert rl.plot_energy(motions, ax=new_axes()).ax.get_ylabel() == label
 
 
 def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -> None:
@@ -224,7 +244,7 @@ def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -
     modes = len(set(motion.mode) - {rl.Mode.ROLLING})
     assert len(shades_of(shown.marks)) == 6 * modes
     assert lines_of(shown.marks) == [[event.t for event in motion.events]] * 6
-    assert shown.energy_error.get_label() == "energy change"
+    assert shown.energy_error.get_label() == "energy"
     shown.figure.draw_without_rendering()
 
 

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from itertools import combinations
 
 import matplotlib
 import numpy as np
@@ -151,6 +152,31 @@ def test_texts_are_clear_of_one_another_and_of_the_bodies(
             for figure in filter(Text.get_visible, strip.ruler.labels):  # none is cut
                 cell = figure.get_window_extent()
                 assert cell.y0 > box.y0 and box.x0 <= cell.x0 and cell.x1 <= box.x1
+
+
+@pytest.mark.parametrize("size", [0.01, 1.0, 1000.0])
+@pytest.mark.parametrize("slope", [0.0, 0.2])
+def test_three_motions_side_by_side_can_be_read(size: float, slope: float) -> None:
+    """At 640 pixels no letters are smaller than 7 points, and no text lies on another or is cut."""
+    rate = math.sqrt(9.81 / size)
+    scenes = [
+        rl.Scene(size, size / 1.5, z=2 * size, omega=omega * rate, friction=0.3, slope=slope)
+        for omega in (-1.2, 1.0, 2.0)
+    ]
+    motions = [rl.simulate(scene, 8 / rate) for scene in scenes]
+    animation = rl.animate(motions, fps=10, layout="side by side", width=640)
+    for i in frames(animation)[::9]:
+        animation.draw(i)
+        texts = [animation.clock.get_window_extent()]
+        for strip in animation.strips:
+            box, caption = strip.ax.get_window_extent(), strip.caption.get_window_extent()
+            assert caption.y0 > strip.ax.transData.transform(outline(strip.body))[:, 1].max()
+            assert float(strip.caption.get_fontsize()) >= 7
+            figures = [each for each in strip.ruler.labels if each.get_visible()]
+            own = [caption, *(each.get_window_extent() for each in figures)]
+            assert len(own) > 1 and all(box.x0 <= t.x0 and t.x1 <= box.x1 for t in own)
+            texts += own
+        assert not any(one.overlaps(two) for one, two in combinations(texts, 2))
 
 
 def test_it_draws_into_a_figure_it_is_given() -> None:

@@ -134,9 +134,17 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
     return positions, velocities
 
 
-def energy_error(motion: Trajectory) -> FloatArray:
-    """Return |E - E(first sample)| over the largest kinetic + |potential| energy, (n,).
+def may_lose_energy(motion: Trajectory) -> bool:
+    """True if an impact or friction of the contact may take energy; both may be elastic."""
+    inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
+    return inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
 
+
+def energy_error(motion: Trajectory) -> FloatArray:
+    """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
+
+    E0 is the energy of the first sample. What impacts and friction take is no error: after an event
+    that may take energy, E0 is the energy of the next sample, and in a slide the error is NaN.
     Heights are measured from the ground at the first sample, so that x may be 0 anywhere.
     """
     scene = motion.scene
@@ -144,9 +152,15 @@ def energy_error(motion: Trajectory) -> FloatArray:
     height = motion.z * math.cos(scene.slope) - along * math.sin(scene.slope)
     potential = scene.mass * scene.gravity * height
     energy = motion.kinetic_energy + potential
-    error: FloatArray = np.abs(energy - energy[0]) / np.max(
-        motion.kinetic_energy + np.abs(potential)
-    )
+    first = np.zeros(energy.shape, dtype=int)
+    if may_lose_energy(motion):
+        passed = np.searchsorted([event.t for event in motion.events], motion.t, side="right")
+        _, firsts, stretch = np.unique(passed, return_index=True, return_inverse=True)
+        first = firsts[stretch]
+    off = np.abs(energy - energy[first])
+    if scene.friction > 0:
+        off[motion.mode == Mode.SLIDING] = np.nan
+    error: FloatArray = off / np.max(motion.kinetic_energy + np.abs(potential))
     return error
 
 

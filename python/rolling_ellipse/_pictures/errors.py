@@ -13,8 +13,7 @@ from matplotlib.lines import Line2D
 
 from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
-from .._core import Mode
-from .._motion.constraints import constraint_errors, energy_error, worst
+from .._motion.constraints import constraint_errors, energy_error, may_lose_energy, worst
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, name_curves, panels_of, picture, some_of
@@ -57,7 +56,7 @@ def draw_errors(
         for rank, (name, values) in enumerate(own.items()):
             t = motion.t
             if not np.nan_to_num(values).any():
-                name += " = 0" if np.isfinite(values).any() else " free"
+                name += " = 0" if np.isfinite(values).any() else " not held"
             if are_ranges(motion):
                 t, _, values = ranges(t, values)
             how: dict[str, Any] = {"ls": "none", "marker": style.marker or _DOTS[rank]}
@@ -103,24 +102,26 @@ def plot_energy(
     kind: Literal["energies", "error"] | None = None,
     **options: Any,
 ) -> Energy:
-    """Draw the energies of a motion [J], or by how much the energy of several motions is off.
+    """Draw the energies of motions [J], or by how much the energy that they should keep is off.
 
     The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
     a logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
-    friction and impacts take is no error: with them it is called a change. Its dots are at the
-    samples, or, of fewer than 100, as fine as curves. Modes, events, lost validity and long spans
-    are drawn as in `plot_forces`.
+    friction and impacts take is no error: with them E0 is that of the first sample after the last
+    event, and a slide has no error. Dots are at the samples, or, of fewer than 100, as fine as
+    curves. Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     kind : {"energies", "error"}, optional
-        What to draw: without it the energies of one motion, the errors of several.
+        What to draw: without it the energies of one motion, and of several where one loses energy,
+        else the errors.
     {ax}
     {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
-    default = "energies" if shown.alone else "error"
+    energies = shown.alone or any(map(may_lose_energy, shown.motions))
+    default = "energies" if energies else "error"
     wanted = choice("kind", default if kind is None else kind, KINDS)
     shown = shown.sampled(over_time if wanted == "energies" else for_dots)
     ax = axes_of(ax, (7, 3.4), figsize)
@@ -128,10 +129,10 @@ def plot_energy(
         total, kinetic, potential = draw_curves(ax, shown, "energy [J]", ENERGIES)
         handles = shown.handles(ax, list(zip(ENERGIES.values(), DASHES, strict=True)))
         return Energy(ax, total, kinetic, potential, (), finish([ax], shown, handles))
-    # Sliding and impacts lose energy; this is no error.
-    loses = any(each.events or (each.mode == Mode.SLIDING).any() for each in shown.motions)
-    errors = ({style.label or "energy error": energy_error(motion)} for motion, style in shown)
-    found = draw_errors(ax, shown, errors, f"relative energy {'change' if loses else 'error'}")
+    errors = [{style.label or "energy error": energy_error(motion)} for motion, style in shown]
+    kept = any(np.isfinite(values).any() for own in errors for values in own.values())
+    none = "exactly 0 throughout" if kept else "friction takes energy throughout"
+    found = draw_errors(ax, shown, errors, "relative energy error", none)
     return Energy(ax, (), (), (), found, finish([ax], shown, some_of(found)))
 
 

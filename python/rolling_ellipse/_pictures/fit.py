@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .axes import Artists, figure_of, name_curves, picture, picture_file, write
+from .ground import label_lengths
 from .palette import palette_of
 from .panels import dress_grid
 from .sampling import over_time
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from .._verbs.fit_motion import Fit
     from ..impacts import FittedImpacts
 
-_LABELS = {"x": "x [m]", "z": "z [m]", "theta": "θ [rad]"}
+_LABELS = {"x": "x", "z": "z", "theta": "θ"}
 _RATES = {"x_dot": "x_dot [m/s]", "z_dot": "z_dot [m/s]", "omega": "ω [rad/s]"}
 
 
@@ -48,11 +49,14 @@ def draw_fit(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
     looks = dict(zip(_LABELS, zip("osD", shades.curves[2::-1], strict=True), strict=True))
     for ax, track in zip(axes, seen, strict=False):
         dots: dict[str, Any] = {"marker": looks[track][0], "color": looks[track][1], "ms": 3}
-        dots |= {"ls": "", "mew": 0, "label": _LABELS[track][0]}
+        dots |= {"ls": "", "mew": 0, "label": _LABELS[track]}
         (chart.fitted[track],) = ax.plot(curve.t, getattr(curve, track), **line)
         (chart.measured[track],) = ax.plot(motion.t, getattr(motion, track) + off[track], **dots)
         (chart.residuals[track],) = bottom.plot(motion.t, off[track] / sigma[track], **dots)
-        ax.set_ylabel(_LABELS[track])
+        if track == "theta":
+            ax.set_ylabel("θ [rad]")
+        else:
+            label_lengths(ax.yaxis, track, motion.scene)
     bottom.axhspan(-2, 2, color=shades.shade(0.07), lw=0, zorder=0)  # 95 % of normal residuals
     bottom.set(xlabel="t [s]", ylabel="residual / σ")
     name_curves(bottom)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
@@ -27,11 +28,31 @@ SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha
 SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 QUARTER = math.pi / 2
+# Least longer semi-axis [m] of bodies whose lengths have the unit, how many of it are 1 m, its name
+_UNITS = (500.0, 1e-3, "km"), (0.05, 1.0, "m"), (5e-5, 1e3, "mm"), (0.0, 1e6, "µm")
+_TICKS = 8.0  # most ticks of the ground on an inch
+_LONG = 1e6  # figures beyond it are left to matplotlib, which takes an offset out of them
 
 
 def tilted(scene: Scene) -> Affine2D:
     """Return the rotation from ground axes to the page, on which gravity points down."""
     return Affine2D().rotate(-scene.slope)
+
+
+def length_unit(scene: Scene) -> tuple[float, str]:
+    """Return how many of the unit that suits lengths about the body are 1 m, and its name."""
+    size = max(scene.a, scene.b)
+    return next((per_metre, name) for least, per_metre, name in _UNITS if size >= least)
+
+
+def label_lengths(axis: Axis, name: str, scene: Scene) -> None:
+    """Name an axis whose data are in metres, with figures in the unit that suits the body."""
+    per_metre, unit = length_unit(scene)
+    if per_metre * float(np.max(np.abs(axis.get_view_interval()))) > _LONG:
+        per_metre, unit = 1.0, "m"
+    if per_metre != 1:
+        axis.set_major_formatter(lambda x, _: f"{x * per_metre:.6g}".replace("-", "−"))
+    axis.set_label_text(f"{name} [{unit}]")
 
 
 def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
@@ -116,11 +137,10 @@ class Ruler:
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
         on_slope = tilted(scene) + ax.transData
-        steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
+        most = min(24, max(16, round(_TICKS * ax.bbox.width / ax.figure.dpi)))
+        steps = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
-        sizes = {1.0: "m", 1e3: "mm", 1e6: "µm"}
-        size = next((each for each in sizes if 5 * self.step * each > 9e-3), 1e6)
-        self._unit = size, sizes[size]
+        self._unit = length_unit(scene)
         self._fifths = math.ceil(span / (5 * self.step))
         self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
         grey = palette_of(ax).grey

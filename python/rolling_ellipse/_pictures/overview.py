@@ -19,6 +19,7 @@ from .axes import Artists, figure_of, name_curves, picture, picture_file, write
 from .comparison import Comparison
 from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
+from .ground import label_lengths
 from .palette import palette_of
 from .panels import draw_curves, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
@@ -103,6 +104,7 @@ def plot(
         draw_curves(panel, shown, label, {name: f"_{label}"})[0][0]
         for panel, (name, label) in zip(panels[:3], _STATES.items(), strict=True)
     )
+    label_lengths(panels[2].yaxis, "z of centre", trajectory.scene)
     (normal,), (friction,), (limit,), (impulses,) = draw_forces(panels[3], shown)
     (total,), (kinetic,), (potential,) = draw_curves(panels[4], shown, "energy [J]", ENERGIES)
     errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
@@ -131,11 +133,9 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
     errors = {
         "positions": worst(positions),
         "velocities": worst(velocities),
-        # a loss by friction and impacts is no error
-        "energy change" if trajectory.events else "energy": energy_error(trajectory),
+        "energy": energy_error(trajectory),
     }
-    word = "error, change" if trajectory.events else "relative error"
-    position, velocity, energy = draw_errors(ax, shown, [errors], word)
+    position, velocity, energy = draw_errors(ax, shown, [errors], "relative error")
     if np.abs(trajectory.theta).max() > _MANY:  # an exact motion has these errors, too
         limit = np.spacing(np.abs(trajectory.theta))
         grey = palette_of(ax).grey

@@ -183,8 +183,9 @@ def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, f
     ax.set_xlim(left, right, auto=True)  # auto: equal scales may widen either axis
     ax.set_ylim(bottom, top, auto=True)
     ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width
-    ax.set_xlabel("x [m]" if scene.slope == 0 else "horizontal [m]")
-    ax.set_ylabel("z [m]" if scene.slope == 0 else "vertical [m]")
+    level = scene.slope == 0
+    drawing.label_lengths(ax.xaxis, "x" if level else "horizontal", scene)
+    drawing.label_lengths(ax.yaxis, "z" if level else "vertical", scene)
     ax.yaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
     ax.spines[["top", "right"]].set_visible(False)
 
@@ -254,7 +255,8 @@ def plot_paths(
     centres, tips, contacts = zip(*drawn, strict=True)
     shown.restyle(*centres, *tips, *contacts)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
-    dress_ground_axes(ax, motions[0].scene, view)  # last, because artists may widen the view
+    largest = max((m.scene for m in motions), key=lambda scene: max(scene.a, scene.b))
+    dress_ground_axes(ax, largest, view)  # last, because artists may widen the view
     kinds = {line.get_label(): line for lines in events for line in lines}
     name_curves(ax, [*handles, *kinds.values()])
     part = f"the first {end:.3g} s of {last:.4g} s" if end < last else ""

@@ -15,8 +15,8 @@ from .._ask.scene import Scene
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
-from .._pictures.animation.strip import cameras
-from .._pictures.ground import touching_x
+from .._pictures.animation.strip import cameras, in_rows
+from .._pictures.ground import length_unit, touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
@@ -170,14 +170,17 @@ def film_html(animation: RollingAnimation) -> str:
     pace, beside = animation.pace, animation.cameras.columns > 1
     last = float(animation.t[-1])
     parts = [(begin, min(end, last)) for begin, end in pace.parts]
-    seen = cameras(motions, None, _HEAD, _FOOT, beside)
-    if seen.shape > (most := max(_TALLEST, _TALLEST * (not beside) * len(motions) / 2)):
-        seen = cameras(motions, most, _HEAD, _FOOT, beside)  # no higher than fits a notebook's cell
+    labels = [in_rows(label) if beside else label for label in animation.labels]
+    rows = 2 + max(label.count("\n") for label in labels) if beside else 0
+    head, foot = (1 + rows) * _HEAD, _FOOT * (1 + beside)  # the bodies of a row are small
+    seen = cameras(motions, None, head, foot, beside)
+    if seen.shape > (most := _TALLEST * max(1, (not beside) * len(motions) / 2) + rows * _HEAD):
+        seen = cameras(motions, most, head, foot, beside)  # no higher than fits a notebook's cell
     wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {
             **body(motion.scene),
-            "label": animation.labels[k],
+            "label": labels[k],
             "share": seen.heights[k],
             "window": seen.windows[k],
             "track": track(motion, parts, _PIXEL * wide),
@@ -207,12 +210,13 @@ def film_html(animation: RollingAnimation) -> str:
 
 
 def body(scene: Scene) -> dict[str, Any]:
-    """Return the body, its ground and its blow, in types of JSON."""
+    """Return the body, its ground, its blow and its unit of length, in types of JSON."""
     blow = scene.impulse
     return {
         "a": scene.a,
         "b": scene.b,
         "slope": scene.slope,
+        "unit": length_unit(scene),
         "weight": scene.mass * scene.gravity,
         "blow": blow and [blow.jx, blow.jz, blow.dx, blow.dz],
     }

@@ -237,6 +237,7 @@ export class Player {
       ink.clip();
       paintStrip(ink, this.colours, strip, states[i], this.views[i], {
         floor, width: across, tall, forces: this.forces, lasting: t / film.speed,
+        beside: columns > 1,
         caption: this.caption(strip, states[i]), clock: i === columns - 1 ? this.clockText() : "",
         say: (key) => this.say(key),
       });
@@ -283,12 +284,13 @@ export class Player {
     });
   }
 
-  /** The label of a motion and remarks on its state now. */
+  /** The label of a motion and remarks on its state now, in rows if strips are side by side. */
   caption(strip, at) {
-    const parts = strip.label ? [strip.label] : [];
+    const parts = [], [perMetre, unit] = strip.unit ?? [1, "m"];
     if (this.film.follows === "own") {
-      const digits = Math.max(0, 1 - Math.floor(Math.log10(Math.max(strip.a, strip.b))));
-      parts.push(`x = ${at.x.toFixed(digits).replace("-", "−")} m`);
+      const size = perMetre * Math.max(strip.a, strip.b);
+      const digits = Math.max(0, 1 - Math.floor(Math.log10(size)));
+      parts.push(`x = ${(perMetre * at.x).toFixed(digits).replace("-", "−")} ${unit}`);
     }
     if (this.parts.length > 1) {
       const [turn, turns] = [at.theta - strip.theta, strip.turns].map((angle, i) =>
@@ -301,7 +303,8 @@ export class Player {
     const frame = this.film.speed / this.film.fps;
     const ended = strip.motion.end + frame < this.film.end && this.t > strip.motion.end;
     if (ended) parts.push(this.say("ended", { t: strip.motion.end }));
-    return parts.join("   ");
+    const remarks = parts.join("   "), gap = this.film.columns > 1 ? "\n" : "   ";
+    return [strip.label, remarks].filter(Boolean).join(gap);
   }
 
   clockText() {

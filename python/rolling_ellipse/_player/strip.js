@@ -2,6 +2,7 @@
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
 const SHOWN = 6000; // last points of a trace that are drawn: earlier ones are out of sight
+const ROW = 17; // height of a row of a caption [px]
 const FADES = 1.2; // a blow or an event is seen for so long [seconds of film]
 
 /** One strip of the picture: turns places on its ground to pixels. */
@@ -32,12 +33,23 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   if (shown.forces) paintForces(ink, colours, strip, at, view);
   if (strip.blow) paintBlow(ink, colours, strip, view, shown.lasting);
   paintEvents(ink, colours, strip, at, view, shown);
-  text(ink, colours.ink, shown.caption, 12, shown.floor + 20, "left");
-  text(ink, colours.ink, shown.clock, shown.width - 12, shown.floor + 20, "right");
+  paintTexts(ink, colours.ink, shown);
 }
 
+/** Write the clock and the caption beside it or, of strips side by side, in rows below it. */
+function paintTexts(ink, colour, { caption, clock, beside, floor, width }) {
+  text(ink, colour, clock, width - 12, floor + 20, "right");
+  const room = width - 24 - (beside || !clock ? 0 : ink.measureText(clock).width + 12);
+  caption.split("\n").forEach((row, i) => {
+    const size = Math.min(13, Math.max(8, 13 * room / ink.measureText(row).width));
+    text(ink, colour, row, 12, floor + 20 + (beside ? i + 1 : i) * ROW, "left", size);
+  });
+}
+
+const font = (size) => `${size}px system-ui, sans-serif`;
+
 export function text(ink, colour, words, x, y, align = "center", size = 13) {
-  ink.font = `${size}px system-ui, sans-serif`;
+  ink.font = font(size);
   ink.textAlign = align;
   ink.fillStyle = colour;
   ink.fillText(words, x, y);
@@ -112,18 +124,22 @@ function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   const power = 10 ** Math.floor(Math.log10(least));
   const step = power * [1, 2, 5, 10].find((n) => n * power >= least * (1 - 1e-12));
   const first = Math.floor((x - span) / step), last = Math.ceil((x + span) / step);
-  const unit = 8 / view.scale;
+  const [perMetre, unit] = strip.unit ?? [1, "m"], depth = 8 / view.scale;
   ink.beginPath();
   for (let i = first; i <= last; i++) {
     ink.moveTo(...view.at(i * step, 0));
-    ink.lineTo(...view.at(i * step, -unit * (i % 5 ? 0.75 : 1.4)));
+    ink.lineTo(...view.at(i * step, -depth * (i % 5 ? 0.75 : 1.4)));
   }
   ink.stroke();
   for (let i = Math.ceil(first / 5) * 5; i <= last; i += 5) {
+    const place = view.at(i * step, -depth * 3), words = `${round(i * step * perMetre, 10)} ${unit}`;
+    ink.font = font(11);
+    const half = ink.measureText(words).width / 2;
+    if (place[0] < half || place[0] > width - half) continue; // the rim would cut it
     ink.save();
-    ink.translate(...view.at(i * step, -unit * 3));
+    ink.translate(...place);
     ink.rotate(strip.slope);
-    text(ink, colours.grey, `${round(i * step, 10)} m`, 0, 0, "center", 11);
+    text(ink, colours.grey, words, 0, 0, "center", 11);
     ink.restore();
   }
 }

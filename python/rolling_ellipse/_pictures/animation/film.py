@@ -31,7 +31,7 @@ from ..ground import flat_angle
 from ..palette import palette_of
 from ..phase import folded, plot_phase
 from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
-from .strip import Strip, cameras
+from .strip import ROW, Strip, cameras, in_rows
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
@@ -92,7 +92,11 @@ class RollingAnimation(FuncAnimation):
         if not callable(place):
             shape = place.bbox.height / place.bbox.width * (0.55 if panel else 1)
             inches = place.bbox.width / _root(place).dpi
+        beside = beside and len(motions) > 1
         head = CAPTION / inches if any(labels) or len(pace.parts) > 1 else 0.0
+        if beside:  # rows of the clock, of the label and of remarks
+            rows = 1 + max(in_rows(label).count("\n") + 1 for label in labels)
+            head += ROW * rows / inches
         self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches, beside)
         self._undrawn: Any = place, width, dpi
         if drawn:
@@ -175,9 +179,13 @@ class RollingAnimation(FuncAnimation):
         return [ax.axvline(0.0, color=palette_of(ax).ink, lw=1.5)]
 
     def _fit_captions(self) -> None:
-        """Make captions small enough to leave room for the clock, but no smaller than a third."""
+        """Make captions small enough to leave room for the clock, but no smaller than a third.
+
+        Of strips side by side, the clock is over the captions.
+        """
         self.clock.set_text(self._clock(float(self.t[-1])))
-        room = 0.92 * self.strips[0].ax.bbox.width - self.clock.get_window_extent().width
+        room = 0.92 * self.strips[0].ax.bbox.width
+        room -= self.clock.get_window_extent().width if self.cameras.columns == 1 else 0.0
         widest = max(strip.widest_caption() for strip in self.strips)
         size = float(self.clock.get_fontsize()) * min(1.0, max(1 / 3, room / max(widest, 1.0)))
         for strip in self.strips:

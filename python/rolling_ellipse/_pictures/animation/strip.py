@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
+from matplotlib.transforms import ScaledTranslation
 
 from ..._ask.check import FloatArray
 from ..._core import Mode
@@ -22,6 +24,7 @@ from .. import ground as drawing
 from ..palette import palette_of
 
 BEHIND, AHEAD = 5.0, 4.0  # ground shown on either side of a followed motion [body sizes]
+ROW = 0.18  # height of a further row of a caption [inch]
 FADES = 1.2  # a blow is seen for so long [s of film]
 
 
@@ -38,6 +41,11 @@ class Cameras:
     shape: float  # height of the picture over its width
     windows: tuple[tuple[float, float, float, float], ...]  # views relative to the followed place
     follows: str  # "nothing", the "middle" of all motions, or "own": each strip its own motion
+
+
+def in_rows(label: str) -> str:
+    """Return a label with its facts in rows, for a strip beside others, which is narrow."""
+    return re.sub(r", (?![^(]*\))", "\n", label)
 
 
 def cameras(
@@ -85,7 +93,7 @@ def cameras(
     if beside:  # one row as wide as a strip
         depths = [(min(bottom for bottom, _ in depths), max(top for _, top in depths))]
     windows, heights, shape = _framed(
-        (left, right), depths, shape and shape * columns, head * columns, foot * columns
+        (left, right), depths, shape and shape * columns, head * columns, foot * columns, beside
     )
     return Cameras(
         columns,
@@ -106,11 +114,13 @@ def _framed(
     shape: float | None,
     head: float,
     foot: float,
+    narrow: bool,
 ) -> tuple[tuple[tuple[float, float, float, float], ...], tuple[float, ...], float]:
     """Return windows of one scale that fill a column of strips, their heights and its shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
+    tallest += texts * narrow  # whose texts are in rows
     shape = shape or min(max(needed / length + texts, flattest), tallest)
     wide = max(length, needed / max(shape - texts, shape / 4))
     foot = min(foot, shape / (2 * strips))  # half of a low strip is left to the body
@@ -141,6 +151,7 @@ class Strip:
         self._film, self._label, self._views = film, film.labels[k], film.cameras.views[k]
         self._stands, self._turns = film.cameras.follows == "nothing", film.turns[k]
         self._slip = self.motion.constraint_residuals().slip
+        self._beside = film.cameras.columns > 1
         self._captions = [self._caption(i) for i in range(film.t.size)]
         self._build()
 
@@ -170,7 +181,9 @@ class Strip:
         self.tip = line(6, blue, marker="o", ms=6)
         self.contact = line(7, ink, ls="none", marker="o", ms=6, mfc=paper, mew=1.5)
         self.slip = line(8, plum, ls="none", ms=11, mec=paper, mew=0.8)
-        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=ink)
+        below = ScaledTranslation(0, -ROW * self._beside, ax.figure.dpi_scale_trans)  # the clock
+        top_left = ax.transAxes + below
+        self.caption = ax.text(0.015, 0.95, "", transform=top_left, va="top", color=ink)
         self.arrows = ax.quiver(
             *np.zeros((4, 3)), color=plum, zorder=9, angles="xy", scale_units="xy", scale=1,
             units="dots", width=0.035 * ax.figure.dpi, minlength=0,
@@ -250,16 +263,17 @@ class Strip:
         return [x - half, x + half], [0.0, 0.0]
 
     def widest_caption(self) -> float:
-        """Return the width of the longest caption of all frames [pixels]."""
-        self.caption.set_text(max(self._captions, key=len))
+        """Return the width of the longest row of the captions of all frames [pixels]."""
+        self.caption.set_text(max("\n".join(self._captions).split("\n"), key=len))
         return float(self.caption.get_window_extent().width)
 
     def _caption(self, i: int) -> str:
-        motion, parts = self.motion, [self._label] if self._label else []
+        motion, parts = self.motion, []
         if self._film.cameras.follows == "own":
-            size = max(motion.scene.a, motion.scene.b)
+            per_metre, unit = drawing.length_unit(motion.scene)
+            size = per_metre * max(motion.scene.a, motion.scene.b)
             digits = max(0, 1 - math.floor(math.log10(size)))
-            parts.append(f"x = {motion.x[i]:.{digits}f} m".replace("-", "−"))
+            parts.append(f"x = {per_metre * motion.x[i]:.{digits}f} {unit}".replace("-", "−"))
         if len(self._film.pace.parts) > 1:
             turn, turns = (max(1, math.ceil(abs(n) - 1e-6)) for n in (motion.turns[i], self._turns))
             parts.append(f"turn {turn} of {turns}")
@@ -269,4 +283,7 @@ class Strip:
             parts.append("rolling is no longer valid")
         if motion.t[i] < self._film.t[i]:
             parts.append(f"ended at {motion.t[i]:g} s")
-        return "   ".join(parts)
+        remarks = "   ".join(parts)
+        if self._beside:
+            return "\n".join(filter(None, [in_rows(self._label), remarks]))
+        return "   ".join(filter(None, [self._label, remarks]))
