@@ -31,9 +31,11 @@ THROWN = {
     "restitution": 0.55, "friction": 0.18,
 }  # fmt: skip
 NOISE = np.array([[5e-4], [5e-4], [0.01]])
+SOLID = (0.035**2 + 0.025**2) / 4  # k^2 of its body
 USUAL = ("sign", "degrees", "DEGREES", "inertia", "friction", "angle", "small", "torque")
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
 PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # which lets nothing slip
+PLAIN |= {"torque": False}  # whether I_C omega_dot is taken for the moment about the contact
 
 
 class Given(SimpleNamespace):
@@ -53,6 +55,10 @@ class Given(SimpleNamespace):
     def rolling(self, angle: float, omega: float) -> tuple[float, ...]:
         _, _, _, along, up, turn = rates("ROLLING", 0, [0, 0, angle, 0, 0, omega], vars(self))
         weight = self.gravity * math.cos(self.slope), self.gravity * math.sin(self.slope)
+        if self.torque:
+            h, lead, bend = self.at(angle)
+            turn = (h * weight[1] - lead * weight[0]) / self.about_contact(angle)
+            along, up = h * turn + lead * omega**2, lead * turn + bend * omega**2
         return turn, self.mass * (up + weight[0]), self.mass * (along - weight[1])
 
     def about_contact(self, angle: float) -> float:
@@ -110,17 +116,18 @@ class Given(SimpleNamespace):
         return float(np.median(parts[int(self.number[2]) - 1]))
 
     def runs(self, parts: int) -> float:
-        y, step = np.array([0, 0, self.theta, 0, 0, self.omega]), self.step / parts
+        y, step = np.array([self.theta, self.omega]), self.step / parts
         for _ in range(round(self.T / step)):
             k = [0 * y]
             for share in (0, 0.5, 0.5, 1):
-                k.append(rates("ROLLING", 0, y + share * step * k[-1], vars(self)))
+                theta, omega = y + share * step * k[-1]
+                k.append(np.array([omega, self.rolling(theta, omega)[0]]))
             y = y + step / 6 * np.array([1, 2, 2, 1]) @ k[1:]
-        return float(y[2])
+        return float(y[0])
 
 
 def fitted(d: Any) -> float:
-    return film_fit()[0][FILMED[d.number]]
+    return film_fit(d.gyration2)[0][FILMED[d.number]]
 
 
 TRUE: dict[str, Any] = {
@@ -155,23 +162,23 @@ TRUE: dict[str, Any] = {
 }  # fmt: skip
 WRONG: dict[tuple[str, str], Any] = {  # formulas: small angles, and M_C = I_C omega_dot
     ("small", "2.4"): lambda d: 2 * math.pi / TRUE["2.3"](d),
-    ("torque", "3.2"): lambda d: d.mass * (
-        d.at(d.theta)[0] * WRONG["torque", "3.3"](d) + d.at(d.theta)[1] * d.omega**2),
-    ("torque", "3.3"): lambda d: d.gravity / d.about_contact(d.theta) * (
-        d.at(d.theta)[0] * math.sin(d.slope) - d.at(d.theta)[1] * math.cos(d.slope)),
+    **{("torque", number): lambda d: TRUE[d.number](d.but(torque=True))
+       for number in ("3.2", "3.3", "4.3", "6.4", "9.1", "9.2")},
 }  # fmt: skip
 
 
 @cache
-def film_fit() -> tuple[dict[str, float], dict[str, float], float]:
-    """Numbers that fit the film best, their standard errors, and chi^2."""
+def film_fit(gyration2: float = SOLID) -> tuple[dict[str, float], dict[str, float], float]:
+    """Numbers that fit the film best with a k^2, their standard errors, and chi^2."""
     t, *tracks = course.FILM.values()
 
     def missed(numbers: Any) -> Any:
-        given: Any = Given("10.1", **dict(zip(THROWN, numbers, strict=True)))
+        numbers = dict(zip(THROWN, numbers, strict=True))
+        given: Any = Given("10.1", gyration2=gyration2, **numbers)
         return ((given.frames(t) - tracks) / NOISE).ravel()
 
-    best = least_squares(missed, [*THROWN.values()], jac="3-point", x_scale="jac")
+    how: Any = {"jac": "3-point", "x_scale": "jac", "method": "dogbox"}
+    best = least_squares(missed, [*THROWN.values()], **how)
     errors = np.sqrt(np.linalg.inv(best.jac.T @ best.jac).diagonal())
     known, off = (dict(zip(THROWN, row, strict=True)) for row in (best.x, errors))
     return known, off, 2 * best.cost
@@ -240,6 +247,8 @@ def test_marks(number: str) -> None:
             assert said == "none"
         elif least == ("angle",) and number in ("2.2", "2.4"):  # a rest, which is not marked
             assert said == "other"
+        elif number in ("10.1", "10.2", "10.3") and "inertia" in least:
+            assert "inertia" not in said  # noise, or an estimate by hand, leads as far
         else:
             assert {*map(str.lower, least)} in named
             for names in named:
