@@ -5,6 +5,7 @@ from importlib.metadata import metadata
 from pathlib import Path
 from runpy import run_path
 from shutil import copytree, rmtree
+from typing import Any
 
 from sphinx.application import Sphinx
 
@@ -24,7 +25,9 @@ myst_dmath_double_inline = True  # formulas within a paragraph, as Jupyter shows
 myst_html_meta = {"description": metadata("rolling-ellipse")["Summary"]}
 copybutton_selector = ".highlight-python pre, .highlight-bash pre, .cell_input pre"
 default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
-autodoc_default_options = {"members": True, "member-order": "bysource"}
+autodoc_default_options = {  # xp is a module, whose text is not ours
+    "members": True, "member-order": "bysource", "exclude-members": "xp"
+}  # fmt: skip
 numpydoc_show_class_members = False
 python_maximum_signature_line_length = 90
 html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
@@ -44,7 +47,16 @@ def keep_pictures_in_the_site(app: Sphinx) -> None:
     app.env.mystnb_config = app.env.mystnb_config.copy(output_folder=folder)
 
 
+def name_modules(app: Sphinx, *of: Any) -> tuple[str, str] | None:
+    """Write a module that is a default value as its name, without the path of this machine."""
+    signature, returned = of[-2:]
+    if "<module" not in (signature or ""):
+        return None
+    return re.sub(r"<module '(\w+)' from [^>]*>", r"\1", signature), returned
+
+
 def setup(app: Sphinx) -> None:
+    app.connect("autodoc-process-signature", name_modules, priority=400)  # before numpydoc
     app.connect("source-read", lead_to_copies)
     app.connect("builder-inited", keep_pictures_in_the_site)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows

@@ -63,6 +63,25 @@ def test_no_page_shows_the_source_of_a_formula(pages: dict[Path, str]) -> None:
         assert re.findall(r".{,40}[$\\].{,40}", html) == [], page
 
 
+def test_no_page_shows_a_path_of_the_machine(pages: dict[Path, str]) -> None:
+    told = {page.name for page, html in pages.items() if "site-packages" in html}
+    assert told == set()
+
+
+def test_no_line_of_code_or_output_is_cut(site: Path, chromium: Any) -> None:
+    names = ("architecture", "api/benchmark", "api/pictures", "notebooks/06_speed_and_accuracy")
+    wider = (
+        "[...document.querySelectorAll('article pre')].filter(e => e.scrollWidth > e.clientWidth)"
+    )
+    for width in (390, 1280):
+        page = chromium.new_page(viewport={"width": width, "height": 800})
+        for name in names:
+            page.goto((site / f"{name}.html").as_uri())
+            assert page.locator("article pre").count()
+            assert page.evaluate(f"{wider}.map(e => e.textContent)") == [], (name, width)
+        page.close()
+
+
 def test_no_page_leads_on_to_its_own_title(pages: dict[Path, str]) -> None:
     for page, html in pages.items():
         for title in re.findall(r'<div class="title">(.*?)</div>', html):

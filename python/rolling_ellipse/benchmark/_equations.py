@@ -137,9 +137,8 @@ class Ode:
 
     >>> arc = problem.ode()
     >>> while True:
-    ...     found = solve_ivp(
-    ...         arc.rhs, (arc.t0, problem.t_end), arc.y0, events=arc.events, rtol=1e-10, atol=1e-12
-    ...     )
+    ...     span, how = (arc.t0, problem.t_end), {"rtol": 1e-10, "atol": 1e-12}
+    ...     found = solve_ivp(arc.rhs, span, arc.y0, events=arc.events, **how)
     ...     fired = [k for k, times in enumerate(found.t_events) if times.size]
     ...     if not fired:
     ...         break
