@@ -144,8 +144,10 @@ py::array read_only(py::array array) {
 Array vector(py::ssize_t n) {
     const auto& numpy = py::detail::npy_api::get();
     PyObject* const type = py::dtype::of<double>().release().ptr();
-    return py::reinterpret_steal<Array>(numpy.PyArray_NewFromDescr_(
+    const auto array = py::reinterpret_steal<Array>(numpy.PyArray_NewFromDescr_(
         numpy.PyArray_Type_, type, 1, &n, nullptr, nullptr, 0, nullptr));
+    if (!array) throw py::error_already_set();  // MemoryError
+    return array;
 }
 
 Array matrix(py::ssize_t rows, py::ssize_t columns) {

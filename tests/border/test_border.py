@@ -64,6 +64,43 @@ def test_threads_that_cannot_start_are_not_missed() -> None:
     assert done.returncode == 0 and done.stdout == "the same\n", done.stderr
 
 
+def test_memory_that_is_not_there_is_a_memory_error() -> None:
+    """Whatever array is the first that finds no room: 16 MB each, in memory that grows by 16 MB."""
+    code = """
+        import resource
+        import numpy as np
+        from rolling_ellipse import Scene, classify, flow, geometry, scenes, simulate
+        size, body = 500_000, {"a": 2.0, "b": 1.0}
+        strided = np.linspace(0.0, 1.0, 2 * size)[::2]
+        rolls, bounces = simulate(Scene(**body, omega=3.2), 1.0), simulate(scenes.bounce, 1.0)
+        calls = [
+            lambda t: flow(t, **body, theta=0.0, omega=1.0), rolls.sol, bounces.sol,
+            lambda t: simulate(Scene(**body, omega=3.2), t),
+            lambda t: classify(**body, omega=t), lambda t: geometry.support(t, **body),
+        ]
+        refused = 0
+        for t in (strided, strided.copy(), strided[::-1]):
+            for call in calls[: 3 if t[0] else None]:
+                for room in range(24):
+                    pages = int(open("/proc/self/statm").read().split()[0])
+                    limit = pages * resource.getpagesize() + room * 8 * size
+                    resource.setrlimit(resource.RLIMIT_AS, (limit, -1))
+                    try:
+                        call(t)
+                        break
+                    except MemoryError:
+                        refused += 1
+                    finally:
+                        resource.setrlimit(resource.RLIMIT_AS, (-1, -1))
+        assert refused > 20, refused
+        print("no crash")
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0 and done.stdout == "no crash\n", done.stderr
+
+
 # ---------------------------------------------------------------------------------- Ctrl-C
 
 LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
