@@ -169,6 +169,34 @@ def test_no_scenes(nothing: Any, tmp_path: Path) -> None:
     assert found.status.size == found["x"].size == found.to_xarray()["x"].size == 0
 
 
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("a", -1.0), ("b", [1.0, math.nan]), ("mass", 0.0), ("gravity", -9.81), ("inertia", -1.0),
+        ("inertia", 1e9), ("slope", 2.0), ("friction", -0.1), ("restitution", 1.1),
+        ("theta", math.inf), ("z", [math.nan]),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("run", [simulate_many, rl.ends])
+def test_arguments_of_no_scenes_are_checked(run: Any, name: str, wrong: Any) -> None:
+    none = {"a": 2.0, "b": 1.0, "omega": np.empty((0, 1))}
+    with pytest.raises(ValueError, match=r"^scenes\['" + name):
+        run(none | {name: wrong}, 1.0)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"a": [], "inertia": 1e9},  # whose range depends on a
+        {"mass": [], "inertia": 1e9},
+        {"omega": [], "friction": math.inf, "x_dot": 3.0},  # which may roll
+        {"a": [], "b": []},
+    ],
+)
+def test_what_may_be_right_of_no_scenes_is_not_refused(given: dict[str, Any]) -> None:
+    assert rl.ends({"a": 2.0, "b": 1.0} | given, 1.0).theta.size == 0
+
+
 # ------------------------------------------------------------------------------- other arguments
 
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import FloatArray, array, common_shape, shown
+from ..._ask.check import FloatArray, array, common_shape, require, shown
 from ..._ask.habits import meant
 from ..._ask.records import trusted
 from ..._ask.scene import OPTIONAL, STATE_UNITS, Impulse, Scene
@@ -114,6 +114,8 @@ class SceneGrid:
         entries = {_entry(name): values for name, values in self._arrays.items()} | beside
         self.shape = common_shape(entries, slice(None))
         self.total = int(np.prod(self.shape, dtype=object))
+        if self.total == 0:
+            self._require_arguments()
         for begin, size in sizes(1):
             if begin >= self.total:
                 break
@@ -161,6 +163,19 @@ class SceneGrid:
         """Return the index into `values` of the element at an index into the common shape."""
         last = index[len(index) - values.ndim :]
         return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
+
+    def _require_arguments(self) -> None:
+        """Refuse wrong arguments of no scenes: each alone, and those of the body together."""
+        given = {name: values for name, values in self._arrays.items() if values.size}
+        for name in filter(given.__contains__, STATE_UNITS):
+            require(_entry(name), "finite", given[name], np.isfinite(given[name]))
+        body = {name: given[name] for name in NAMES if name in given and name not in STATE_UNITS}
+        scaled = {"a", "b"} <= {*body} and ("mass" in body or "mass" not in self._arrays)
+        if "inertia" in body and not scaled:  # its range is not known
+            inertia = body.pop("inertia")
+            require(_entry("inertia"), "positive", inertia, inertia > 0)
+        size = next((body[name] for name in ("a", "b") if name in body), 1.0)
+        SceneGrid({"a": size, "b": size} | body)
 
     def _require_valid(self, begin: int, table: FloatArray) -> None:
         refused = _core.first_refused(table, reached=False)
