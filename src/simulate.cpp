@@ -167,25 +167,12 @@ Losses losses_in(const std::vector<Invariants>& found) {
 
 }  // namespace
 
-CertifiedScene certify(const Scene& scene) {
+Certificate certify(const Scene& scene) {
     Beginning from = beginning(scene);
-    CertifiedScene result{};
-    result.certificate.end = {Validity::no_proof};
-    if (from.rolling) {
-        result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
-    } else if (from.on_slope) {
-        const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
-        result.certificate = certify_on_slope(scene, from.initial.state, end_of_rolling(met));
-    }
-    result.reason = reason(scene, from.initial, result.certificate);
-    return result;
-}
-
-std::string reason(const Scene& scene, const Solution& solution) {
-    const std::string rolling =
-        solution.watch ? reason(scene, *solution.watch) : certify(scene).reason;
-    if (solution.model == Model::contact) return "contact (" + rolling + ")";
-    return solution.model == Model::multipliers ? "multipliers, " + rolling : rolling;
+    if (from.rolling) return certify_rolling(*from.rolling, scene.mass, scene.friction);
+    if (!from.on_slope) return {{Validity::no_proof}, {}, {}, {}, {}};
+    const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
+    return certify_on_slope(scene, from.initial.state, end_of_rolling(met));
 }
 
 Solution simulate(const Scene& scene, const Settings& asked, double t_end,

@@ -1,5 +1,5 @@
-// The whole computation: scene -> initial state -> certificate -> model -> solution; and sentences
-// for people: why a motion is valid, where it ends, why it stopped.
+// The whole computation: scene -> initial state -> certificate -> model -> solution; and messages
+// for people: why a start does not roll, why a motion stopped.
 //
 // Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
 #pragma once
@@ -33,13 +33,8 @@ struct Losses {
     double projected = 0.0;    // largest constraint residual after a step, before its projection
 };
 
-// The certificate of the motion that starts from the scene, and one sentence that explains it.
-struct CertifiedScene {
-    Certificate certificate;
-    std::string reason;
-};
-
-CertifiedScene certify(const Scene& scene);
+// The certificate of the motion that starts from the scene.
+Certificate certify(const Scene& scene);
 
 Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
@@ -55,10 +50,6 @@ double valid_until(const Scene& scene, const Solution& solution);
 // Numerical errors of energy and constraints in a motion with steps; empty for all others.
 std::optional<Losses> losses(const Solution& solution);
 
-// Why the model of a scene's solution is valid, or until when, in one sentence. It needs the whole
-// certificate, which costs as much as a motion: so it is not made by `simulate`.
-std::string reason(const Scene& scene, const Solution& solution);
-
 // Time of a full swing or turn of the rolling motion that starts from the scene; throws
 // std::invalid_argument where it does not repeat.
 double period(const Scene& scene);
@@ -66,19 +57,8 @@ double period(const Scene& scene);
 // A number as text with six digits.
 std::string brief(double value);
 
-// A sentence on a given slip that infinite friction stops: impulse and energy; empty without.
-std::string slip_removal(const InitialState& start);
-
-// A sentence on the choice made for a body that may roll and may fly; empty for any other.
-std::string why_it_rolls(const Continuation& next);
-
 // A sentence on why a start does not roll; empty for one that rolls.
 std::string why_not_rolling(const Scene& scene, const State& start);
-
-// Why rolling is the right model of a motion, or where it ends: as proved by a certificate, or as
-// observed along a computed motion.
-std::string reason(const Scene& scene, const InitialState& start, const Certificate& certificate);
-std::string reason(const Scene& scene, const ContactWatch& watch);
 
 // Why a motion ended at t, before its last time, and what helps; empty for a complete one.
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end);

@@ -46,8 +46,7 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
 
 // A certificate by the names of its fields; the validity as a code, since enums are slow to make.
 py::dict certificate(const Scene& scene) {
-    const CertifiedScene certified = certify(scene);
-    const Certificate& c = certified.certificate;
+    const Certificate c = certify(scene);
     py::dict found;
     found["validity"] = static_cast<int>(c.end.validity);
     found["smallest_normal_force"] = c.smallest_normal_force;
@@ -55,7 +54,6 @@ py::dict certificate(const Scene& scene) {
     found["largest_friction_needed"] = c.largest_friction_needed;
     found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
     found["ends_at"] = c.end.angle;
-    found["reason"] = certified.reason;
     return found;
 }
 

@@ -68,17 +68,17 @@ struct SceneMaker {
     }
 };
 
-// The state just after the blow, the mode that forces allow, and sentences about both.
+// The state just after the blow, the mode that forces allow, and facts about both.
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
     const Continuation next = first_continuation(scene, start.state);
     py::dict found = numbers_of(start);
     found["touching"] = start.touching;
-    found["slip_removal"] = slip_removal(start);
+    found["slip_removed"] = start.slip_removed;
     found["mode_by_velocity"] = start.state.mode;
     found["mode"] = next.mode;
     found["paradox"] = next.paradox;
-    found["why_it_rolls"] = why_it_rolls(next);
+    found["may_fly"] = next.may_fly;
     return found;
 }
 

@@ -281,9 +281,6 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("stats", stats)
         .def_property_readonly("events",
                                [](const Solution& s) { return event_rows(s.motion.events); })
-        .def(
-            "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
-            "scene"_a)
         .def("losses", losses_in)
         .def("knots", [](const Solution& s) { return array_of(knot_times(s.motion)); })
         .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)

@@ -293,7 +293,7 @@ void print_motion(const Asked& asked) {
 }
 
 void print_certificate(const Asked& asked) {
-    const Certificate found = certify(asked.scene).certificate;
+    const Certificate found = certify(asked.scene);
     print(std::string("certificate ") + word(found.end.validity),
           {or_nan(found.end.angle), or_nan(found.smallest_normal_force),
            or_nan(found.smallest_normal_force_angle), or_nan(found.largest_friction_needed),

@@ -85,12 +85,11 @@ Numbers bodies() {
 
 Numbers judgements(double omega) {
     const Body body = scene_of(omega).body();
-    const CertifiedScene level = certify(scene_of(omega));
-    const CertifiedScene slope = certify(on_slope(scene_of(omega), 0.1));
+    const Certificate level = certify(scene_of(omega));
+    const Certificate slope = certify(on_slope(scene_of(omega), 0.1));
     const LiftOff lift = lift_off({2.0, 1.0, 0.0435, 9.81}, 0.2, 1.0, 0.25, [] {});
-    return {level.certificate.smallest_normal_force.value_or(-1),
-            slope.certificate.smallest_normal_force.value_or(-1),
-            static_cast<double>(level.reason.size() + slope.reason.size()),
+    return {level.smallest_normal_force.value_or(-1),
+            slope.smallest_normal_force.value_or(-1),
             static_cast<double>(classify(body, 0.6, 0.1, omega)),
             static_cast<double>(outcome(on_slope(scene_of(omega), 0.1), [] {})),
             thresholds(body, 0.6).slip_speed(),

@@ -18,11 +18,6 @@ void add(Numbers... values) {
     (numbers.push_back(static_cast<double>(values)), ...);
 }
 
-// The letters of a sentence, at the end of an answer.
-void add_words(const std::string& words) {
-    numbers.insert(numbers.end(), words.begin(), words.end());
-}
-
 // The next numbers asked for; without a jx there is no blow.
 Scene asked_scene(const double*& asked) {
     SceneNumbers known;
@@ -64,7 +59,7 @@ void add_facts(Scene scene, const Motion& motion) {
         landed = at == motion.events.end() ? absent : at->t;
         if (landed >= 0) scene = scene_after(scene, at->after);
     }
-    const Certificate c = certify(scene).certificate;
+    const Certificate c = certify(scene);
     add(landed);
     add_start(scene);
     add(outcome(scene, [] {}), c.end.validity, c.smallest_normal_force.value_or(absent),
@@ -99,19 +94,19 @@ void answer(const double* asked, int n) {
     }
     if (asked[1] == 1) add_facts(scene, solution.motion);
     add_samples(scene, solution, asked + 2, n);
-    if (asked[1] == 1) add_words(reason(scene, solution));
 }
 
 }  // namespace
 
-// The answer begins with its length. One that begins with NaN then is a refusal.
+// The answer begins with its length. One that begins with NaN then is a refusal, in letters.
 extern "C" const double* live(const double* asked, int n) {
     numbers = {0.0};
     try {
         answer(asked, n);
     } catch (const std::exception& error) {
+        const std::string letters = error.what();
         numbers = {0.0, absent};
-        add_words(error.what());
+        numbers.insert(numbers.end(), letters.begin(), letters.end());
     }
     numbers[0] = static_cast<double>(numbers.size());
     return numbers.data();

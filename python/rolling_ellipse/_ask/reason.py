@@ -51,7 +51,7 @@ def effect(scene: Scene, start: dict[str, Any]) -> Sentence:
     """Return what the blow does to the contact."""
     slides = "lifted" if scene.friction == math.inf else "slides_off"
     by_mode = {Mode.FLIGHT: "thrown", Mode.SLIDING: slides}
-    if start["slip_removal"]:
+    if start["slip_removed"]:
         key = "stopped"
     elif scene.impulse is None:
         key = "no_blow"
@@ -68,7 +68,7 @@ def effect(scene: Scene, start: dict[str, Any]) -> Sentence:
 def motion_after(scene: Scene, start: dict[str, Any]) -> list[Sentence]:
     """Return why the motion after t = 0 is not the one that its velocities suggest."""
     mode = start["mode"]
-    if start["why_it_rolls"]:
+    if start["may_fly"]:
         return [said("wedged")]
     if start["paradox"] is not Painleve.DETERMINED:
         return [said(start["paradox"].name.lower())]
@@ -86,7 +86,6 @@ def limit(friction: float) -> Sentence:
 def proved(scene: Scene) -> dict[str, Any]:
     """Return the numbers of a certificate by their names."""
     found = _core.certify(scene.core)
-    del found["reason"]
     return found | {"validity": _VALIDITIES[found["validity"]]}
 
 
