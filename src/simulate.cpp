@@ -88,21 +88,6 @@ void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Sol
     end_validity(ends, t_end, solution);
 }
 
-// Ends the validity where a motion that may break the constraints is seen to break the law.
-void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoint,
-                    Solution& solution) {
-    const std::vector<double> knots = knot_times(solution.motion);
-    const Sampler sampler(solution.motion, knots.size());
-    std::vector<ContactSample> samples;
-    const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
-        samples.resize(n);
-        sampler(times, n, samples.data());
-        for (std::size_t i = 0; i < n; ++i) found[i] = samples[i].force;
-    };
-    solution.watch = watch_contact(scene.friction, knots, forces, checkpoint);
-    end_validity(solution.watch->holds_until, t_end, solution);
-}
-
 Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
     if (from.on_slope) {
         SlopeFlow flow = *from.on_slope;
@@ -201,7 +186,10 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
     Solution found = solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start),
                                                                      settings, t_end, checkpoint)),
                               settings, t_end);
-    judge_by_watch(scene, t_end, checkpoint, found);
+    end_validity(0.0, t_end, found);
+    if (found.ending == Ending::validity_lost) {
+        found.message = "the start violates the constraints, as no body on the ground does";
+    }
     return found;
 }
 

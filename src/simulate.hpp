@@ -21,7 +21,6 @@ struct Solution : Integration<Motion> {
     // for is known.
     double valid_until = infinity;
     std::string message = {};
-    std::optional<ContactWatch> watch = {};  // contact forces seen, if there is no proof
 };
 
 // Numerical errors of an integrated motion in its energy and its constraints.
@@ -39,7 +38,8 @@ Certificate certify(const Scene& scene);
 Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
-// The multiplier model from any coordinates and velocities; the scene gives body and ground.
+// The multiplier model from coordinates and velocities that violate the constraints: it is never
+// valid. Those that meet them are a scene's. The scene gives body and ground.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 

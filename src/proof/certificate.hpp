@@ -1,14 +1,10 @@
-// Validity of a motion: of rolling on level ground by proof, from the signs of polynomials; of a
-// computed motion by samples of its contact forces.
+// Validity of rolling on level ground, proved from the signs of polynomials.
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <vector>
 
 #include "proof/forces.hpp"
 #include "rolling/level/flow.hpp"
-#include "scene/settings.hpp"
 
 namespace rolling_ellipse {
 
@@ -43,23 +39,5 @@ double time_of_end(const RollingFlow& flow, const EndOfRolling& end);
 // mu^2 P^2 - G Q^2, physics (35), which is at least 0 where friction mu suffices; divided by mu^2
 // for mu > 1, so that a large mu does not overflow.
 Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction);
-
-// Contact forces along a computed motion, where no proof decides in advance whether the ground can
-// give them.
-struct ContactWatch {
-    double smallest_normal_force;  // smallest N seen [N]
-    double smallest_normal_force_time;
-    double largest_friction_needed;  // largest |F|/N seen
-    double largest_friction_needed_time;
-    double holds_until;  // first time at which N < 0 or |F| > mu N; infinite if there is none
-};
-
-// The contact forces at n times.
-using ForcesAt = std::function<void(const double* times, std::size_t n, ContactForce* forces)>;
-
-// Watches the forces at eight samples from each time to the next. A violation between two samples
-// that obey the law is found at the minimum of the margin between them.
-ContactWatch watch_contact(double friction, const std::vector<double>& times,
-                           const ForcesAt& forces_at, const Checkpoint& checkpoint);
 
 }  // namespace rolling_ellipse

@@ -6,7 +6,6 @@
 #include <complex>
 #include <cstdio>
 #include <cstring>
-#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "numerics/lu.hpp"
 #include "numerics/numbers.hpp"
 #include "numerics/polynomial.hpp"
-#include "proof/certificate.hpp"
 #include "proof/law.hpp"
 #include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
@@ -87,31 +85,6 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches)) == Sign::undecided);
     CHECK(sign_on_unit_interval(bernstein(touches + polynomial(1e-9))) == Sign::positive);
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
-}
-
-// End of valid contact for a normal force without friction, sampled at whole times.
-double watched_until(const std::function<double(double)>& normal) {
-    const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
-        for (std::size_t i = 0; i < n; ++i) found[i] = {normal(times[i]), 0.0};
-    };
-    return watch_contact(infinity, {0.0, 8.0}, forces, [] {}).holds_until;
-}
-
-// A margin that is negative between two samples only, for a thousandth of their distance.
-void a_dip_between_two_samples_is_found() {
-    for (const double centre : {2.3, 2.5}) {  // about 2.5 two samples are equal
-        const auto margin = [&](double t) {
-            const double off = (t - centre) / 5e-4;
-            return 2.5e-7 * (off * off - 1);
-        };
-        CHECK(std::abs(watched_until(margin) - (centre - 5e-4)) < 1e-12);
-        CHECK(watched_until([&](double t) { return margin(t) + 3e-7; }) == infinity);
-    }
-    const auto steep = [](double t) {  // the search fits no parabola through infinite margins
-        CHECK(std::isfinite(t));
-        return t == 2.0 ? 1.0 : infinity;
-    };
-    CHECK(watched_until(steep) == infinity);
 }
 
 // A body that rolls, slides, leaves the ground and lands.
@@ -186,16 +159,6 @@ void needed_friction_of_special_forces() {
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
 }
 
-void of_equal_forces_the_first_is_reported() {
-    const auto same = [](const double*, std::size_t n, ContactForce* found) {
-        std::fill_n(found, n, ContactForce{2.0, 1.0});
-    };
-    const ContactWatch watch = watch_contact(1.0, {3.0, 4.0, 5.0}, same, [] {});
-    CHECK(watch.smallest_normal_force == 2 && watch.smallest_normal_force_time == 3);
-    CHECK(watch.largest_friction_needed == 0.5 && watch.largest_friction_needed_time == 3);
-    CHECK(watch.holds_until == infinity);
-}
-
 template <class Each>
 bool same_bits(const std::vector<Each>& one, const std::vector<Each>& other) {
     return std::memcmp(one.data(), other.data(), one.size() * sizeof(Each)) == 0;
@@ -252,12 +215,10 @@ int main() {
     equations_are_solved_whatever_their_order(std::complex<double>(0.0, 2.0));
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
-    a_dip_between_two_samples_is_found();
     every_segment_knows_every_kind_of_sample();
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();
     needed_friction_of_special_forces();
-    of_equal_forces_the_first_is_reported();
     every_vector_level_has_the_same_bits();
     return verdict(failures);
 }

@@ -16,15 +16,14 @@ import pytest
 import rolling_ellipse as rl
 from oracles.files import half_a_file, put_together, taken_apart
 from oracles.pickles import require_same
+from oracles.report import lifted
 from rolling_ellipse import Trajectory, simulate
 
 TIMES = np.linspace(0.0, 1.5, 12)
 SAVED: dict[str, Callable[[], Any]] = {
     "rolling": lambda: simulate(rl.scenes.report, TIMES),
     "contact": lambda: simulate(rl.scenes.bounce, 2 * TIMES, max_events=3, raise_on_failure=False),
-    "multipliers": lambda: rl.report.simulate(
-        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0, method="rk4", step=0.1
-    ),
+    "multipliers": lambda: lifted(TIMES, method="rk4", step=0.1),
 }
 REFUSED = r"^path must name a file written by save, got '[^']*motion\.npz': "
 

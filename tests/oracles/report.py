@@ -1,6 +1,7 @@
 """The body of the report, and starts for its equations."""
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -26,3 +27,17 @@ def off_by(f2: float, f3: float, f4: float) -> tuple[Array, Array]:
 
 
 Q, Q_DOT = rl.kinematics(0.2, 2.0, **SHAPE)
+
+
+def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
+    """The corrected motion from a start off the constraints, without the warning of the start."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", report.InconsistentStartWarning)
+        motion = report.simulate(q, q_dot, t, consistent="as_given", **{**SHAPE, **options})
+    assert isinstance(motion, rl.Trajectory)
+    return motion
+
+
+def lifted(t: Any, **options: Any) -> rl.Trajectory:
+    """A motion that rolls on the ground but for 1e-6 m/s away from it."""
+    return as_given(Q, Q_DOT + 1e-6 * np.eye(5)[1], t, **options)

@@ -7,6 +7,8 @@ import rolling_ellipse as rl
 from rolling_ellipse import Scene, Trajectory, simulate
 from rolling_ellipse._motion.quantities import QUANTITIES
 
+from oracles.report import lifted
+
 SCENES = {
     "report": rl.scenes.report,
     "rocking": rl.scenes.rocking,
@@ -22,12 +24,6 @@ MATRICES = {"q": 5, "q_dot": 5, "multipliers": 4}
 TIMES = np.linspace(0.0, 2.0, 21)
 
 
-def of_coordinates() -> Trajectory:
-    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0)
-    assert isinstance(found, Trajectory)
-    return found
-
-
 MOTIONS: dict[str, Callable[[], Trajectory]] = {
     "rolling": lambda: simulate(rl.scenes.report, TIMES),
     "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
@@ -39,5 +35,5 @@ MOTIONS: dict[str, Callable[[], Trajectory]] = {
     "contact": lambda: simulate(rl.scenes.bounce, TIMES),
     "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
     "none": lambda: simulate(rl.scenes.bounce, [2.0], max_events=1, raise_on_failure=False),
-    "from coordinates": of_coordinates,
+    "off the constraints": lambda: lifted(TIMES),
 }

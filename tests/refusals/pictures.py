@@ -8,7 +8,8 @@ import numpy as np
 import rolling_ellipse as rl
 from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
-from rolling_ellipse import Scene, report, scenes
+from oracles.report import lifted
+from rolling_ellipse import Scene, scenes
 from rolling_ellipse._pictures.animation import movies
 
 from refusals import ANYTHING, INF, NAN, Row, but, wrong
@@ -23,8 +24,7 @@ TOO_LONG = rl.simulate(
 EMPTY = MOTION.sol([])
 ANGLES_UNKNOWN = rl.simulate(Scene(2.0, 1.0, theta=1e16, omega=1.0), 0.5, model="rolling")
 FAR = rl.simulate(Scene(2.0, 1.0, x=1e24), [0.0, 1.0])
-Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
-OWN_START: Any = report.simulate(Q, Q_DOT, [0.0, 0.1], a=2.0, b=1.0)
+OWN_START = lifted([0.0, 0.1])
 WRONG: Any = 1
 WORDS = rl.explore(scenes.report).words
 FILM: dict[str, Any] = {"width": 160, "dpi": 50}

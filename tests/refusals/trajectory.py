@@ -8,6 +8,7 @@ from unittest import mock
 
 import numpy as np
 import rolling_ellipse as rl
+from oracles.report import lifted
 from rolling_ellipse import Scene, scenes
 
 from refusals import INF, NAN, Row, wrong
@@ -22,9 +23,7 @@ FLAT = Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.3)
 AT_REST = rl.simulate(Scene(2.0, 1.0), 1.0)
 JAMMED = rl.simulate(Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0), 1.0)
 NOISY = rl.simulate(scenes.rolling, 3.0, model="rolling", method="dop853", rtol=1e-4)
-STARTED = rl.report.simulate(
-    *rl.kinematics(0.3, 1.0, a=2.0, b=1.0), a=2.0, b=1.0, t=1.0, equations="corrected",
-)  # fmt: skip
+STARTED = lifted(1.0)
 N = MOTION.t.size
 
 

@@ -1,12 +1,11 @@
 """The corrected equations from any start: refused, projected or taken as given."""
 
-import warnings
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.report import Q_DOT, SHAPE, Array, Q, off_by
+from oracles.report import Q_DOT, SHAPE, Array, Q, as_given, lifted, off_by
 from rolling_ellipse import report
 
 OWN_Q, OWN_RATES = np.array([0.0, 1, 0, 0, 1]), np.array([0, 1, 1, 1.5, 0])  # the report's start
@@ -23,14 +22,6 @@ def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
     motion = report.simulate(q, q_dot, t, **{**SHAPE, **options})
     assert isinstance(motion, rl.Trajectory)
     return motion
-
-
-def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
-    """The motion from a start as given, without warnings of the start and of the ground."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", report.InconsistentStartWarning)
-        warnings.simplefilter("ignore", rl.ValidityWarning)
-        return corrected(q, q_dot, t, consistent="as_given", **options)
 
 
 @pytest.mark.parametrize("options", [{}, {"consistent": "refuse"}, {"stabilization": "none"}])
@@ -98,16 +89,13 @@ def test_how_far_off_psi_and_r_are_moves_no_body_that_is_projected(
 
 
 def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
-    with pytest.warns() as caught:
+    with pytest.warns(report.InconsistentStartWarning) as caught:
         motion = corrected(
             OWN_Q, OWN_RATES, np.linspace(0, 2, 21), consistent="as_given", stabilization="none"
         )
-    said = {warning.category: str(warning.message) for warning in caught}
-    assert (
-        said[report.InconsistentStartWarning] == f"the start violates constraints: {OWN_VIOLATIONS}"
-    )
-    assert said.keys() == {report.InconsistentStartWarning, rl.ValidityWarning}
-    assert {warning.filename for warning in caught} == {__file__}
+    (said,) = caught
+    assert str(said.message) == f"the start violates constraints: {OWN_VIOLATIONS}"
+    assert said.filename == __file__
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
     # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 steps, in rates of some 10
     held = motion.constraint_residuals()
@@ -115,6 +103,15 @@ def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     assert np.allclose(held.position, law, rtol=0, atol=1e-5)
     assert np.allclose(held.velocity, [-1, 1, 0, -2.5], rtol=0, atol=1e-5)
     assert np.max(np.abs(held.gap)) > 1
+
+
+def test_no_time_of_a_motion_that_starts_off_the_constraints_is_valid() -> None:
+    """Also of one that leaves the ground by 1e-6 m/s only, with forces that the ground can give."""
+    motion = lifted(0.5)
+    assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
+    assert motion.message == "the start violates the constraints, as no body on the ground does"
+    assert motion.reason == "It starts off the constraints, as no body on the ground does."
+    assert motion.normal_force.min() > 0
 
 
 LAWS = {  # gap over time from (gap, its rate) = (0, 1) or (0.1, 0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .. import _core
-from .._ask.reason import Sentence, effect, in_words, limit, motion_after, proved, rolling, said
+from .._ask.reason import Sentence, effect, in_words, motion_after, proved, rolling, said
 from .._ask.scene import Scene, reached_scene
 from .._core import EventKind, Mode, Outcome
 from .status import Status
@@ -76,16 +76,7 @@ def _end_of_rolling(motion: Trajectory, first: Outcome, since: float) -> Sentenc
 def reason(motion: Trajectory) -> str:
     """Return what happens in a motion, and then what is proved of rolling."""
     if motion.start is not None:
-        return _from_coordinates(motion)
+        return "It starts off the constraints, as no body on the ground does."
     found = told(motion)
     new = (each for each in found.reasons if each[0] not in _NOT_NEW)
     return in_words([*found.headline, *new])
-
-
-def _from_coordinates(motion: Trajectory) -> str:
-    until, mu = motion.valid_until, motion.scene.friction
-    holds = "to its end" if until == math.inf else f"up to t = {until:.6g} s"
-    return (
-        "It starts from coordinates, so that nothing is proved in advance; along the computed "
-        f"motion the ground can hold it {holds}. {in_words([limit(mu)])}"
-    )

@@ -205,7 +205,7 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Solve a scene up to the last of the times, and sample it at all times that are reached.
 
-        A start (q, q_dot) in coordinates replaces the start of the scene.
+        A start (q, q_dot) off the constraints replaces the start of the scene.
         """
         solution, samples = solve(scene, settings, times, start)
         found = fields_of(samples)

@@ -17,6 +17,7 @@ from .._ask.check import FloatArray, choice, finite, shown
 from .._ask.scene import Scene
 from .._ask.settings import DEFAULTS, Method, Stabilization
 from .._motion.constraints import COORDINATES, constraints, kinematics
+from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ..geometry import support, support_curvature, support_slope
@@ -103,7 +104,7 @@ def simulate(
         The treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations
         the rows in use must allow the rates. "project" takes the nearest consistent state in the
         metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
-        runs it after an InconsistentStartWarning.
+        runs it after an InconsistentStartWarning, and no time of its motion is valid.
     printed : sequence of str, optional
         For the printed equations only: the rows as printed, see `constraint_matrix`; default is
         the report's code, `CODE`. With () all rows are right.
@@ -163,8 +164,11 @@ def simulate(
         return follow(start, times, body, names, settings)
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
-    trajectory = Trajectory.computed(scene, settings, times, (start.q, start.q_dot))
-    report_status(trajectory, raise_on_failure=True, stacklevel=3)
+    off = bool(start.violations) and consistent == "as_given"  # any other start is the scene's
+    given = (start.q, start.q_dot) if off else None
+    trajectory = Trajectory.computed(scene, settings, times, given)
+    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the start's warning has said it
+        report_status(trajectory, raise_on_failure=True, stacklevel=3)
     return trajectory
 
 
