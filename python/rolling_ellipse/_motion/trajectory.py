@@ -336,8 +336,9 @@ class Trajectory(FieldsOnly):
         if times.size and not (times.min() >= 0 and times.max() <= self.t_end):
             outside = times[~((times >= 0) & (times <= self.t_end))]
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        solution = self._solution
-        found = self.__getstate__() | sampled(solution, times)
+        solution, known = self._solution, vars(self)
+        found = {name: known[name] for name in self.__dataclass_fields__ if name in known}
+        found |= sampled(solution, times)  # what is still to be found is left to the new motion
         return trusted(type(self), found | {"_solution": solution})
 
     def at(self, t: float) -> Sample:
