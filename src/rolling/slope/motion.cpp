@@ -253,9 +253,9 @@ ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
     const double w = bend_of_height({body.long_axis, body.short_axis}, at);
     const auto& [into, along] = body.gravity;
-    const CentreOfRolling<double> centre(body.gyration2, into, along, at.h, at.dh, at.ddh, w,
-                                         square(place.omega));
-    const auto [normal, friction] = centre.force_per_mass();
+    const auto [normal, friction] =
+        centre_of_rolling(body.gyration2, into, along, at.h, at.dh, at.ddh, w, square(place.omega))
+            .force_per_mass;
     return {normal, friction};
 }
 

@@ -295,8 +295,8 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
         const Pack ddh = body.c2 * (b * cos2 - a * sin2) * (b * cos2 + a * sin2) * over_h3;
         const Pack w = body.c2 * (b * b * cos2 - a * a * sin2) * over_h3 * h;
         const Pack omega2 = 2 * (load(&part.level[i]) + gained) / (body.gyration2 + h2 + dh * dh);
-        const CentreOfRolling<Pack> centre(body.gyration2, into, along, h, dh, ddh, w, omega2);
-        const auto force = centre.force_per_mass();
+        const auto force =
+            centre_of_rolling(body.gyration2, into, along, h, dh, ddh, w, omega2).force_per_mass;
         store(force.normal, &found.normal[i]);
         store(force.along, &found.friction[i]);
     }

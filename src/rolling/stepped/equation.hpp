@@ -86,13 +86,13 @@ class RollingEquation {
     };
 
     Accelerations accelerations(const Geometry& at, double omega) const {
-        const auto [up, along] = centre(at, omega).acceleration();
+        const auto [up, along] = centre(at, omega).acceleration;
         return {acceleration(at.sin, at.cos, omega), along, up};
     }
 
     // The contact force on a body with a mass.
     ContactForce force(double mass, const Geometry& at, double omega) const {
-        const auto [normal, friction] = centre(at, omega).force_per_mass();
+        const auto [normal, friction] = centre(at, omega).force_per_mass;
         return {mass * normal, mass * friction};
     }
 
@@ -104,14 +104,8 @@ class RollingEquation {
 
   private:
     CentreOfRolling<double> centre(const Geometry& at, double omega) const {
-        return {gyration2_,
-                gravity_.into,
-                gravity_.along,
-                at.h,
-                at.dh,
-                at.ddh,
-                bend_of_height(axes_, at),
-                omega * omega};
+        return centre_of_rolling(gyration2_, gravity_.into, gravity_.along, at.h, at.dh, at.ddh,
+                                 bend_of_height(axes_, at), omega * omega);
     }
 
     struct Squares {
