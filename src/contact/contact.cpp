@@ -46,11 +46,11 @@ class ContactRun {
     // Decides how the body goes on from its start. A body that touches the ground and moves into it
     // hits it at once.
     void start() {
-        const double blur = angle_roundings(state_.theta);
+        const Continuation next = first_continuation(scene_, state_);
         const bool touches = state_.z == geometry(axes(), state_.theta).h;
         recount(state_, {state_.theta, 0.0});
         if (state_.mode != Mode::flight) {
-            start_with(continuation(scene_, state_, true, blur));
+            start_with(next);
         } else if (touches && gap_rate_ < 0) {
             hit(State(state_), geometry(axes(), state_.theta), gap_rate_);
         }
@@ -170,8 +170,10 @@ class ContactRun {
         State last = end_of(slide);
         const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
-        if (stop == SlideStop::slip_vanishes) end.omega = omega_without_slip(slide);
-        last.omega = double(end.omega);
+        if (stop == SlideStop::slip_vanishes) {
+            end.omega = omega_without_slip(slide);
+            last.omega = double(end.omega);
+        }
         const double lasts = double(end.time);
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));
@@ -180,9 +182,10 @@ class ContactRun {
         if (stop == SlideStop::time_is_over) return finish();
         if (!advance(lasts)) return;
         end.angle = recount(last, theta);
-        end_slide(stop, State(state_));
+        const State before = state_;
+        end_slide(stop, before);
         if (next_.mode != Mode::sliding) return;
-        if (!is_rolling_speed(double(end.x_dot), state_.x_dot)) end.x_dot = {state_.x_dot, 0.0};
+        if (state_.x_dot != before.x_dot) end.x_dot = {state_.x_dot, 0.0};
         sliding_on_ = end;
     }
 
