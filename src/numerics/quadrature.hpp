@@ -1,6 +1,7 @@
 // Gauss-Legendre quadrature.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -28,6 +29,17 @@ inline Node node_of(const GaussRule& rule, int i) {
     const int from_middle = left ? (rule.size + 1) / 2 - 1 - i : i - rule.size / 2;
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
+
+// Nodes of the rule on a part: a function there is the polynomial through its numbers at the nodes.
+inline constexpr int part_order = 20;
+using PartArray = std::array<double, part_order>;
+
+// A polynomial on a part, -1 ... 1, and its integral from -1, by powers of the place; the highest
+// power of the value is 0.
+struct PartPolynomial {
+    std::array<double, part_order + 1> value;
+    std::array<double, part_order + 1> integral;
+};
 
 // The integral of f from v0 to v1 as a double-double: the summation adds no rounding.
 template <class Function>

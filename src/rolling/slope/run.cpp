@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rolling/slope/part.hpp"
+#include "rolling/slope/panel.hpp"
 #include "scene/centre_of_rolling.hpp"
 
 namespace rolling_ellipse {
@@ -111,16 +111,11 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     const PartRule& rule = part_rule();
     PartArray falls;
     for (int i = 0; i < part_order; i += lanes) {
-        const Pack v = part.middle + part.half * load(&rule.places[i]);
-        const PanelPlaces at = places_at(panel, v);
-        const Pack sin2 = at.sin * at.sin * at.over;
-        const Pack cos2 = at.cos * at.cos * at.over;
-        const Pack h2 = body.short_axis2 + body.c2 * sin2;
-        const Pack h = sqrt(h2);
+        const PanelPlaces at = places_at(run, part, load(&rule.places[i]));
         const Pack rate = part.half * at.tan_rate * at.over;
-        store(h * rate, &part.advance[i]);
-        store(rate * sqrt(0.5 * (body.d0 + body.d1 * sin2) / h2), &part.mass[i]);
-        store(fallen(run, sin2, cos2, h), &falls[i]);
+        store(at.h * rate, &part.advance[i]);
+        store(rate * sqrt(0.5 * (body.d0 + body.d1 * at.sin2) / at.h2), &part.mass[i]);
+        store(fallen(run, at), &falls[i]);
     }
     part.path = run.path_ahead;
     const PartArray path = product(rule.integrals, part.advance);
@@ -275,7 +270,6 @@ DoubleDouble RunTimes::operator()(double half_turns) {
 // N and F as in `contact_force`.
 ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& part,
                                             double half_turns) {
-    const RunPanel& panel = run.panels[part.panel];
     const SlopeBody& body = run.body;
     const double gained = run.heading * half_turns * body.gain;
     const double into = body.gravity.into;
@@ -284,19 +278,16 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
     const double b = body.short_axis;
     PartForces found;
     for (int i = 0; i < part_order; i += lanes) {
-        const Pack v = part.middle + part.half * load(&part_rule().places[i]);
-        const PanelPlaces at = places_at(panel, v);
-        const Pack sin2 = at.sin * at.sin * at.over;
-        const Pack cos2 = at.cos * at.cos * at.over;
-        const Pack h2 = body.short_axis2 + body.c2 * sin2;
-        const Pack h = sqrt(h2);
-        const Pack over_h3 = 1 / (h * h2);
-        const Pack dh = body.c2 * at.sin * at.cos * at.over / h;
-        const Pack ddh = body.c2 * (b * cos2 - a * sin2) * (b * cos2 + a * sin2) * over_h3;
-        const Pack w = body.c2 * (b * b * cos2 - a * a * sin2) * over_h3 * h;
-        const Pack omega2 = 2 * (load(&part.level[i]) + gained) / (body.gyration2 + h2 + dh * dh);
+        const PanelPlaces at = places_at(run, part, load(&part_rule().places[i]));
+        const Pack over_h3 = 1 / (at.h * at.h2);
+        const Pack dh = body.c2 * at.sin * at.cos * at.over / at.h;
+        const Pack ddh =
+            body.c2 * (b * at.cos2 - a * at.sin2) * (b * at.cos2 + a * at.sin2) * over_h3;
+        const Pack w = body.c2 * (b * b * at.cos2 - a * a * at.sin2) * over_h3 * at.h;
+        const Pack omega2 =
+            2 * (load(&part.level[i]) + gained) / (body.gyration2 + at.h2 + dh * dh);
         const auto force =
-            centre_of_rolling(body.gyration2, into, along, h, dh, ddh, w, omega2).force_per_mass;
+            centre_of_rolling(body.gyration2, into, along, at.h, dh, ddh, w, omega2).force_per_mass;
         store(force.normal, &found.normal[i]);
         store(force.along, &found.friction[i]);
     }

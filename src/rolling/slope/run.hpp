@@ -20,17 +20,6 @@
 
 namespace rolling_ellipse {
 
-// Nodes of the Gauss rule of a part: a function on the part is the polynomial through them.
-inline constexpr int part_order = 20;
-using PartArray = std::array<double, part_order>;  // numbers at the nodes of a part
-
-// A polynomial on a part and its integral from -1, by powers of the place; the highest power of the
-// value is 0.
-struct PartPolynomial {
-    std::array<double, part_order + 1> value;
-    std::array<double, part_order + 1> integral;
-};
-
 // The coordinate v of a panel: tan(phi - centre) = grade sinh(v), first <= v <= last. The centre is
 // a flat position or the place of the least W beside a tip.
 struct RunPanel {

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "rolling/slope/part.hpp"
+#include "rolling/slope/panel.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -60,17 +60,14 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
     const SlopeBody& body = run.body;
     const Pack time = load(times.data());
     const Pack x = places_in_part(of.time, value(of.about_place, time / of.lasts), time);
-    const PanelPlaces at = places_at(run.panels[part.panel], part.middle + part.half * x);
-    const Pack sin2 = at.sin * at.sin * at.over;
-    const Pack cos2 = at.cos * at.cos * at.over;
-    const Pack h = sqrt(body.short_axis2 + body.c2 * sin2);
+    const PanelPlaces at = places_at(run, part, x);
     const Pack ahead = run.heading * (part.path + value(of.path.integral, x));
     const Pack energy = run.datum.energy + run.heading * of.half_turns * body.gain +
                         (body.gravity.along * (ahead - run.heading * run.datum.path) +
-                         body.gravity.into * fallen(run, sin2, cos2, h));
+                         body.gravity.into * fallen(run, at));
     store(at.tan, places.tan.data());
     store(ahead, places.ahead.data());
-    store(h * sqrt(2 * energy / (body.d0 + body.d1 * sin2)), places.speed.data());
+    store(at.h * sqrt(2 * energy / (body.d0 + body.d1 * at.sin2)), places.speed.data());
 }
 
 }  // namespace

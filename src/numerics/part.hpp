@@ -1,14 +1,13 @@
-// Functions on a part of a panel, as polynomials through the Gauss nodes -1 ... 1, and places on
-// it.
+// Functions on a part, -1 ... 1, as polynomials through its Gauss nodes, several lanes at a time.
 #pragma once
 
 #include <array>
 
 #define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, two elsewhere
 #include "numerics/lanes.hpp"
+#include "numerics/quadrature.hpp"
 #include "numerics/series.hpp"
 #include "numerics/wide.hpp"
-#include "rolling/slope/run.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -89,32 +88,6 @@ inline double integral(const PartArray& values) {
     double total = 0.0;
     for (int i = 0; i < lanes; ++i) total += lane_of(sum, i);
     return total;
-}
-
-// Places on a panel: their tangents from the centre and the derivatives of those by v; 1/(1 +
-// tan^2); sines and cosines of their angles from a flat position, times sqrt(1 + tan^2) and perhaps
-// -1 both.
-struct PanelPlaces {
-    Pack tan;
-    Pack tan_rate;
-    Pack over;
-    Pack sin;
-    Pack cos;
-};
-
-[[gnu::always_inline]] inline PanelPlaces places_at(const RunPanel& panel, Pack v) {
-    const auto [sinh, falling] = hyperbolic(abs(v));
-    const Pack tan = copysign(panel.grade * sinh, v);
-    return {tan, panel.grade * (sinh + falling), 1 / (1 + tan * tan), panel.sin + panel.cos * tan,
-            panel.cos - panel.sin * tan};
-}
-
-// As `fall`, from the datum of a run.
-[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, Pack sin2, Pack cos2, Pack h) {
-    const Geometry& from = run.datum.at;
-    const double sin2_from = square(from.sin);
-    const Pack change = sin2_from + sin2 > 1.0 ? cos2 - square(from.cos) : sin2_from - sin2;
-    return run.body.c2 / (from.h + h) * change;
 }
 
 }  // namespace

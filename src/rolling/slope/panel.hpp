@@ -1,0 +1,54 @@
+// Places on the panels of a run, several lanes at a time.
+#pragma once
+
+#include "numerics/part.hpp"
+#include "rolling/slope/run.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// Places on a part: their tangents from the centre of the panel and the derivatives of those by v;
+// 1/(1 + tan^2); sines and cosines of their angles from a flat position, times sqrt(1 + tan^2) and
+// perhaps -1 both; the squares of both without that factor; and the height of the centre.
+struct PanelPlaces {
+    Pack tan;
+    Pack tan_rate;
+    Pack over;
+    Pack sin;
+    Pack cos;
+    Pack sin2;
+    Pack cos2;
+    Pack h2;
+    Pack h;
+};
+
+// The places x in -1 ... 1 of a part.
+[[gnu::always_inline]] inline PanelPlaces places_at(const SlopeRun& run, const RunPart& part,
+                                                    Pack x) {
+    const RunPanel& panel = run.panels[part.panel];
+    const Pack v = part.middle + part.half * x;
+    const auto [sinh, falling] = hyperbolic(abs(v));
+    PanelPlaces at;
+    at.tan = copysign(panel.grade * sinh, v);
+    at.tan_rate = panel.grade * (sinh + falling);
+    at.over = 1 / (1 + at.tan * at.tan);
+    at.sin = panel.sin + panel.cos * at.tan;
+    at.cos = panel.cos - panel.sin * at.tan;
+    at.sin2 = at.sin * at.sin * at.over;
+    at.cos2 = at.cos * at.cos * at.over;
+    at.h2 = run.body.short_axis2 + run.body.c2 * at.sin2;
+    at.h = sqrt(at.h2);
+    return at;
+}
+
+// As `fall`, from the datum of a run.
+[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, const PanelPlaces& at) {
+    const Geometry& from = run.datum.at;
+    const double sin2_from = square(from.sin);
+    const Pack change =
+        sin2_from + at.sin2 > 1.0 ? at.cos2 - square(from.cos) : sin2_from - at.sin2;
+    return run.body.c2 / (from.h + at.h) * change;
+}
+
+}  // namespace
+}  // namespace rolling_ellipse
