@@ -66,7 +66,7 @@ Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoin
     constexpr int most_pieces = 100'000;
     constexpr int pieces_between_checks = 64;
     SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
-    if (flow.kind == MotionKind::uniform) {
+    if (flow.body.c2 == 0 && !flow.rests) {
         const LawMeetings met = law_meetings(flow, scene.friction);
         if (met.touched) return Outcome::edge;
         return met.broken ? Outcome::slips : outcome_of_circle(flow);
@@ -77,7 +77,7 @@ Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoin
         if (i % pieces_between_checks == 0) checkpoint();
         const SlopePiece piece = piece_from(flow.body, place);
         if (std::isinf(piece.lasts)) return Outcome::edge;
-        const SlopePlace next = place_after(flow.body, flow.energy, piece);
+        const SlopePlace next = place_after(flow.body, flow.datum, piece);
         const double turns = double(time_of_turning(piece));
         const double tips = time_of_tip(piece);
         const bool breaks = watch.examine(piece);

@@ -73,19 +73,19 @@ struct CourseOf {
 
     Course operator()(const SlopeFlow& flow) const {
         const double unit = flow.body.time;  // unit of time; a power of two: products are exact
-        Course found{flow.kind == MotionKind::rest ? resting : rolling};
-        if (flow.kind == MotionKind::libration) {
-            found.period = (flow.turnings[1] - flow.turnings[0]) * 2.0 * unit;
+        Course found{flow.rests ? resting : rolling};
+        if (const Repeat* const swing = rocking(flow)) {
+            found.period = swing->lasts() * 2.0 * unit;
             found.swung = 4.0;
             return found;
         }
-        const bool runs = flow.kind == MotionKind::rotation;
-        if (runs) found.knots = flow.turnings;
+        if (flow.turning) found.knots.push_back(*flow.turning);
         if (flow.acceleration != 0) {
             found.knots.push_back({-flow.start.omega / flow.acceleration, 0.0});
         }
         for (DoubleDouble& knot : found.knots) knot = knot * unit;
-        found.monotone = quantity && (!runs || is_along());
+        found.monotone =
+            quantity && (std::holds_alternative<Even>(flow.stretches.front().law) || is_along());
         return found;
     }
 

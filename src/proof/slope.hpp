@@ -21,13 +21,20 @@ struct LawMeetings {
     std::optional<Meeting> broken;
 };
 
-// Examines the law on pieces of a motion in the order of time.
+// Examines the law on the stretches of a motion in the order of time, up to a time in units of the
+// body at least.
 class LawWatch {
   public:
-    LawWatch(const SlopeFlow& flow, double friction) : flow_(flow), friction_(friction) {}
+    LawWatch(const SlopeFlow& flow, double friction, double until = infinity)
+        : flow_(flow), friction_(friction), until_(until) {}
 
-    // Examines the next piece of the motion; true once the law is broken.
+    // Examines the next stretch; true once the law is broken.
+    bool examine(const Even&);
     bool examine(const SlopePiece& piece);
+    bool examine(Sum& sum);
+    // The forces are those of the motion before.
+    bool examine(const Mirror&) { return false; }
+    bool examine(const Repeat&) { return false; }
 
     // The meetings found so far. A motion that ends close to the limit has touched it.
     LawMeetings met() const;
@@ -48,6 +55,7 @@ class LawWatch {
 
     const SlopeFlow& flow_;
     const double friction_;
+    const double until_;
     Stretch near_[2];  // stretches of the laws for friction to each side
     bool at_start_ = true;
     LawMeetings met_;

@@ -212,7 +212,7 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double 
     });
     if (holds) return {};
     const SlopePlace from = half_turns == 0 ? run.from : place_after(run, half_turns);
-    const SlopeEnergy energy = energy_of(flow.body, from);
+    const Datum start = datum_of(flow.body, from);
     SlopePlace place = from;
     place.path = {};
     LawWatch watch(flow, friction);
@@ -223,7 +223,7 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double 
     while (turned() < pi) {
         const SlopePiece piece = piece_from(flow.body, place);
         if (watch.examine(piece)) break;
-        place = place_after(flow.body, energy, piece);
+        place = place_after(flow.body, start, piece);
     }
     return watch.met();
 }
@@ -231,7 +231,8 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double 
 // First guess of the half turn of a complete run in which the law is broken, from the nodes of its
 // parts. The forces at a node are linear in W, hence in the number of half turns.
 double broken_about(const SlopeRun& run, double friction) {
-    const double later = std::max(1.0, std::min(run.energy / run.body.gain, run.half_turns - 1));
+    const double later =
+        std::max(1.0, std::min(run.start.energy / run.body.gain, run.half_turns - 1));
     double least = infinity;
     for (const RunPart& part : run.parts) {
         const PartForces first = node_forces(run, part, 0.0);
@@ -249,9 +250,9 @@ double broken_about(const SlopeRun& run, double friction) {
     return least;
 }
 
-void append(LawMeetings& all, const LawMeetings& later) {
-    if (!all.touched) all.touched = later.touched;
-    all.broken = later.broken;
+// The meetings in one stretch of a motion and in a later one, or at a later time of it.
+LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
+    return {met.touched ? met.touched : later.touched, met.broken ? met.broken : later.broken};
 }
 
 // The meetings in the first half turn of a run in which the law is broken; it is broken in all
@@ -275,52 +276,52 @@ LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double fricti
         next = here.broken ? broken - step : std::min(holds + step, most);
         if (!(holds < next && next < broken)) next = std::floor(0.5 * (holds + broken));
     }
-    append(met, later);
-    return met;
+    return joined(met, later);
+}
+
+Meeting start_of(const SlopeFlow& flow) {
+    return {0.0, flow.theta, flow.omega == 0 ? flow.body.side : std::copysign(1.0, flow.omega)};
 }
 
 // The meetings of a circle or a body in equilibrium: both need the same friction all the time.
-LawMeetings law_of_constant_forces(const SlopeFlow& flow, double friction, const Meeting& start) {
+LawMeetings law_of_constant_forces(const SlopeFlow& flow, double friction) {
     const auto [into, along] = flow.body.gravity;
     double needed = along / into;
-    if (flow.kind == MotionKind::uniform) {
+    if (!flow.rests) {
         const double k2 = flow.body.gyration2;
         needed *= k2 / (k2 + square(flow.body.long_axis));
     }
     if (std::isinf(friction)) return {};
     const Sign margin = sign(tracked(friction) - tracked(needed));
     if (margin == Sign::positive) return {};
+    const Meeting start = start_of(flow);
     return margin == Sign::negative ? LawMeetings{{}, start} : LawMeetings{start, {}};
 }
 
 }  // namespace
 
+bool LawWatch::examine(const Even&) {
+    met_ = law_of_constant_forces(flow_, friction_);
+    return met_.broken.has_value();
+}
+
+bool LawWatch::examine(Sum& sum) {
+    const double until = sum.run.heading < 0 ? infinity : until_ - double(sum.run.from.time);
+    extend(sum.run, until);
+    met_ = joined(met(), law_in_run(flow_, sum.run, friction_, until));
+    return met_.broken.has_value();
+}
+
 LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
-    const double heading = flow.omega == 0 ? flow.body.side : std::copysign(1.0, flow.omega);
-    const Meeting start{0.0, flow.theta, heading};
-    if (friction == 0) return {{}, start};
-    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) {
-        return law_of_constant_forces(flow, friction, start);
-    }
-    if (flow.pieces.empty()) grow(flow);
-    LawMeetings all{};
-    if (flow.climb) append(all, law_in_run(flow, *flow.climb, friction, infinity));
-    if (all.broken) return all;
-    LawWatch watch(flow, friction);
+    if (friction == 0) return {{}, start_of(flow)};
     const double last = until / flow.body.time;
-    for (std::size_t i = 0; i < flow.pieces.size() || grow(flow); ++i) {
-        if (i == flow.pieces.size()) break;
-        const SlopePiece& piece = flow.pieces[i];
-        if (double(piece.from.time) > last || watch.examine(piece) || std::isinf(piece.lasts)) {
-            break;
-        }
+    LawWatch watch(flow, friction, last);
+    for (std::size_t i = 0; i < flow.stretches.size() || grow(flow); ++i) {
+        auto& [begin, end, law] = flow.stretches[i];
+        if (begin > last) break;
+        if (std::visit([&](auto& stretch) { return watch.examine(stretch); }, law)) break;
     }
-    append(all, watch.met());
-    if (all.broken || !flow.run || double(flow.run->from.time) > last) return all;
-    const double since = last - double(flow.run->from.time);
-    extend(*flow.run, since);
-    append(all, law_in_run(flow, *flow.run, friction, since));
-    return all;
+    return watch.met();
 }
 
 EndOfRolling end_of_rolling(const LawMeetings& met) {

@@ -20,146 +20,152 @@ SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega
     return place;
 }
 
-const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
-
-bool climbs_for_ever(const SlopeFlow& flow) {
-    return flow.climb && flow.climb->half_turns == most_half_turns && !flow.pieces.empty();
+// The sum with which the motion begins; null if it begins with a series.
+const Sum* first_sum(const SlopeFlow& flow) {
+    return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// Whether the last piece has the first turning point. After it the next piece begins at the
-// reversed start; the motion up to there mirrors the motion before.
-bool has_turned(const SlopeFlow& flow) {
-    return flow.turnings.size() == 1 &&
-           double(flow.turnings.front() - flow.pieces.back().from.time) > 0;
-}
+// --------------------------------------------------------------------------------- places
 
-DoubleDouble time_of_reversed_start(const SlopeFlow& flow) {
-    return flow.turnings.front() * 2.0 - first_of_pieces(flow).time;
-}
-
-// Time at which the pieces end.
-double known_until(const SlopeFlow& flow) {
-    if (flow.pieces.empty()) return 0.0;
-    return has_turned(flow) ? double(time_of_reversed_start(flow)) : flow.pieces.back().end();
-}
-
-// Whether the body has moved so little that only a series about the start keeps the digits of the
-// way, where the motion begins with a sum.
-bool is_short(const SlopeFlow& flow, double time) {
-    constexpr double short_way = 0.1;  // [rad]
-    const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
-    return (flow.climb || flow.pieces.empty()) && time * speed < short_way;
-}
-
-// The place at which the series begin: the start, or the end of the sum of a climb.
-SlopePlace begin(SlopeFlow& flow) {
-    const SlopePlace& start = flow.start;
-    if (start.omega == 0) flow.turnings.push_back(start.time);
-    if (start.omega >= 0) return start;
-    const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start);
-    if (n < 1) return start;
-    flow.climb = slope_run(flow.body, flow.energy, start, flow.energy.start, n);
-    extend(*flow.climb, infinity);
-    return place_after(*flow.climb, n);
-}
-
-SlopePlace circle_at(const SlopeFlow& flow, double t) {
-    SlopePlace place = flow.start;
-    const double turned = t * (flow.start.omega + 0.5 * flow.acceleration * t);
-    place.time = {t, 0.0};
-    place.angle = place.angle + two_product(t, flow.start.omega) +
-                  two_product(0.5 * flow.acceleration * t, t);
-    place.omega += flow.acceleration * t;
-    place.path = {flow.body.long_axis * turned, 0.0};
-    return place;
-}
-
-SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble time) {
-    const double t = double(time);
-    const auto later = std::upper_bound(
-        pieces.begin(), pieces.end(), t,
-        [](double at, const SlopePiece& piece) { return at < double(piece.from.time); });
-    const SlopePiece& piece = later == pieces.begin() ? *later : later[-1];
-    return place_in(piece, double(time - piece.from.time));
-}
-
-// The motion between the first turning point and the mirrored start is the motion before, reversed.
-SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
-    if (flow.turnings.empty()) return place_in_pieces(flow.pieces, time);
-    const DoubleDouble turning = flow.turnings.front();
-    const DoubleDouble mirrored = turning * 2.0 - time;
-    const bool is_mirrored =
-        double(mirrored - turning) < 0 && double(mirrored - first_of_pieces(flow).time) > 0;
-    SlopePlace place = place_in_pieces(flow.pieces, is_mirrored ? mirrored : time);
-    if (is_mirrored) place.omega = -place.omega;
-    return place;
-}
-
-// The begin of the next piece: the end of the last one. After a turning point it is the reversed
-// start; series continued beside the rim of a well would miss that place.
-SlopePlace next_place(const SlopeFlow& flow) {
-    if (!has_turned(flow)) return place_after(flow.body, flow.energy, flow.pieces.back());
-    SlopePlace place = first_of_pieces(flow);
-    place.time = time_of_reversed_start(flow);
-    place.omega = -place.omega;
-    return place;
-}
-
-// The place in a rocking motion, which is symmetric about both of its turning points.
-SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
-    const DoubleDouble first = flow.turnings[0];
-    const DoubleDouble last = flow.turnings[1];
-    const DoubleDouble half = last - first;
-    const DoubleDouble since = -last + t;
-    if (double(since) <= 0) return place_about_turning(flow, {t, 0.0});
-    const double swings = std::floor(double(since) / double(half));
-    const DoubleDouble rest = since - half * swings;
-    const bool back = std::fmod(swings, 2.0) == 0;
-    SlopePlace place = place_about_turning(flow, back ? last - rest : first + rest);
-    if (back) place.omega = -place.omega;
-    return place;
-}
-
-// Places of a moving body; the readers of its sums are kept for later times.
+// Reads the places of a moving body, each by its stretch.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
 
-    // The place at a time that no sum has.
-    SlopePlace operator()(double time) {
-        if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
-        if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
-        if (begins(time)) return place_in(*begin_, time);
-        return place_about_turning(flow_, {time, 0.0});
-    }
-
-    // The reader of the sum that has a time; null if there is none.
-    RunReader* sum_at(double time) {
-        if (flow_.kind != MotionKind::rotation || begins(time)) return nullptr;
-        if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
-            return reader(climb_, *flow_.climb);
+    // Reads the place at the first of n times [s] and, in a sum, those at times after it that cost
+    // no more. Returns their number.
+    std::size_t operator()(const double* times, std::size_t n, SlopePlace* places) {
+        const auto time = [&](std::size_t i) { return times[i] / flow_.body.time; };
+        const SlopeStretch* const first = flow_.stretches.data();
+        const SlopeStretch& here = stretch_at(first, first + flow_.stretches.size(), time(0));
+        const Sum* const sum = std::get_if<Sum>(&here.law);
+        if (!sum || is_near(time(0))) {
+            places[0] = place(here, {time(0), 0.0});
+            return 1;
         }
-        return flow_.run && time > known_until(flow_) ? reader(run_, *flow_.run) : nullptr;
+        std::size_t count = 1;
+        while (count < std::min(n, RunReader::most) && !is_near(time(count))) ++count;
+        if (of_ != sum) run_.emplace(sum->run);
+        of_ = sum;
+        return (*run_)(times, count, places);
     }
 
   private:
-    // Whether a series about the start serves a time where the motion begins with a sum.
-    bool begins(double time) {
-        if (!is_short(flow_, time)) return false;
-        if (!begin_) begin_ = piece_from(flow_.body, flow_.start);
-        return time < begin_->lasts;
+    // The stretch of a time among those from `first` up to `end`.
+    static const SlopeStretch& stretch_at(const SlopeStretch* first, const SlopeStretch* end,
+                                          double time) {
+        const auto* const later = std::upper_bound(
+            first, end, time, [](double at, const SlopeStretch& each) { return at < each.begin; });
+        return later == first ? *first : later[-1];
     }
 
-    static RunReader* reader(std::optional<RunReader>& known, const SlopeRun& run) {
-        if (!known) known.emplace(run);
-        return &*known;
+    SlopePlace place(const SlopeStretch& here, DoubleDouble time) const {
+        return std::visit([&](const auto& law) { return place(law, here, time); }, here.law);
+    }
+
+    // The place at a time of the series before a stretch; side -1 if the body moves the other way.
+    SlopePlace place_before(const SlopeStretch& here, DoubleDouble time, double side) const {
+        const SlopeStretch* const first = flow_.stretches.data() + (first_sum(flow_) ? 1 : 0);
+        SlopePlace found = place(stretch_at(first, &here, double(time)), time);
+        found.omega *= side;
+        return found;
+    }
+
+    SlopePlace place(const Even&, const SlopeStretch&, DoubleDouble time) const {
+        const double t = double(time);
+        SlopePlace found = flow_.start;
+        const double turned = t * (found.omega + 0.5 * flow_.acceleration * t);
+        found.angle = found.angle + two_product(t, found.omega) +
+                      two_product(0.5 * flow_.acceleration * t, t);
+        found.omega += flow_.acceleration * t;
+        found.path = {flow_.body.long_axis * turned, 0.0};
+        return found;
+    }
+
+    SlopePlace place(const SlopePiece& piece, const SlopeStretch&, DoubleDouble time) const {
+        return place_in(piece, double(time - piece.from.time));
+    }
+
+    // Near the start; all other places of sums are read side by side.
+    SlopePlace place(const Sum&, const SlopeStretch&, DoubleDouble time) const {
+        return place_in(*near_, double(time));
+    }
+
+    SlopePlace place(const Mirror& mirror, const SlopeStretch& here, DoubleDouble time) const {
+        return place_before(here, mirror.turning * 2.0 - time, -1.0);
+    }
+
+    SlopePlace place(const Repeat& swing, const SlopeStretch& here, DoubleDouble time) const {
+        const DoubleDouble since = time - swing.last;
+        const double swings = std::floor(double(since) / double(swing.lasts()));
+        const DoubleDouble rest = since - swing.lasts() * swings;
+        return std::fmod(swings, 2.0) == 0 ? place_before(here, swing.last - rest, -1.0)
+                                           : place_before(here, swing.first + rest, 1.0);
+    }
+
+    // Whether a series about the start serves a time where the motion begins with a sum: next to
+    // the start only a series keeps the digits of the way.
+    bool is_near(double time) {
+        constexpr double short_way = 0.1;  // [rad]
+        const double speed =
+            std::abs(flow_.start.omega) + 0.5 * std::abs(flow_.acceleration) * time;
+        if (!(time * speed < short_way && first_sum(flow_))) return false;
+        if (!near_) near_ = piece_from(flow_.body, flow_.start);
+        return time < near_->lasts;
     }
 
     const SlopeFlow& flow_;
-    std::optional<SlopePiece> begin_;
-    std::optional<RunReader> climb_;
+    std::optional<SlopePiece> near_;
+    const Sum* of_ = nullptr;  // the sum that is read last
     std::optional<RunReader> run_;
 };
+
+// --------------------------------------------------------------------------------- growth
+
+// Append what follows from a turning point, which itself belongs to the series: after the first one
+// the motion is mirrored, after the second one it repeats itself. Series continued beside the rim
+// of a well would miss the place of the reversed start.
+void append_turning(SlopeFlow& flow, DoubleDouble turning) {
+    const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
+    if (flow.turning) {
+        flow.stretches.emplace_back(begin, infinity, Repeat{*flow.turning, turning});
+        return;
+    }
+    flow.turning = turning;
+    const Sum* const climb = first_sum(flow);
+    SlopePlace back = climb ? climb->end : flow.start;
+    back.time = turning * 2.0 - back.time;
+    back.omega = -back.omega;
+    flow.stretches.emplace_back(begin, double(back.time), Mirror{turning, back});
+}
+
+void append_series(SlopeFlow& flow, const SlopePlace& from, const Geometry& here) {
+    constexpr std::size_t usual_stretches = 16;
+    flow.stretches.reserve(usual_stretches);
+    const SlopePiece piece = piece_from(flow.body, from, here);
+    flow.stretches.emplace_back(double(from.time), piece.end(), piece);
+    const DoubleDouble turning = time_of_turning(piece);
+    if (turning.high < infinity) append_turning(flow, turning);
+}
+
+void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, double half_turns) {
+    Sum sum{slope_run(flow.body, flow.datum, from, here, half_turns), {}};
+    const bool climbs = from.omega < 0;
+    extend(sum.run, climbs ? infinity : 0.0);
+    if (climbs) sum.end = place_after(sum.run, half_turns);
+    const bool for_good = half_turns == most_half_turns;
+    const double end = for_good ? infinity : double(sum.end.time);
+    flow.stretches.emplace_back(double(from.time), end, std::move(sum));
+}
+
+// The place at the end of the last stretch.
+SlopePlace next_place(const SlopeFlow& flow) {
+    if (flow.stretches.empty()) return flow.start;
+    const auto& law = flow.stretches.back().law;
+    if (const auto* sum = std::get_if<Sum>(&law)) return sum->end;
+    if (const auto* mirror = std::get_if<Mirror>(&law)) return mirror->end;
+    return place_after(flow.body, flow.datum, std::get<SlopePiece>(law));
+}
 
 }  // namespace
 
@@ -171,47 +177,48 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     flow.x = x;
     flow.body = slope_body(body, slope);
     flow.start = first_place(flow.body, flat_view(body.axes(), theta), omega);
-    flow.energy = energy_of(flow.body, flow.start);
-    flow.acceleration = acceleration_at(flow.body, flow.energy.at, flow.start.omega);
-    flow.kind = MotionKind::rotation;
-    const bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
-    if (omega == 0 && balanced) flow.kind = MotionKind::rest;
-    if (flow.body.c2 == 0) {
+    flow.datum = datum_of(flow.body, flow.start);
+    flow.acceleration = acceleration_at(flow.body, flow.datum.at, flow.start.omega);
+    const bool is_circle = flow.body.c2 == 0;
+    bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
+    if (is_circle) {
         const double radius = flow.body.long_axis;
         flow.acceleration =
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
-        const bool moves = omega != 0 || flow.acceleration > 0;  // may underflow to 0
-        flow.kind = moves ? MotionKind::uniform : MotionKind::rest;
+        balanced = !(flow.acceleration > 0);  // it underflows to 0
     }
+    flow.rests = omega == 0 && balanced;
+    if (flow.rests) flow.acceleration = 0.0;
+    if (omega == 0) flow.turning = flow.start.time;
+    if (flow.rests || is_circle) flow.stretches.emplace_back(0.0, infinity, Even{});
     return flow;
 }
 
 bool grow(SlopeFlow& flow) {
-    if (flow.kind != MotionKind::rotation || flow.run || climbs_for_ever(flow)) return false;
-    const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
+    if (!flow.stretches.empty() && flow.stretches.back().end == infinity) return false;
+    const SlopePlace from = next_place(flow);
     const Geometry here = geometry(flow.body, from);
-    if (from.omega > 0) {
-        const Tracked w = energy_at(flow.body, flow.energy, from, here);
+    if (from.omega > 0 || flow.stretches.empty()) {
+        const Tracked w = energy_at(flow.body, flow.datum, from, here);
         const double at_least = w.value - 8 * epsilon * w.magnitude;
-        if (may_run(flow.body, at_least, here, from) > 0) {
-            flow.run = slope_run(flow.body, flow.energy, from, w.value, most_half_turns);
-            return false;
+        const double half_turns = may_run(flow.body, at_least, here, from);
+        if (half_turns > 0) {
+            append_sum(flow, from, {w.value, here}, half_turns);
+            return true;
         }
     }
-    constexpr std::size_t usual_pieces = 16;
-    if (flow.pieces.empty()) flow.pieces.reserve(usual_pieces);
-    flow.pieces.push_back(piece_from(flow.body, from, here));
-    const DoubleDouble turning = time_of_turning(flow.pieces.back());
-    if (turning.high < infinity) flow.turnings.push_back(turning);
-    if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;
+    append_series(flow, from, here);
     return true;
 }
 
 void prepare(SlopeFlow& flow, double t) {
     const double until = t / flow.body.time;
-    if (flow.pieces.empty()) grow(flow);
-    while (known_until(flow) <= until && grow(flow)) continue;
-    if (flow.run) extend(*flow.run, double(-flow.run->from.time + until));
+    const auto is_short = [&] {
+        return flow.stretches.empty() || flow.stretches.back().end <= until;
+    };
+    while (is_short() && grow(flow)) continue;
+    auto* const sum = std::get_if<Sum>(&flow.stretches.back().law);
+    if (sum) extend(sum->run, double(-sum->run.from.time + until));
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
@@ -228,28 +235,15 @@ FlowSample sample(const SlopeFlow& flow, double t) {
     return found;
 }
 
-// Times of one sum beside each other are read together.
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
-    constexpr std::size_t most = 16;
-    std::array<double, most> since;
-    std::array<SlopePlace, most> places;
+    std::array<SlopePlace, RunReader::most> places;
     SlopeReader read(flow);
     for (std::size_t i = 0; i < n;) {
-        if (flow.kind == MotionKind::rest || times[i] == 0) {
+        if (flow.rests || times[i] == 0) {
             samples[i++] = {flow.theta, flow.omega, flow.x};
             continue;
         }
-        since[0] = times[i] / flow.body.time;
-        std::size_t count = 1;
-        if (RunReader* const sum = read.sum_at(since[0])) {
-            for (; count < most && i + count < n; ++count) {
-                since[count] = times[i + count] / flow.body.time;
-                if (read.sum_at(since[count]) != sum) break;
-            }
-            (*sum)(since.data(), count, places.data());
-        } else {
-            places[0] = read(since[0]);
-        }
+        const std::size_t count = read(times + i, n - i, places.data());
         for (std::size_t k = 0; k < count; ++k) samples[i++] = sample_of(flow, places[k]);
     }
 }
@@ -257,26 +251,33 @@ void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSampl
 double longest_time(const SlopeFlow& prepared, double t) {
     constexpr double most = most_half_turns;
     const double unit = prepared.body.time;
-    if (prepared.kind == MotionKind::uniform) {
+    const auto& law = prepared.stretches.back().law;
+    if (std::holds_alternative<Even>(law)) {
         const double speed = std::abs(prepared.start.omega);
         const double turned = most * pi;
         const double last = std::sqrt(square(speed) + 2 * prepared.acceleration * turned);
         return unit * (2 * turned / (speed + last));
     }
-    if (prepared.kind == MotionKind::libration) {
-        return unit * most * double(prepared.turnings[1] - prepared.turnings[0]);
+    if (const Repeat* const swing = rocking(prepared)) {
+        return unit * most * double(swing->lasts());
     }
-    if (climbs_for_ever(prepared)) return unit * double(first_of_pieces(prepared).time);
-    if (!prepared.run || !prepared.run->is_complete()) return infinity;
+    const Sum* const sum = std::get_if<Sum>(&law);
+    if (!sum || sum->run.half_turns < most || !sum->run.is_complete()) return infinity;
+    if (sum->run.heading < 0) return unit * double(sum->end.time);
     constexpr double far = 1e-3;
-    if (about(*prepared.run, t / unit) < far * most) return infinity;
-    return unit * double(prepared.run->from.time + RunTimes(*prepared.run)(most));
+    if (about(sum->run, t / unit) < far * most) return infinity;
+    return unit * double(sum->run.from.time + RunTimes(sum->run)(most));
+}
+
+const Repeat* rocking(const SlopeFlow& prepared) {
+    return std::get_if<Repeat>(&prepared.stretches.back().law);
 }
 
 std::optional<double> period(const SlopeFlow& prepared) {
-    if (prepared.kind == MotionKind::rest) return infinity;
-    if (prepared.kind != MotionKind::libration) return std::nullopt;
-    return prepared.body.time * double((prepared.turnings[1] - prepared.turnings[0]) * 2.0);
+    if (prepared.rests) return infinity;
+    const Repeat* const swing = rocking(prepared);
+    if (!swing) return std::nullopt;
+    return prepared.body.time * double(swing->lasts() * 2.0);
 }
 
 }  // namespace rolling_ellipse

@@ -170,16 +170,16 @@ Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to) {
            (by_tips ? difference(to.cos, from.cos) : difference(from.sin, to.sin));
 }
 
-SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start) {
+Datum datum_of(const SlopeBody& body, const SlopePlace& start) {
     const Geometry at = geometry(body, start);
     return {0.5 * inertia_about_contact(body.gyration2, at) * square(start.omega), at};
 }
 
-Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+Tracked energy_at(const SlopeBody& body, const Datum& start, const SlopePlace& at,
                   const Geometry& here) {
     const double gained = body.gravity.along * double(at.path);
-    return tracked(energy.start) + tracked(gained) +
-           tracked(body.gravity.into) * fall(body, energy.at, here);
+    return tracked(start.energy) + tracked(gained) +
+           tracked(body.gravity.into) * fall(body, start.at, here);
 }
 
 SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from, const Geometry& at) {
@@ -231,11 +231,11 @@ double time_of_tip(const SlopePiece& piece) {
     return first;
 }
 
-SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
+SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece) {
     constexpr double accurate = 0.1;  // for omega from W: least share of W in its terms' sizes
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
-    const Tracked w = energy_at(body, energy, place, here);
+    const Tracked w = energy_at(body, start, place, here);
     if (w.value > accurate * w.magnitude) {
         place.omega = std::copysign(omega_at(body, w.value, here), place.omega);
     }

@@ -64,16 +64,18 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // heights of a nearly round body would be a rounding.
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 
-// The start of a motion, from which physics (58) has the energy W = D omega^2/2 at other places.
-struct SlopeEnergy {
-    double start;  // W at the start
+// A place from which physics (58) has the energy W = D omega^2/2 at other places.
+struct Datum {
+    double energy;  // W there
     Geometry at;
+    double path = 0.0;  // path to it, from the start of a motion or ahead from that of a run
 };
 
-SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
+// The start of a motion as a datum.
+Datum datum_of(const SlopeBody& body, const SlopePlace& start);
 
-// The energy W = D omega^2/2 at a place.
-Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+// The energy W at a place of a motion.
+Tracked energy_at(const SlopeBody& body, const Datum& start, const SlopePlace& at,
                   const Geometry& here);
 
 // The size of omega where the energy is W.
@@ -112,7 +114,7 @@ DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 
 // The place at the end of a piece, its omega from the energy where that is more accurate.
-SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece);
+SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece);
 
 // The angular acceleration at a place with this angular velocity.
 double acceleration_at(const SlopeBody& body, const Geometry& at, double omega);

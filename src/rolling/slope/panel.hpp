@@ -9,7 +9,8 @@ namespace {
 
 // Places on a part: their tangents from the centre of the panel and the derivatives of those by v;
 // 1/(1 + tan^2); sines and cosines of their angles from a flat position, times sqrt(1 + tan^2) and
-// perhaps -1 both; the squares of both without that factor; and the height of the centre.
+// perhaps -1 both; the squares of both without that factor; and the height of
+// the centre, with its fall from the datum of the run.
 struct PanelPlaces {
     Pack tan;
     Pack tan_rate;
@@ -20,6 +21,7 @@ struct PanelPlaces {
     Pack cos2;
     Pack h2;
     Pack h;
+    Pack fall;
 };
 
 // The places x in -1 ... 1 of a part.
@@ -38,16 +40,12 @@ struct PanelPlaces {
     at.cos2 = at.cos * at.cos * at.over;
     at.h2 = run.body.short_axis2 + run.body.c2 * at.sin2;
     at.h = sqrt(at.h2);
-    return at;
-}
-
-// As `fall`, from the datum of a run.
-[[gnu::always_inline]] inline Pack fallen(const SlopeRun& run, const PanelPlaces& at) {
     const Geometry& from = run.datum.at;
     const double sin2_from = square(from.sin);
     const Pack change =
         sin2_from + at.sin2 > 1.0 ? at.cos2 - square(from.cos) : sin2_from - at.sin2;
-    return run.body.c2 / (from.h + at.h) * change;
+    at.fall = run.body.c2 / (from.h + at.h) * change;
+    return at;
 }
 
 }  // namespace

@@ -80,18 +80,19 @@ double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
 // The place where a run starts, or the nearest tip if W, counted from that place, would be a small
 // difference there. W at the tip is counted from the start of the motion: where that is beside
 // another tip, nothing is lost.
-Datum datum_of(const SlopeRun& run, const SlopeEnergy& start) {
+Datum datum_of(const SlopeRun& run, const Datum& start) {
     constexpr double small = 0.0625;  // share of W that is left at the tip
     const SlopeBody& body = run.body;
-    const double left = body.gain + std::abs(over_tip(body, run.energy, run.at));
-    if (left > small * run.energy) return {run.energy, 0.0, run.at};
-    const bool is_ahead = run.heading * run.at.sin * run.at.cos >= 0;
+    const auto& [energy, at, path_to] = run.start;
+    const double left = body.gain + std::abs(over_tip(body, energy, at));
+    if (left > small * energy) return run.start;
+    const bool is_ahead = run.heading * at.sin * at.cos >= 0;
     const double way =
-        path_from_tip(body.long_axis, body.short_axis, std::abs(run.at.cos), std::abs(run.at.sin));
+        path_from_tip(body.long_axis, body.short_axis, std::abs(at.cos), std::abs(at.sin));
     const double path = is_ahead ? way : -way;
     const double since_start = double(run.from.path + run.heading * path);
-    return {over_tip(body, start.start, start.at) + body.gravity.along * since_start, path,
-            geometry(body, 1.0, 0.0)};
+    return {over_tip(body, start.energy, start.at) + body.gravity.along * since_start,
+            geometry(body, 1.0, 0.0), path};
 }
 
 // Append the next part. Its nodes are computed side by side.
@@ -115,7 +116,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
         const Pack rate = part.half * at.tan_rate * at.over;
         store(at.h * rate, &part.advance[i]);
         store(rate * sqrt(0.5 * (body.d0 + body.d1 * at.sin2) / at.h2), &part.mass[i]);
-        store(fallen(run, at), &falls[i]);
+        store(at.fall, &falls[i]);
     }
     part.path = run.path_ahead;
     const PartArray path = product(rule.integrals, part.advance);
@@ -147,16 +148,15 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, const S
     return from.omega > 0 ? most_half_turns : std::min(std::floor(levels), most_half_turns);
 }
 
-SlopeRun slope_run(const SlopeBody& body, const SlopeEnergy& start, const SlopePlace& from,
-                   double energy, double half_turns) {
+SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& from,
+                   const Datum& here, double half_turns) {
     SlopeRun run{};
     run.body = body;
     run.from = from;
     run.heading = std::copysign(1.0, from.omega);
     run.turns = run.heading * 2 * std::floor(run.heading * from.quarters / 2);
     run.half_turns = half_turns;
-    run.energy = energy;
-    run.at = geometry(body, from);
+    run.start = here;
     run.datum = datum_of(run, start);
     run.panels.reserve(usual_panels);
     run.parts.reserve(usual_parts);
@@ -304,9 +304,9 @@ SlopePlace place_after(const SlopeRun& run, double half_turns) {
     place.time = place.time + RunTimes(run)(half_turns);
     place.quarters += turned;
     place.path = place.path + two_product(turned, run.body.quarter_path);
-    place.omega =
-        omega_at(run.body, run.energy + run.heading * half_turns * run.body.gain, run.at) *
-        run.heading;
+    place.omega = omega_at(run.body, run.start.energy + run.heading * half_turns * run.body.gain,
+                           run.start.at) *
+                  run.heading;
     return place;
 }
 

@@ -44,21 +44,13 @@ struct RunPart {
     double lasts;       // time of the part in the first half turn
 };
 
-// A place from which W is counted.
-struct Datum {
-    double energy;  // W there, in the first half turn
-    double path;    // path ahead from the start of the run
-    Geometry at;
-};
-
 struct SlopeRun {
     SlopeBody body;
     SlopePlace from;
     double turns;                  // whole half turns before `from`, in quarters
     double heading;                // +1 downhill, -1 uphill
-    Geometry at;                   // geometry at `from`
-    double energy;                 // W at `from`
-    Datum datum;                   // `from`, or a tip at which W is nearly used up
+    Datum start;                   // `from` as a datum
+    Datum datum;                   // the same, or a tip at which W is nearly used up
     double half_turns;             // largest number of half turns of the run
     std::vector<RunPanel> panels;  // of one half turn from `from`, in the direction of the motion
     std::vector<RunPart> parts;    // parts of the panels, as many as `extend` was asked for
@@ -72,9 +64,9 @@ struct SlopeRun {
 };
 
 // The run from a place of a motion: uphill for as many half turns as `may_run` allows, downhill for
-// any number. `energy` is W at the place.
-SlopeRun slope_run(const SlopeBody& body, const SlopeEnergy& start, const SlopePlace& from,
-                   double energy, double half_turns);
+// any number. `start` is the start of the motion, `here` the place.
+SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& from,
+                   const Datum& here, double half_turns);
 
 // Adds parts until the first half turn is known up to a time since `from`, or is complete.
 void extend(SlopeRun& run, double since);
@@ -134,7 +126,11 @@ struct PartReading {
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);
-    void operator()(const double* times, std::size_t n, SlopePlace* places);
+
+    // Reads the place at the first of n times [s] and, side by side with it, at up to `most` in all
+    // that follow in the same part. Returns their number.
+    std::size_t operator()(const double* times, std::size_t n, SlopePlace* places);
+    static constexpr std::size_t most = 4;
 
   private:
     double since_begin(double time) const;

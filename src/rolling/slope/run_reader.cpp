@@ -62,9 +62,9 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
     const Pack x = places_in_part(of.time, value(of.about_place, time / of.lasts), time);
     const PanelPlaces at = places_at(run, part, x);
     const Pack ahead = run.heading * (part.path + value(of.path.integral, x));
-    const Pack energy = run.datum.energy + run.heading * of.half_turns * body.gain +
-                        (body.gravity.along * (ahead - run.heading * run.datum.path) +
-                         body.gravity.into * fallen(run, at));
+    const Pack energy =
+        run.datum.energy + run.heading * of.half_turns * body.gain +
+        (body.gravity.along * (ahead - run.heading * run.datum.path) + body.gravity.into * at.fall);
     store(at.tan, places.tan.data());
     store(ahead, places.ahead.data());
     store(at.h * sqrt(2 * energy / (body.d0 + body.d1 * at.sin2)), places.speed.data());
@@ -75,39 +75,39 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
 RunReader::RunReader(const SlopeRun& run)
     : run_(run), run_times_(run), part_times_(run.parts.size()) {}
 
-// Times of one part beside each other are read side by side, and a single one as often as there are
-// lanes.
-void RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
-    for (std::size_t i = 0; i < n;) {
-        double rest = since_begin(times[i]);
-        if (!is_well_inside(rest)) {
-            move_to(DoubleDouble{times[i], 0.0} - run_.from.time);
-            rest = since_begin(times[i]);
-        }
-        const std::size_t part = take_parts_off(rest);
-        std::array<double, lanes> rests;
-        rests.fill(rest);
-        std::size_t count = 1;
-        for (; count < lanes && i + count < n; ++count) {
-            rest = since_begin(times[i + count]);
-            if (!is_well_inside(rest) || take_parts_off(rest) != part) break;
-            rests[count] = rest;
-        }
-        read_part(part);
-        PlacesOnPart found;
-        read_places(run_, reading_, rests, found);
-        const RunPanel& panel = run_.panels[reading_.part->panel];
-        const double turned = run_.heading * 2 * half_turns_;
-        const DoubleDouble path = two_product(turned, run_.body.quarter_path);
-        for (std::size_t k = 0; k < count; ++k, ++i) {
-            const double angle = panel.angle + std::atan(found.tan[k]);
-            places[i] = {{times[i], 0.0},
-                         run_.turns + run_.heading * panel.quarters + turned,
-                         {run_.heading * angle, 0.0},
-                         run_.heading * found.speed[k],
-                         run_.from.path + found.ahead[k] + path};
-        }
+// A single time is read as often as there are lanes.
+std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
+    static_assert(lanes == most);
+    const auto time = [&](std::size_t i) { return times[i] / run_.body.time; };
+    double rest = since_begin(time(0));
+    if (!is_well_inside(rest)) {
+        move_to(DoubleDouble{time(0), 0.0} - run_.from.time);
+        rest = since_begin(time(0));
     }
+    const std::size_t part = take_parts_off(rest);
+    std::array<double, lanes> rests;
+    rests.fill(rest);
+    std::size_t count = 1;
+    for (; count < std::min(n, most); ++count) {
+        rest = since_begin(time(count));
+        if (!is_well_inside(rest) || take_parts_off(rest) != part) break;
+        rests[count] = rest;
+    }
+    read_part(part);
+    PlacesOnPart found;
+    read_places(run_, reading_, rests, found);
+    const RunPanel& panel = run_.panels[reading_.part->panel];
+    const double turned = run_.heading * 2 * half_turns_;
+    const DoubleDouble path = two_product(turned, run_.body.quarter_path);
+    for (std::size_t k = 0; k < count; ++k) {
+        const double angle = panel.angle + std::atan(found.tan[k]);
+        places[k] = {{time(k), 0.0},
+                     run_.turns + run_.heading * panel.quarters + turned,
+                     {run_.heading * angle, 0.0},
+                     run_.heading * found.speed[k],
+                     run_.from.path + found.ahead[k] + path};
+    }
+    return count;
 }
 
 // The time since the begin of the current half turn.
