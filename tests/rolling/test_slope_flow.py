@@ -137,6 +137,16 @@ def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
         assert abs(back.omega[0] - 8.0) < 64 * EPS * turned * 8.0 / ratio**3
 
 
+def test_a_body_is_back_at_its_start_at_twice_the_time_of_its_turn() -> None:
+    """There the mirror image of the way up ends: each double beside that time has its stretch."""
+    for omega in np.linspace(-6.0, -1.0, 41):
+        scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
+        back = 2 * rolled(scene, [0.0, 30.0]).when(omega=0.0)[0]
+        found = rolled(scene, back + np.arange(-2, 3) * np.spacing(back))
+        assert np.all(np.abs(found.theta) < 64 * EPS * abs(omega) * back)
+        assert np.all(np.abs(found.omega + omega) < 64 * EPS * abs(omega) * back)
+
+
 @pytest.mark.parametrize("omega", [-8.0, 8.0], ids=["up", "down"])
 @pytest.mark.parametrize("way", [1e-5, 0.1])
 def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
