@@ -84,6 +84,7 @@ KINDS = {
 PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
+    "a kind of stretch on a slope": r"\bRepeat\b",
     "a model": r"Model::multipliers|SteppedMultipliers|model == \"multipliers\"",
     "a field of Scene": r"\bScene \w+\{\}|scene_of\(\)",
 }
