@@ -302,8 +302,10 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     for (double turn = least_turn; turn <= most_turn; turn *= 16) {
         const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
         const double heading = side_of(turns_back ? pull : state.omega);
-        const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * pull * heading * turn;
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
+        const double mean_pull = 0.5 * (pull + rolling.acceleration(later.sin, later.cos, 0.0));
+        const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * mean_pull * heading * turn;
+        if (!(later_omega2 > 0)) return false;  // it rocks less far, within a rounding of the law
         const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2));
         const double side = side_of(next.friction);  // at the limit also that of F, if F is not 0
         const double now = law_margin(force, scene.friction, side);

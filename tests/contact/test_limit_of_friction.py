@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.geometry import reduced
+from oracles.geometry import reduced, support
 from oracles.numbers import EPS
 from oracles.rolling import forces, motion
 from rolling_ellipse import Mode, Scene, Status, simulate
@@ -75,6 +75,27 @@ def test_an_equilibrium_on_a_slope_with_just_enough_friction(
     # 1e-9 rad/s over the rate of rocking, some 1/s, or 1e-9 rad/s for 10 s without any restraint
     assert np.max(np.abs(moving.theta - theta)) <= 1e-8
     assert np.all(np.isin(moving.mode, [Mode.ROLLING, Mode.SLIDING, Mode.REST]))
+
+
+@pytest.mark.parametrize("ulps", [-2, 0, 2, 100])
+@pytest.mark.parametrize("swing", [6.6e-13, -6.6e-13])
+def test_a_body_that_hardly_rocks_is_held_by_the_friction_of_its_slope(
+    swing: float, ulps: int
+) -> None:
+    """In its swing |F|/N is tan(slope) to 2e-14, and would be far more a micro-radian away.
+
+    A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
+    """
+    a, b, slope = 0.76, 0.0016, 0.2448704442562187
+    heavy = {"mass": 1.0, "gravity": 0.0024, "inertia": 127.0}
+    lies = 0.0
+    for _ in range(9):
+        h = support(lies, a, b).h
+        lies = math.asin(2 * math.tan(slope) * h**2 / (a * a - b * b)) / 2
+    grip = math.tan(slope) * (1 + ulps * EPS / 2)
+    scene = Scene(a, b, slope=slope, friction=grip, theta=lies + swing, **heavy)
+    held = simulate(scene, np.linspace(0.0, 80.0, 9), model="contact")
+    assert set(held.mode) == {Mode.ROLLING} and not held.events
 
 
 @pytest.mark.parametrize(
