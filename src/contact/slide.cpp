@@ -319,10 +319,11 @@ class SlideIntegration {
     bool grazes_ = false;
 };
 
-// The reading of the piece's clock at a time since the centre of the piece.
+// The reading of the piece's clock at a time since the centre of the piece: at most that of its
+// end, as the slip has its sign only up to there, and the time of an event may be rounded up.
 double clock_at(const SlidePiece& piece, double time) {
     time /= piece.unit;
-    if (piece.clock == SlideClock::time) return time;
+    if (piece.clock == SlideClock::time) return std::min(time, piece.reach);
     return bisect(0.0, piece.reach,
                   [&](double clock) { return value(piece.motion.time, clock) >= time; })
         .high;

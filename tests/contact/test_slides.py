@@ -188,6 +188,23 @@ def test_a_light_body_rocks_against_a_jam_in_time() -> None:
     assert abs(motion.theta[0] - 1.530610922571990750118888) <= 1.5 * late + EPSILON
 
 
+def test_a_slide_that_is_due_to_stick_has_no_slip_left() -> None:
+    """The time of STICK is rounded up, here by 1e-13 s, in which the slip would change its sign;
+    with the other sign this light body jams."""
+    light: dict[str, Any] = {
+        "mass": 424.789,
+        "gravity": 2.580260509729424e-06,
+        "inertia": 1.4559909370998418,
+    }
+    ground: dict[str, Any] = {"slope": 0.9607224662144154, "friction": 0.9467990822739261}
+    scene = Scene(1.0, 0.2077657187476592, theta=math.pi / 2, x=10.863, **light, **ground)
+    cut = simulate(scene, 5000.0, max_events=1, raise_on_failure=False)
+    whole = simulate(scene, 2000.0, max_events=2, raise_on_failure=False)
+    assert [event.kind for event in whole.events] == [EventKind.SLIP, EventKind.STICK]
+    assert cut.t_end == whole.events[1].t
+    assert cut.scene_at(cut.t_end).initial_state.mode is Mode.ROLLING
+
+
 def test_few_pieces_make_a_slide() -> None:
     """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
