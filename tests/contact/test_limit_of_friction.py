@@ -87,13 +87,14 @@ def test_a_body_that_hardly_rocks_is_held_by_the_friction_of_its_slope(
     A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
     """
     a, b, slope = 0.76, 0.0016, 0.2448704442562187
-    heavy = {"mass": 1.0, "gravity": 0.0024, "inertia": 127.0}
     lies = 0.0
     for _ in range(9):
         h = support(lies, a, b).h
         lies = math.asin(2 * math.tan(slope) * h**2 / (a * a - b * b)) / 2
     grip = math.tan(slope) * (1 + ulps * EPS / 2)
-    scene = Scene(a, b, slope=slope, friction=grip, theta=lies + swing, **heavy)
+    scene = Scene(
+        a, b, gravity=0.0024, inertia=127.0, slope=slope, friction=grip, theta=lies + swing
+    )
     held = simulate(scene, np.linspace(0.0, 80.0, 9), model="contact")
     assert set(held.mode) == {Mode.ROLLING} and not held.events
 
