@@ -142,6 +142,8 @@ REFUSALS: list[Row] = [
         ("['z'][1]", {"z": [2.0, math.nan]}), ("['z'][1]", {"z": [2, 0.5]}),
         ("['inertia']", {"inertia": math.nan}), ("['impulse']", {"impulse": 1}),
         ("[1]", {"a": [2.0, 1e5]}), ("[1]", {"impulse": rl.Impulse(jx=0, jz=-1, dx=[0, 4])}))),
+    ("scenes['theta']", many({"a": 1.0, "b": 1.0, "omega": [], "theta": math.inf})),
+    ("scenes['inertia']", many({"a": [], "b": 1.0, "inertia": -1.0})),
     ("scenes[0]", many([1])), ("scenes[3]", many([SCENE] * 3 + ["rocking"])),
     ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),
     *wrong(rl.simulate_many, {"scenes": [], "t": 1.0},
