@@ -172,11 +172,9 @@ def units(v: Values, t: Any) -> tuple[Any, Any]:
 def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
     """Effect of an ulp of theta on what it determines on the ground."""
     theta, omega = state[:2]
-    sine, cosine = np.sin(theta), np.cos(theta)
-    c2, h = (v["a"] - v["b"]) * (v["a"] + v["b"]), np.hypot(v["a"] * sine, v["b"] * cosine)
-    slope = c2 * sine * cosine / h
-    bend = (c2 * (cosine**2 - sine**2) - slope**2) / h
-    none, rolls = np.zeros_like(h), mode == rl.Mode.ROLLING
+    slope = rl.geometry.support_slope(theta, a=v["a"], b=v["b"])
+    bend = rl.geometry.support_curvature(theta, a=v["a"], b=v["b"])
+    none, rolls = np.zeros_like(omega), mode == rl.Mode.ROLLING
     effects = np.array([none, none, none, slope, rolls * slope * omega, bend * omega])
     return np.abs(effects) * np.spacing(np.abs(theta)) * (mode != rl.Mode.FLIGHT)
 
