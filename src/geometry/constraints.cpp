@@ -69,7 +69,7 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const Geometry at = geometry(axes, theta);
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
-    // The radius for psi as rounded: then f3 is zero to rounding, and f2 is flat in psi.
+    // The radius for psi as rounded: then f3 is zero to within rounding, and f2 is flat in psi.
     const PolarRadius r = polar_radius(axes, psi);
     CoordinateState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, r.value;

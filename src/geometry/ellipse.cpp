@@ -165,7 +165,7 @@ double contact_angle_second(const Axes& axes, const Geometry& at) {
     const double a2 = axes.a * axes.a;
     const double b2 = axes.b * axes.b;
     const double rh = contact_distance(axes, at) * at.h;
-    const double dw = 2 * (axes.a - axes.b) * (axes.a + axes.b) * (a2 + b2) * at.sin * at.cos;
+    const double dw = 2 * axes.c2() * (a2 + b2) * at.sin * at.cos;
     return -contact_angle_rate(axes, at) * dw / (rh * rh);
 }
 

@@ -13,6 +13,8 @@ namespace rolling_ellipse {
 struct Axes {
     double a;
     double b;
+
+    double c2() const { return (a - b) * (a + b); }  // a^2 - b^2 to full accuracy
 };
 
 // The local geometry at an angle.
@@ -32,13 +34,12 @@ inline double inertia_about_contact(double gyration2, const Geometry& at) {
 
 inline Geometry geometry(const Axes& axes, double s, double c) {
     const auto [a, b] = axes;
-    const double c2 = (a - b) * (a + b);
     Geometry at{s, c, std::sqrt(a * a * s * s + b * b * c * c), 0.0, 0.0, 0.0};  // physics (1)
-    at.dh = c2 * s * c / at.h;                                                   // physics (2)
+    at.dh = axes.c2() * s * c / at.h;                                            // physics (2)
     const double h3 = at.h * at.h * at.h;
     at.rho = a * a * b * b / h3;  // physics (4)
     // rho - h, factorised so that it keeps its digits for nearly circular bodies: physics (3).
-    at.ddh = c2 * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
+    at.ddh = axes.c2() * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
     return at;
 }
 
@@ -48,10 +49,9 @@ inline Geometry geometry(const Axes& axes, double theta) {
 
 // h h'' - h'^2 by factors, their order such that a mirror image has the same bits.
 inline double bend_of_height(const Axes& axes, const Geometry& at) {
-    const auto [a, b] = axes;
-    const double across = b * at.cos;
-    const double along = a * at.sin;
-    return (a - b) * (a + b) * ((across - along) * (across + along)) / square(at.h);
+    const double across = axes.b * at.cos;
+    const double along = axes.a * at.sin;
+    return axes.c2() * ((across - along) * (across + along)) / square(at.h);
 }
 
 // A position by its angle phi from the flat one: phi is theta for a >= b, otherwise theta - pi/2.
@@ -127,7 +127,7 @@ double path_from_tip(double long_axis, double short_axis, double s, double c);
 // Half a turn, pi in two parts: the ellipse is the same after it.
 inline constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};
 
-// An angle without its full turns, if it exceeds half a turn in size; unchanged otherwise.
+// An angle without its full turns, if it is larger than half a turn; unchanged otherwise.
 inline double within_a_turn(double angle) {
     return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
 }
@@ -145,6 +145,13 @@ inline QuarterView quarter_view(const DoubleDouble& angle) {
     const double quarters = std::nearbyint(angle.high / half_pi);
     if (quarters == 0) return {quarters, angle};  // the usual case
     return {quarters, angle - half_pi_exact * quarters};
+}
+
+// The same for an angle of at most a quarter turn, by its sine and cosine.
+inline QuarterView quarter_view(double sin, double cos) {
+    const double s = std::abs(sin);
+    if (s <= cos) return {0.0, {std::atan2(sin, cos), 0.0}};
+    return {std::copysign(1.0, sin), {-std::copysign(std::atan2(cos, s), sin), 0.0}};
 }
 
 // An angle small enough that its sums with others resolve a part of a turn: unchanged up to 1e15,
