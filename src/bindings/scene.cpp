@@ -12,16 +12,12 @@ namespace {
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
                          double gyration2, double friction, double restitution) {
-        Scene scene = scene_of();
-        scene.mass = scene.gravity = 1.0;  // any numbers: velocities do not depend on them
-        scene.a = a;
-        scene.b = b;
-        scene.inertia = gyration2;
-        scene.friction = friction;
+        constexpr double gravity = 1.0;  // any number: velocities do not depend on it
+        Scene scene = level_scene({a, b, gyration2, gravity}, friction);
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
-        scene.slope = scene.x = 0.0;
+        scene.x = 0.0;
         scene.z = a + b;  // above the ground at any angle: any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
@@ -72,14 +68,14 @@ struct SceneMaker {
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
     const Continuation next = first_continuation(scene, start.state);
-    py::dict found = numbers_of(start);
-    found["touching"] = start.touching;
-    found["slip_removed"] = start.slip_removed;
-    found["mode_by_velocity"] = start.state.mode;
-    found["mode"] = next.mode;
-    found["paradox"] = next.paradox;
-    found["may_fly"] = next.may_fly;
-    return found;
+    py::dict fields = numbers_of(start);
+    fields["touching"] = start.touching;
+    fields["slip_removed"] = start.slip_removed;
+    fields["mode_by_velocity"] = start.state.mode;
+    fields["mode"] = next.mode;
+    fields["paradox"] = next.paradox;
+    fields["may_fly"] = next.may_fly;
+    return fields;
 }
 
 // Reads a setting; a choice is given by its name.

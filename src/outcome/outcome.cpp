@@ -16,15 +16,7 @@ namespace {
 // c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where
 // N <= 0 and c > 0, a body without slip finds a side on which B > 0. So `jams` is not returned.
 // Nor does a body that rolls on level ground leave it before it slips: the same c is positive where
-// N vanishes, so that with infinite friction, too, it goes on as a slide.
-
-// The sign of the acceleration into the ground of a free body, c = g + h'' omega^2, physics (43),
-// with h'' = rho - h.
-Sign pressed_by_gravity(const Body& body, const Geometry& at, double omega) {
-    const double omega2 = square(omega);
-    return sign(
-        {free_acceleration(at, body.gravity, omega), body.gravity + (at.rho + at.h) * omega2});
-}
+// N vanishes, so that with infinite friction, too, it starts to slide.
 
 // The outcome for a body that rolls up to the top: it passes the tip or turns back, if rounding can
 // tell.
@@ -47,9 +39,8 @@ Bernstein<N> from_place(const Polynomial<N>& law, double x) {
 // The outcome for a body on a slope whose rolling ends at a time [s]: it slips or flies.
 Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     prepare(flow, time);
-    const FlowSample last = sample(flow, time);
-    const State state = without_slip(geometry(scene.axes(), last.theta), last.theta, last.omega,
-                                     last.x, Mode::rolling);
+    const auto [theta, omega, x] = sample(flow, time);
+    const State state = without_slip(scene.axes(), theta, omega, x, Mode::rolling);
     const Mode next = first_continuation(scene, state, false).mode;
     return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }
@@ -107,13 +98,15 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const bool a_is_long = body.a >= body.b;
     const Geometry here =
         geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);
-    const Sign pressed = pressed_by_gravity(body, here, from.omega);
+    // The acceleration into the ground of a free body, physics (43), with h'' = rho - h.
+    const Sign pressed = sign({free_acceleration(here, body.gravity, from.omega),
+                               body.gravity + (here.rho + here.h) * square(from.omega)});
     if (pressed == Sign::negative) return Outcome::loses_contact;
     if (pressed == Sign::undecided) return Outcome::edge;
     if (friction == 0) return Outcome::slips;
 
     // A body that rises passes only the heights above its start. A body that falls, or starts at
-    // the tip (to rounding), passes all heights before it is at the top.
+    // the tip (within rounding), passes all heights before it is at the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
     const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;
@@ -134,16 +127,10 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
     const State start = initial_state(scene).state;
     const Continuation next = first_continuation(scene, start);
-    switch (next.mode) {
-        case Mode::rest:
-            return Outcome::rests;
-        case Mode::flight:
-            return Outcome::loses_contact;
-        case Mode::sliding:
-            return next.paradox == Painleve::determined ? Outcome::slips : Outcome::jams;
-        case Mode::rolling:
-            break;
-    }
+    if (next.mode == Mode::rest) return Outcome::rests;
+    if (next.mode == Mode::flight) return Outcome::loses_contact;
+    if (next.paradox != Painleve::determined) return Outcome::jams;
+    if (next.mode == Mode::sliding) return Outcome::slips;
     if (scene.slope != 0) return outcome_on_slope(scene, start, checkpoint);
     return classify(scene.body(), scene.friction, start.theta, start.omega);
 }
@@ -177,18 +164,18 @@ double required_friction(const Scene& scene) {
     Scene rough = scene;
     rough.friction = infinity;
     const State start = initial_state(rough).state;
-    const Certificate found =
+    const Certificate certificate =
         scene.slope != 0 ? certify_on_slope(rough, start, {Validity::no_proof})
                          : certify_rolling(rolling_start(scene.body(), start.theta, start.omega),
                                            scene.mass, rough.friction);
-    return std::max(in_the_blow, *found.largest_friction_needed);
+    return std::max(in_the_blow, *certificate.largest_friction_needed);
 }
 
 // The contact leads the centre by h' at a height h, and |h'|/h is at most |a^2 - b^2|/(2 a b).
 double friction_to_rest(const Scene& scene) {
-    const auto [a, b] = scene.axes();
     const double needed = std::tan(std::abs(scene.slope));
-    return needed <= std::abs((a - b) * (a + b)) / (2 * a * b) ? needed : infinity;
+    const double steepest = std::abs(scene.axes().c2()) / (2 * scene.a * scene.b);
+    return needed <= steepest ? needed : infinity;
 }
 
 }  // namespace rolling_ellipse

@@ -1,5 +1,5 @@
-// The first thing that happens to a body, after a blow or out of rolling; the inverse: the blow, or
-// the friction, for an outcome; and the thresholds between the outcomes on level ground.
+// The first event after a blow or during rolling; its inverse, the blow or friction that yields a
+// given outcome; and the thresholds between the outcomes on level ground.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ enum class Outcome : std::int8_t {
 // velocity, from signs of polynomials alone.
 Outcome classify(const Body& body, double friction, double theta, double omega);
 
-// The first thing that happens to a body after the blow of its scene. On level ground it is known
+// The first event after the blow of a scene. On level ground it is known
 // without integration. On a slope the rolling motion is followed until it turns back, passes the
 // tip (a circle: half a turn) or ends; `edge` if it does none of these for long.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);

@@ -62,7 +62,7 @@ struct Search {
 
     // The times of zeros, and of changes of sign between readings in the wanted direction.
     std::vector<double> passages_in(const std::vector<Reading>& readings, double value) const {
-        std::vector<double> found;
+        std::vector<double> passed;
         struct Crossing {
             RootBracket bracket;
             int side;
@@ -76,10 +76,10 @@ struct Search {
             const bool crosses = before == -now;
             if (i > next) {  // zeros since the last sign; readings[next] is the first
                 const int sense = before == 0 || crosses ? now : 0;
-                if (is_wanted(sense)) found.push_back(readings[next].t);
+                if (is_wanted(sense)) passed.push_back(readings[next].t);
             } else if (crosses && is_wanted(now)) {
                 if (readings[i - 1].is_last) {
-                    found.push_back(readings[i].t);
+                    passed.push_back(readings[i].t);
                 } else {
                     // Excess times -now, which falls: a time with excess 0 is the upper end.
                     const RootBracket bracket(readings[i - 1].t, readings[i].t,
@@ -91,7 +91,7 @@ struct Search {
             next = i + 1;
             before = now;
         }
-        if (next < readings.size() && is_wanted(-before)) found.push_back(readings[next].t);
+        if (next < readings.size() && is_wanted(-before)) passed.push_back(readings[next].t);
         for (;;) {  // all brackets side by side, since many samples at once are cheaper
             std::vector<double> times;
             std::vector<Crossing*> open;
@@ -107,8 +107,8 @@ struct Search {
                 open[k]->bracket.take(times[k], open[k]->side * (values[k] - value));
             }
         }
-        for (const Crossing& crossing : crossings) found.push_back(crossing.bracket.ends().high);
-        return found;
+        for (const Crossing& crossing : crossings) passed.push_back(crossing.bracket.ends().high);
+        return passed;
     }
 
     // Adds the passages between the first and the last periods: copies of those in one period,
@@ -148,15 +148,15 @@ struct Search {
 Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint) {
     if (motion.segments.empty()) return {std::vector<std::vector<double>>(values.size()), {}};
-    Passages found;
+    Passages result;
     const Search search{of, direction, stretches(motion, last, of, checkpoint)};
-    for (const double value : values) found.times.push_back(search.times_of(value));
+    for (const double value : values) result.times.push_back(search.times_of(value));
     for (const Stretch& stretch : search.stretches) {
-        const auto& known = found.unproved;
+        const auto& known = result.unproved;
         if (stretch.proved || std::count(known.begin(), known.end(), stretch.where)) continue;
-        found.unproved.push_back(stretch.where);
+        result.unproved.push_back(stretch.where);
     }
-    return found;
+    return result;
 }
 
 }  // namespace rolling_ellipse

@@ -17,18 +17,11 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     };
     const Axes axes{motion.scene.a * motion.units.length, motion.scene.b * motion.units.length};
     const auto of_state = [&](double theta, double omega, double x, double z) {
-        switch (quantity) {
-            case Quantity::theta:
-                return theta;
-            case Quantity::x:
-                return x;
-            case Quantity::z:
-                return z;
-            case Quantity::omega:
-                return omega;
-            default:
-                return x + geometry(axes, theta).dh;
-        }
+        if (quantity == Quantity::theta) return theta;
+        if (quantity == Quantity::x) return x;
+        if (quantity == Quantity::z) return z;
+        if (quantity == Quantity::omega) return omega;
+        return x + geometry(axes, theta).dh;
     };
     if (std::holds_alternative<SteppedMultipliers>(motion.segments.front().law)) {
         using namespace coordinate;
@@ -43,7 +36,7 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// Facts of a law from which its turning points are searched. Times are since the begin of the
+// Facts of a law from which its turning points are searched. Times are since the start of the
 // segment, in units of the motion.
 struct Course {
     const char* where;
@@ -63,30 +56,30 @@ struct CourseOf {
     Course operator()(const RollingFlow& flow) const {
         const bool turns = flow.kind == MotionKind::rotation;
         const bool moves = turns || flow.kind == MotionKind::libration;
-        Course found{flow.kind == MotionKind::rest ? resting : rolling};
-        found.monotone = quantity && (!moves || (turns && is_along()));
+        Course course{flow.kind == MotionKind::rest ? resting : rolling};
+        course.monotone = quantity && (!moves || (turns && is_along()));
         const DoubleDouble half = flow.phase.half_turn;
-        if (moves && !std::isinf(half.high)) found.period = turns ? half : half * 2.0;
-        found.swung = turns ? 0.0 : 4.0;
-        return found;
+        if (moves && !std::isinf(half.high)) course.period = turns ? half : half * 2.0;
+        course.swung = turns ? 0.0 : 4.0;
+        return course;
     }
 
     Course operator()(const SlopeFlow& flow) const {
         const double unit = flow.body.time;  // unit of time; a power of two: products are exact
-        Course found{flow.rests ? resting : rolling};
+        Course course{flow.rests ? resting : rolling};
         if (const Repeat* const swing = rocking(flow)) {
-            found.period = swing->lasts() * 2.0 * unit;
-            found.swung = 4.0;
-            return found;
+            course.period = swing->lasts() * 2.0 * unit;
+            course.swung = 4.0;
+            return course;
         }
-        if (flow.turning) found.knots.push_back(*flow.turning);
+        if (flow.turning) course.knots.push_back(*flow.turning);
         if (flow.acceleration != 0) {
-            found.knots.push_back({-flow.start.omega / flow.acceleration, 0.0});
+            course.knots.push_back({-flow.start.omega / flow.acceleration, 0.0});
         }
-        for (DoubleDouble& knot : found.knots) knot = knot * unit;
-        found.monotone =
+        for (DoubleDouble& knot : course.knots) knot = knot * unit;
+        course.monotone =
             quantity && (std::holds_alternative<Even>(flow.stretches.front().law) || is_along());
-        return found;
+        return course;
     }
 
     Course operator()(const SteppedRolling& motion) const { return of_steps(motion.steps); }
@@ -123,25 +116,25 @@ struct Survey {
     Observable theta;
     double quarters = 0.0;  // quarter turns searched so far
 
-    // The stretch of a segment, given its begin [units of the motion] and its first and last time
+    // The stretch of a segment, given its start [units of the motion] and its first and last time
     // [s].
     Stretch stretch(const Course& course, double begin, double first, double last) {
-        Stretch found{course.where, {first, last}, {}};
+        Stretch stretch{course.where, {first, last}, {}};
         for (const DoubleDouble& knot : course.knots) {
             const double t = double(knot + begin) * unit;
-            if (first < t && t < last) found.times.push_back(t);
+            if (first < t && t < last) stretch.times.push_back(t);
         }
-        sort_once(found.times);
-        if (!course.monotone) add_turning_points(course, found);
-        found.values = of.measure(found.times);
-        return found;
+        sort_once(stretch.times);
+        if (!course.monotone) add_turning_points(course, stretch);
+        stretch.values = of.measure(stretch.times);
+        return stretch;
     }
 
-    void add_turning_points(const Course& course, Stretch& found) {
+    void add_turning_points(const Course& course, Stretch& stretch) {
         constexpr double parts_a_period = 8;
-        std::vector<double>& times = found.times;
+        std::vector<double>& times = stretch.times;
         if (!course.period) {
-            found.proved = divide(times, 1.0);
+            stretch.proved = divide(times, 1.0);
             return;
         }
         const double first = times.front();
@@ -150,14 +143,14 @@ struct Survey {
         const double periods = (last - first) / period;
         if (!of.quantity || periods < 5) {
             count(course.swung * periods);
-            found.proved = divide(times, std::ceil(parts_a_period * periods));
+            stretch.proved = divide(times, std::ceil(parts_a_period * periods));
             return;
         }
-        found.period = *course.period * unit;
+        stretch.period = *course.period * unit;
         times = {first, first + 2 * period};
         std::vector<double> ending{last - 2 * period, last};
         const bool begin_proved = divide(times, 2 * parts_a_period);
-        found.proved = divide(ending, 2 * parts_a_period) && begin_proved;
+        stretch.proved = divide(ending, 2 * parts_a_period) && begin_proved;
         times.insert(times.end(), ending.begin(), ending.end());
     }
 
@@ -203,13 +196,13 @@ Observable observable(const Motion& motion, Quantity quantity, const Checkpoint&
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;
-        std::vector<double> found(times.size());
+        std::vector<double> values(times.size());
         for (std::size_t i = 0; i < times.size(); i += together) {
             checkpoint();
             measure(motion, *sample, quantity, times.data() + i,
-                    std::min(together, times.size() - i), found.data() + i);
+                    std::min(together, times.size() - i), values.data() + i);
         }
-        return found;
+        return values;
     };
     const bool is_path = quantity == Quantity::x || quantity == Quantity::contact_x;
     const double long_axis = std::max(motion.scene.a, motion.scene.b) * motion.units.length;
@@ -220,7 +213,7 @@ std::vector<Stretch> stretches(const Motion& motion, double last, const Observab
                                const Checkpoint& checkpoint) {
     const CourseOf course{of.quantity};
     Survey survey{motion.units.time, of, observable(motion, Quantity::theta, checkpoint)};
-    std::vector<Stretch> found;
+    std::vector<Stretch> all;
     for (auto segment = motion.segments.begin(); segment != motion.segments.end(); ++segment) {
         const double first = segment->begin * motion.units.time;
         if (first > last) break;
@@ -230,10 +223,9 @@ std::vector<Stretch> stretches(const Motion& motion, double last, const Observab
         const double end = until > last ? last : std::nextafter(until, 0.0);
         if (end < first) continue;
         const auto of_law = [&](const auto& law) { return course(itself(law)); };
-        found.push_back(
-            survey.stretch(std::visit(of_law, segment->law), segment->begin, first, end));
+        all.push_back(survey.stretch(std::visit(of_law, segment->law), segment->begin, first, end));
     }
-    return found;
+    return all;
 }
 
 }  // namespace rolling_ellipse

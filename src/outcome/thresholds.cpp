@@ -31,18 +31,6 @@ Onset painleve(const Shape& shape) {
     return onset;
 }
 
-Scene level_scene(const Body& body, double friction) {
-    Scene scene = scene_of();
-    scene.a = body.a;
-    scene.b = body.b;
-    scene.mass = 1.0;
-    scene.gravity = body.gravity;
-    scene.inertia = body.gyration2;
-    scene.slope = 0.0;
-    scene.friction = friction;
-    return scene;
-}
-
 // Does a slide under infinite friction get to the tip? It has N = 0: its centre is in free fall,
 // and h'^2 omega^2 + 2 g h is constant, physics (52). Below 2 g L it turns back under the tip with
 // c > 0: from the flat to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls, too,
@@ -88,7 +76,7 @@ struct Climb {
         // tip.
         constexpr int most_segments = 64;
         checkpoint();
-        State state = on_ground(flat, omega, 0.0, Mode::rolling);
+        State state = without_slip(scene.axes(), flat, omega, 0.0, Mode::rolling);
         Continuation next = continuation(scene, state);
         for (int i = 0; state.theta < tip; ++i) {
             if (next.mode == Mode::flight || i == most_segments) return Fate::leaves;
@@ -102,18 +90,14 @@ struct Climb {
         return next.mode == Mode::flight ? Fate::leaves : Fate::stays;
     }
 
-    State on_ground(double theta, double omega, double x, Mode mode) const {
-        return without_slip(geometry(scene.axes(), theta), theta, omega, x, mode);
-    }
-
     // The end of a segment of rolling; empty if the body gets over the tip or turns back.
     std::optional<EndOfSegment> end_of_rolling(const State& from) const {
         const RollingStart start = rolling_start(scene.body(), from.theta, from.omega);
         const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene.friction);
         if (end.validity != Validity::invalid) return {};
         const RollingFlow flow = rolling_flow(start);
-        const FlowSample last = sample(flow, time_of_end(flow, end));
-        const State state = on_ground(last.theta, last.omega, last.x, Mode::rolling);
+        const auto [theta, omega, x] = sample(flow, time_of_end(flow, end));
+        const State state = without_slip(scene.axes(), theta, omega, x, Mode::rolling);
         return EndOfSegment{state, continuation(scene, state, false)};
     }
 
@@ -131,7 +115,7 @@ struct Climb {
             return EndOfSegment{state, {Mode::sliding, side, Painleve::no_motion}};
         }
         if (stop != SlideStop::slip_vanishes) return {};
-        state = on_ground(state.theta, state.omega, state.x, Mode::sliding);
+        state = without_slip(scene.axes(), state.theta, state.omega, state.x, Mode::sliding);
         return EndOfSegment{state, continuation(scene, state)};
     }
 };
@@ -150,12 +134,12 @@ LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
     const int most_growths = may_jam ? int(std::log(high / low) / std::log(growth)) + 1 : 200;
     constexpr double known = 1e-5;   // share of a speed; closer to a change last digits decide
     constexpr int most_changes = 8;  // in one step
-    LiftOff found;
+    LiftOff lift_off;
     Fate before = Fate::stays;
     const auto change = [&](double at, Fate next) {
-        if (before == Fate::jams) found.jam_speeds.back().upper = at;
-        if (next == Fate::jams) found.jam_speeds.push_back({at, infinity});
-        if (next == Fate::leaves) found.speed = std::min(found.speed, at);
+        if (before == Fate::jams) lift_off.jam_speeds.back().upper = at;
+        if (next == Fate::jams) lift_off.jam_speeds.push_back({at, infinity});
+        if (next == Fate::leaves) lift_off.speed = std::min(lift_off.speed, at);
         before = next;
     };
     double speed = low;
@@ -173,7 +157,7 @@ LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
         }
         if (before == Fate::leaves && !may_jam) break;
     }
-    return found;
+    return lift_off;
 }
 
 }  // namespace
@@ -238,13 +222,13 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const double weighty = std::max(roll_over_speed(body), contact_loss_speed(body)) * units.time;
     const double high = 50 * std::max(low, weighty);
     const bool may_jam = std::isfinite(friction) && friction > painleve_friction;
-    LiftOff found = scanned(Climb{scene, checkpoint}, low, high, may_jam);
-    found.speed /= units.time;
-    for (SpeedRange& jams : found.jam_speeds) {
+    LiftOff result = scanned(Climb{scene, checkpoint}, low, high, may_jam);
+    result.speed /= units.time;
+    for (SpeedRange& jams : result.jam_speeds) {
         jams.lower /= units.time;
         jams.upper /= units.time;
     }
-    return found;
+    return result;
 }
 
 }  // namespace rolling_ellipse

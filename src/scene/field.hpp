@@ -18,9 +18,9 @@ struct Unit {
 // An integer power.
 inline double power(double base, int exponent) {
     if (exponent < 0) return power(1 / base, -exponent);
-    double found = 1.0;
-    for (int i = 0; i < exponent; ++i) found *= base;
-    return found;
+    double product = 1.0;
+    for (int i = 0; i < exponent; ++i) product *= base;
+    return product;
 }
 
 namespace unit {

@@ -88,6 +88,18 @@ Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impuls
     return scene;
 }
 
+Scene level_scene(const Body& body, double friction) {
+    Scene scene = scene_of();
+    scene.a = body.a;
+    scene.b = body.b;
+    scene.mass = 1.0;
+    scene.gravity = body.gravity;
+    scene.inertia = body.gyration2;
+    scene.slope = 0.0;
+    scene.friction = friction;
+    return scene;
+}
+
 Units natural_units(const Body& body, double mass) {
     const double long_axis = std::max(body.a, body.b);
     const int time2 = std::ilogb(long_axis / body.gravity);
@@ -153,7 +165,7 @@ void validate_slope(double slope) {
 }
 
 void validate(const Scene& scene, Origin origin) {
-    const double most = most_energy_of(origin);
+    const double most = origin == Origin::typed ? most_energy : 1e100;
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);

@@ -112,6 +112,9 @@ inline constexpr SceneField scene_fields[] = {
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
+// A body of unit mass on level ground; the other numbers that must be given are NaN.
+Scene level_scene(const Body& body, double friction);
+
 enum class Mode : std::int8_t { rolling, sliding, flight, rest };
 
 // The state of a body on or over the ground.
@@ -201,6 +204,9 @@ inline State on_ground(const Geometry& at, double theta, double omega, double x,
 inline State without_slip(const Geometry& at, double theta, double omega, double x, Mode mode) {
     return on_ground(at, theta, omega, x, at.h * omega, mode);
 }
+inline State without_slip(const Axes& axes, double theta, double omega, double x, Mode mode) {
+    return without_slip(geometry(axes, theta), theta, omega, x, mode);
+}
 
 // The acceleration c into the ground that the lowest point has without a contact force: gravity
 // into the ground and h'' omega^2, physics (43, 53).
@@ -262,9 +268,6 @@ enum class Origin { typed, reached };
 
 // The largest energy, by m g times the long semi-axis.
 inline constexpr double most_energy = 1e12;
-constexpr double most_energy_of(Origin origin) {
-    return origin == Origin::typed ? most_energy : 1e100;
-}
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_length(std::string_view name, double value);

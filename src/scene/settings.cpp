@@ -47,10 +47,10 @@ void validate_step(const Settings& settings, double t_end) {
 // Refuses a method that the model does not have, and a stabilization that the method does not have.
 void validate_method(const Settings& settings) {
     const Method method = settings.method;
-    const std::string asked = quoted(name(method));
+    const std::string chosen = quoted(name(method));
     const std::string stabilization = quoted(name(settings.stabilization));
     if (settings.model == Model::contact && method != Method::automatic) {
-        refuse("method", "'auto' for model 'contact'", asked);
+        refuse("method", "'auto' for model 'contact'", chosen);
     }
     if (settings.model != Model::multipliers) {
         if (settings.stabilization == Stabilization::projection) return;
@@ -61,7 +61,7 @@ void validate_method(const Settings& settings) {
     }
     if (method == Method::exact || method == Method::gauss) {
         refuse("method", "one of 'dop853', 'dopri5', 'rk4', 'radau' for model 'multipliers'",
-               asked);
+               chosen);
     }
     const bool is_index_2 = settings.stabilization == Stabilization::ggl;
     if (method == Method::radau && !is_index_2) {
@@ -70,7 +70,7 @@ void validate_method(const Settings& settings) {
     if (method != Method::radau && is_index_2) {
         throw std::invalid_argument(
             "stabilization must not be 'ggl', which only method 'radau' can solve, for method " +
-            asked + ", got 'ggl'");
+            chosen + ", got 'ggl'");
     }
 }
 
