@@ -56,6 +56,7 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
         const AfterStep next = after_step(point);
         periods += reduce(point);
         steps.knots.push_back({point.t, point.y, point.carry, periods});
+        ++integrator.counts.steps;
         if (steps.knots.size() % steps_between_checks == 0) checkpoint();
         return next;
     };

@@ -212,7 +212,6 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
             [&](auto& point) { return adjust(motion, point); },
             [](auto& point) { return reduce(point); }, checkpoint);
         result.counts = integrator.counts;
-        result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
         result.followed_until = steps.knots.back().t;
     });
     return result;
@@ -236,15 +235,15 @@ void sample(const SteppedMultipliers& motion, const double* times, std::size_t n
 }
 
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations) {
-    std::vector<Invariants> found;
+    std::vector<Invariants> points;
     with_integrator(motion, [&](auto integrator, const auto& steps) {
         survey(integrator, steps, evaluations, [&](const auto& knot, const auto& change) {
             const CoordinateState state = state_at(motion, knot, change);
-            found.push_back(
+            points.push_back(
                 {motion.body.specific_energy(state), motion.body.largest_residual(state.q)});
         });
     });
-    return found;
+    return points;
 }
 
 // J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f'' + 2 alpha f' + beta^2 f = 0 for

@@ -187,7 +187,7 @@ FlowSample sample(const RollingFlow& flow, double t);
 // The time of 1e15 half turns [s]; beyond, a double does not resolve the phase.
 double longest_time(const RollingFlow& flow);
 
-// Throws std::invalid_argument for a time that is not finite or, in size, above `longest`.
+// Throws std::invalid_argument for a time that is not finite or beyond +-`longest`.
 void validate_time(double t, double longest, const std::string& name = "t");
 
 // Time of a full swing or of a full turn [s]; infinite for a body at rest and on the separatrix.

@@ -103,7 +103,7 @@ struct Kernel {
     // Writes the series about places into pieces, in these units; the path starts at 0.
     void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
                    TablePlace* places, int count, FlowPiece* pieces);
-    // Index of the first time that is NaN or larger than `most` in size; n if there is none.
+    // Index of the first time that is NaN or beyond +-`most`; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
     // Samples a motion at many times. Where no piece reaches, theta is NaN; true if one is.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,

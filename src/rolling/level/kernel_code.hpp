@@ -56,7 +56,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Between neighbouring places eight nodes are exact to rounding.
+    // Between neighbouring places eight nodes are exact within rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {
@@ -149,7 +149,7 @@ struct alignas(64) Block {
 
 // Reduces t + start by n half turns without rounding. At late times even the low part of n T is
 // longer than a piece.
-void reduce(const FlowReader& motion, const double* times, int n, Block& found) {
+void reduce(const FlowReader& motion, const double* times, int n, Block& block) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
     for (int i = 0; i < n; i += lanes) {
@@ -160,9 +160,9 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
         const PackPair high = two_sum(rest.high, pack(start.high));
         const Pack low = (rest.low + high.low) - (turned.low + turns * period.low) + start.low;
         const PackPair time = two_sum(high.high, low);
-        store(turns, found.turns + i);
-        store(time.high, found.time + i);
-        store(time.low, found.low + i);
+        store(turns, block.turns + i);
+        store(time.high, block.time + i);
+        store(time.low, block.low + i);
     }
 }
 
@@ -186,7 +186,7 @@ inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
 }
 
 // Evaluates a series at one time, with its columns and its even and odd rows side by side.
-inline void alone(const TableSeries& series, double z, Block& found, int i) {
+inline void alone(const TableSeries& series, double z, Block& block, int i) {
     constexpr int parts = 2 * series_columns / lanes;
     const double z2 = z * z;
     Pack sums[parts];
@@ -206,9 +206,9 @@ inline void alone(const TableSeries& series, double z, Block& found, int i) {
     __builtin_memcpy(&even, even_odd, sizeof even);
     __builtin_memcpy(&odd, even_odd + series_columns, sizeof odd);
     const Row sum = even + odd * z;
-    found.angle[i] = sum[0];
-    found.omega[i] = sum[1];
-    found.path[i] = sum[2];
+    block.angle[i] = sum[0];
+    block.omega[i] = sum[1];
+    block.path[i] = sum[2];
 }
 
 // The piece at a time by bisection, without a branch that the processor would mispredict for times
@@ -236,10 +236,10 @@ void sample_series(const FlowReader& motion, int n, Block& block) {
         if (holds(*recent)) {
             const Pack z = ((since - recent->centre.high) + (since_low - recent->centre.low)) *
                            motion.per_unit;
-            const MotionSample<Pack> found = together(recent->series, z);
-            store(found.theta, block.angle + i);
-            store(found.omega, block.omega + i);
-            store(found.x, block.path + i);
+            const MotionSample<Pack> at = together(recent->series, z);
+            store(at.theta, block.angle + i);
+            store(at.omega, block.omega + i);
+            store(at.x, block.path + i);
             store(pack(recent->quarters), block.quarters + i);
             continue;
         }

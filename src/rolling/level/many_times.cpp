@@ -17,23 +17,13 @@ namespace {
 // Most pieces of a quarter turn. Usual motions have 15 to 85; on the separatrix it is over 200.
 constexpr std::size_t most_pieces = 1000;
 
-// Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
-// (|angle| <= pi/4): differences keep their digits near the flat and near the tip.
-struct QuarterPosition {
-    double quarters;
-    double angle;
-    double path;
-};
-
-QuarterPosition quarter_position(const FlatView& body, double sin, double cos) {
+// The path since the flat position or tip from which `quarter_view` counts the angle: differences
+// keep their digits near both.
+double path_in_quarter(const FlatView& body, double sin, double cos) {
     const double s = std::abs(sin);
-    if (s <= cos) {
-        const double path = path_from_flat(body.long_axis, body.short_axis, s, cos);
-        return {0.0, std::atan2(sin, cos), std::copysign(path, sin)};
-    }
-    const double path = path_from_tip(body.long_axis, body.short_axis, cos, s);
-    return {std::copysign(1.0, sin), -std::copysign(std::atan2(cos, s), sin),
-            -std::copysign(path, sin)};
+    const double path = s <= cos ? path_from_flat(body.long_axis, body.short_axis, s, cos)
+                                 : -path_from_tip(body.long_axis, body.short_axis, cos, s);
+    return std::copysign(1.0, sin) * path;
 }
 
 class TableMaker {
@@ -142,7 +132,7 @@ class TableMaker {
         const PhasePlace<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
         const MotionPoint<double> tip =
             motion_point(flow_.phase.integrand, flow_.amplitude, phase_point(map, end));
-        path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
+        path(last) = path_in_quarter(flow_.from.view, tip.sin_phi, tip.cos_phi);
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - places_[i].path;
     }
@@ -195,10 +185,10 @@ class TableMaker {
         reader.alternates = !rotates_;
         reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
         const FlatView& view = flow_.from.view;
-        const QuarterPosition from = quarter_position(view, view.sin, view.cos);
-        reader.quarters = from.quarters;
-        reader.angle = two_sum(flow_.from.theta, -from.angle);
-        reader.path = from.path;
+        const auto [quarters, angle] = quarter_view(view.sin, view.cos);
+        reader.quarters = quarters;
+        reader.angle = two_sum(flow_.from.theta, -angle.high);
+        reader.path = path_in_quarter(view, view.sin, view.cos);
         reader.quarter_path = path_from_flat(view.long_axis, view.short_axis, 1.0, 0.0);
         reader.theta = flow_.from.theta;
         reader.x = flow_.x;

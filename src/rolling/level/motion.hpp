@@ -63,10 +63,13 @@ inline PhaseIntegrand<T> phase_integrand(const PhaseStart<T>& at) {
     return integrand;
 }
 
-// The factor scale sqrt(D (H + h)) at an angle phi with this sine.
+// The factor scale sqrt(D (H + h)) at an angle phi with this sine, physics (28, 29).
 template <class C, class T>
 inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
-    return sqrt(shape_factor2(integrand, sin_phi * sin_phi));
+    const T sin2 = sin_phi * sin_phi;
+    const T h2 = integrand.short_axis * integrand.short_axis + integrand.c2 * sin2;
+    return sqrt(integrand.scale2 * (integrand.d0 + integrand.d1 * sin2) *
+                (integrand.energy_height + sqrt(h2)) / h2);
 }
 
 // Sets the motion that begins at a start.

@@ -123,14 +123,6 @@ PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distanc
             is_beyond ? from.offset - quarters * map.quarter + distance : offset};
 }
 
-// scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
-template <class C, class T>
-inline T shape_factor2(const PhaseIntegrand<C>& integrand, T sin2_phi) {
-    const T h2 = integrand.short_axis * integrand.short_axis + integrand.c2 * sin2_phi;
-    return integrand.scale2 * (integrand.d0 + integrand.d1 * sin2_phi) *
-           (integrand.energy_height + sqrt(h2)) / h2;
-}
-
 // The rates at y = quarters Y + offset, |quarters| <= 1. The constants C are those of one motion
 // for all places T, or of one motion for each. The phase is known as sin^2/q and cos^2/q, and h^2 =
 // N/q, so that all factors share one quotient. Terms without the offset are computed once for all

@@ -33,15 +33,15 @@ constexpr int most_pairs = most_places / 2;
 // Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5): rho = exp(asinh(1/length)).
 constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17), for a relative error of 3e-17
-    std::array<double, std::size(gauss_rules)> found{};
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    std::array<double, std::size(gauss_rules)> lengths{};
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
         const double x = log_accuracy / (2 * gauss_rules[i].size);
         double sinh = x;
         double term = x;
         for (int k = 2; k < 60; k += 2) sinh += term *= x * x / (k * (k + 1));
-        found[i] = 1 / sinh;
+        lengths[i] = 1 / sinh;
     }
-    return found;
+    return lengths;
 }();
 
 // Gauss-Legendre rules as pairs of nodes -x and +x. Zeros fill a rule with fewer nodes than another

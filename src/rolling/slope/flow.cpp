@@ -8,16 +8,8 @@ namespace rolling_ellipse {
 namespace {
 
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
-    const double s = body.side * view.sin;
-    SlopePlace place{};
-    place.omega = body.side * omega * body.time;
-    if (std::abs(s) <= view.cos) {
-        place.angle = {std::atan2(s, view.cos), 0.0};
-    } else {
-        place.quarters = std::copysign(1.0, s);
-        place.angle = {-std::copysign(std::atan2(view.cos, std::abs(s)), s), 0.0};
-    }
-    return place;
+    const auto [quarters, angle] = quarter_view(body.side * view.sin, view.cos);
+    return {{}, quarters, angle, body.side * omega * body.time, {}};
 }
 
 // The sum with which the motion begins; null if it begins with a series.
@@ -73,13 +65,13 @@ class SlopeReader {
 
     SlopePlace place(const Even&, const SlopeStretch&, DoubleDouble time) const {
         const double t = double(time);
-        SlopePlace found = flow_.start;
-        const double turned = t * (found.omega + 0.5 * flow_.acceleration * t);
-        found.angle = found.angle + two_product(t, found.omega) +
+        SlopePlace place = flow_.start;
+        const double turned = t * (place.omega + 0.5 * flow_.acceleration * t);
+        place.angle = place.angle + two_product(t, place.omega) +
                       two_product(0.5 * flow_.acceleration * t, t);
-        found.omega += flow_.acceleration * t;
-        found.path = {flow_.body.long_axis * turned, 0.0};
-        return found;
+        place.omega += flow_.acceleration * t;
+        place.path = {flow_.body.long_axis * turned, 0.0};
+        return place;
     }
 
     SlopePlace place(const SlopePiece& piece, const SlopeStretch&, DoubleDouble time) const {

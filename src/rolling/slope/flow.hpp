@@ -1,6 +1,6 @@
 // Exact rolling on a slope: the state at any time.
 //
-// The motion is a list of stretches, each with its law, as long as the times asked for need it.
+// The motion is a list of stretches, each with its law, as far as the requested times need it.
 // Neither its cost nor its error grows with the number of half turns or swings.
 #pragma once
 

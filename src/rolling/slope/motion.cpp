@@ -30,7 +30,7 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
 //     I lambda' = g_along u - g_into p - S p omega lambda,   omega = h lambda,   h' = p lambda
 //     u' = 2 p omega,   I' = S u',   p' = q omega,   q' = -4 p omega
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
-// the caller computes with all its digits (`drive`); the later coefficients do not cancel. Gravity
+// the caller computes to full accuracy (`drive`); the later coefficients do not cancel. Gravity
 // and omega are in the unit of time of the series.
 ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity,
                                               double sin, double cos, double omega, double drive) {
@@ -102,7 +102,7 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     return motion;
 }
 
-// The time since the begin of the piece at which it turns back; infinite if it does not.
+// The time since the start of the piece at which it turns back; infinite if it does not.
 double turning_in(const SlopePiece& piece) {
     const double side = std::copysign(1.0, piece.from.omega);
     const auto onwards = [&](double since) {

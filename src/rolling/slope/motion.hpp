@@ -105,11 +105,11 @@ inline SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     return piece_from(body, from, geometry(body, from));
 }
 
-// The place at a time since the begin of the piece.
+// The place at a time since the start of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
 
 // Time of turning back in the piece, and of passing the tip before that, both since the start of
-// the motion; infinite if there is none. At the begin of a piece neither of them counts.
+// the motion; infinite if there is none. At the start of a piece neither of them counts.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 

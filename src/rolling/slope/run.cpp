@@ -276,7 +276,7 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
     const double along = run.heading * body.gravity.along;
     const double a = body.long_axis;
     const double b = body.short_axis;
-    PartForces found;
+    PartForces forces;
     for (int i = 0; i < part_order; i += lanes) {
         const PanelPlaces at = places_at(run, part, load(&part_rule().places[i]));
         const Pack over_h3 = 1 / (at.h * at.h2);
@@ -288,10 +288,10 @@ ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& 
             2 * (load(&part.level[i]) + gained) / (body.gyration2 + at.h2 + dh * dh);
         const auto force =
             centre_of_rolling(body.gyration2, into, along, at.h, dh, ddh, w, omega2).force_per_mass;
-        store(force.normal, &found.normal[i]);
-        store(force.along, &found.friction[i]);
+        store(force.normal, &forces.normal[i]);
+        store(force.along, &forces.friction[i]);
     }
-    return found;
+    return forces;
 }
 
 ROLLING_ELLIPSE_WIDE PartArray legendre_coefficients(const PartArray& at_nodes) {

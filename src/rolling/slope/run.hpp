@@ -37,7 +37,7 @@ struct RunPart {
     std::size_t panel;  // its index
     double middle;      // v at the middle of the part
     double half;        // half of its width in v
-    double path;        // path ahead at its begin
+    double path;        // path ahead at its start
     PartArray advance;  // at the nodes: derivative of the path by the place -1 ... 1,
     PartArray mass;     // derivative of the integral of sqrt(D/2),
     PartArray level;    // and W in the first half turn
@@ -53,7 +53,7 @@ struct SlopeRun {
     Datum datum;                   // the same, or a tip at which W is nearly used up
     double half_turns;             // largest number of half turns of the run
     std::vector<RunPanel> panels;  // of one half turn from `from`, in the direction of the motion
-    std::vector<RunPart> parts;    // parts of the panels, as many as `extend` was asked for
+    std::vector<RunPart> parts;    // parts of the panels, as many as `extend` has added
     double path_ahead;             // path from `from` to the end of the last part
     double known;                  // time in the first half turn up to there
     double mass;                   // int sqrt(D/2) dphi up to there
@@ -143,7 +143,7 @@ class RunReader {
     const SlopeRun& run_;
     RunTimes run_times_;
     double half_turns_ = 0.0;  // half turns before the current one
-    DoubleDouble begin_;       // time from `from` to the begin of the current half turn
+    DoubleDouble begin_;       // time from `from` to the start of the current half turn
     double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
     std::vector<double> part_times_;
     PartReading reading_{};

@@ -12,13 +12,14 @@ namespace {
 ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));
-    PartPolynomial found{};
+    PartPolynomial polynomial{};
     for (int k = 0; k < part_order; ++k) {
-        found.value[k] = powers[k];
-        found.integral[k + 1] = powers[k] * (1.0 / (k + 1));
-        found.integral[0] += k % 2 == 0 ? found.integral[k + 1] : -found.integral[k + 1];
+        polynomial.value[k] = powers[k];
+        polynomial.integral[k + 1] = powers[k] * (1.0 / (k + 1));
+        polynomial.integral[0] +=
+            k % 2 == 0 ? polynomial.integral[k + 1] : -polynomial.integral[k + 1];
     }
-    return found;
+    return polynomial;
 }
 
 // The place in a part by the share of its time: the cubic with the values and slopes of the inverse
@@ -30,7 +31,7 @@ std::array<double, 5> inverse_about(const PartPolynomial& time) {
     return {-1.0, first, 6 - 2 * first - last, -4 + first + last, 0.0};
 }
 
-// The places in a part, -1 ... 1, at times since its beginning, by Newton's method.
+// The places in a part, -1 ... 1, at times since its start, by Newton's method.
 [[gnu::always_inline]] inline Pack places_in_part(const PartPolynomial& of_time, Pack guess,
                                                   Pack times) {
     constexpr int most_steps = 8;       // four reach the rounding from the worst guess, 0.2 away
@@ -52,7 +53,7 @@ struct PlacesOnPart {
     std::array<double, lanes> speed;
 };
 
-// The places at times since the begin of the part.
+// The places at times since the start of the part.
 ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of,
                                       const std::array<double, lanes>& times,
                                       PlacesOnPart& places) {
@@ -94,23 +95,23 @@ std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace
         rests[count] = rest;
     }
     read_part(part);
-    PlacesOnPart found;
-    read_places(run_, reading_, rests, found);
+    PlacesOnPart on_part;
+    read_places(run_, reading_, rests, on_part);
     const RunPanel& panel = run_.panels[reading_.part->panel];
     const double turned = run_.heading * 2 * half_turns_;
     const DoubleDouble path = two_product(turned, run_.body.quarter_path);
     for (std::size_t k = 0; k < count; ++k) {
-        const double angle = panel.angle + std::atan(found.tan[k]);
+        const double angle = panel.angle + std::atan(on_part.tan[k]);
         places[k] = {{time(k), 0.0},
                      run_.turns + run_.heading * panel.quarters + turned,
                      {run_.heading * angle, 0.0},
-                     run_.heading * found.speed[k],
-                     run_.from.path + found.ahead[k] + path};
+                     run_.heading * on_part.speed[k],
+                     run_.from.path + on_part.ahead[k] + path};
     }
     return count;
 }
 
-// The time since the begin of the current half turn.
+// The time since the start of the current half turn.
 double RunReader::since_begin(double time) const {
     return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
 }

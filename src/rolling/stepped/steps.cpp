@@ -19,19 +19,17 @@ constexpr int default_stages = 4;
 template <class Action>
 void with_integrator(const SteppedRolling& motion, Action action) {
     const RollingEquation& f = motion.equation;
-    const int stages = motion.settings.stages.value_or(default_stages);
-    switch (motion.settings.method) {
-        case Method::radau:
-            return action(Radau<RollingEquation>(f));
-        case Method::gauss:
-            if (stages == 2) return action(Gauss<2, RollingEquation>(f));
-            if (stages == 3) return action(Gauss<3, RollingEquation>(f));
-            return action(Gauss<4, RollingEquation>(f));
-        default:
-            return with_tableau(motion.settings.method, [&](auto tableau) {
-                action(ExplicitMethod<decltype(tableau), RollingEquation>(f));
-            });
+    const Method method = motion.settings.method;
+    if (method == Method::radau) return action(Radau<RollingEquation>(f));
+    if (method == Method::gauss) {
+        const int stages = motion.settings.stages.value_or(default_stages);
+        if (stages == 2) return action(Gauss<2, RollingEquation>(f));
+        if (stages == 3) return action(Gauss<3, RollingEquation>(f));
+        return action(Gauss<4, RollingEquation>(f));
     }
+    with_tableau(method, [&](auto tableau) {
+        action(ExplicitMethod<decltype(tableau), RollingEquation>(f));
+    });
 }
 
 // The values of a series about `middle` at four places.
@@ -50,7 +48,7 @@ class PathSeries {
   public:
     explicit PathSeries(const Axes& axes)
         : axes_(axes),
-          c2_((axes.a - axes.b) * (axes.a + axes.b)),
+          c2_(axes.c2()),
           off_axis_(std::atanh(std::fmin(axes.a, axes.b) / std::fmax(axes.a, axes.b))) {}
 
     // centre_path(theta) to 2 ulp. Its bits depend neither on earlier calls nor on the sign.
@@ -119,18 +117,18 @@ class PathSeries {
     // a root of h: the 17 terms then leave out less than 1e-17 of h times the interval.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
-        Interval found;
+        Interval interval;
         double width = 2.0;
         do {
             width /= 2;
-            found.low = std::floor(angle / width) * width;
-            found.middle = found.low + width / 2;
-        } while (share * width > distance(found.middle));
-        found.high = found.low + width;
+            interval.low = std::floor(angle / width) * width;
+            interval.middle = interval.low + width / 2;
+        } while (share * width > distance(interval.middle));
+        interval.high = interval.low + width;
 
         // Series of u = h^2 by u'' = -4 u + constant, then of h and of the path, its integral
-        const double s = std::sin(found.middle);
-        const double c = std::cos(found.middle);
+        const double s = std::sin(interval.middle);
+        const double c = std::cos(interval.middle);
         Series u;
         u[0] = square(axes_.a * s) + square(axes_.b * c);
         u[1] = 2 * c2_ * s * c;
@@ -139,13 +137,13 @@ class PathSeries {
         Series h;
         h[0] = std::sqrt(u[0]);
         const double half = 0.5 / h[0];
-        found.path[0] = centre_path(axes_, found.middle);
-        found.path[1] = h[0];
+        interval.path[0] = centre_path(axes_, interval.middle);
+        interval.path[1] = h[0];
         for (int k = 1; k < series_order; ++k) {
             h[k] = half * (u[k] - self_product(h, k, 1));
-            found.path[k + 1] = h[k] / (k + 1);
+            interval.path[k + 1] = h[k] / (k + 1);
         }
-        return found;
+        return interval;
     }
 
     Axes axes_;
@@ -241,7 +239,6 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
                                   settings.max_steps, t_end, keep, reduce, checkpoint);
         result.counts = integrator.counts;
     });
-    result.counts.steps = static_cast<long>(motion.steps.knots.size()) - 1;
     result.followed_until = motion.steps.knots.back().t;
     return result;
 }
@@ -261,7 +258,7 @@ std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluation
     const RollingEquation& f = motion.equation;
     PathSeries path(motion.axes);
     const double path_before = f.is_level() ? 0.0 : path(motion.steps.knots.front().y[0]);
-    std::vector<Invariants> found;
+    std::vector<Invariants> points;
     with_integrator(motion, [&](auto integrator) {
         survey(integrator, motion.steps, evaluations,
                [&](const Knot<2>& knot, const Vector<2>& change) {
@@ -270,10 +267,10 @@ std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluation
                    const double x = f.is_level() ? 0.0
                                                  : knot.periods * motion.half_turn_path +
                                                        (path(y[0]) - path_before);
-                   found.push_back({f.energy(geometry(motion.axes, y[0]), y[1], x), 0.0});
+                   points.push_back({f.energy(geometry(motion.axes, y[0]), y[1], x), 0.0});
                });
     });
-    return found;
+    return points;
 }
 
 }  // namespace rolling_ellipse

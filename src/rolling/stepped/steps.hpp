@@ -26,16 +26,11 @@ struct SteppedRolling {
 // Call action(tableau) with the tableau of an explicit method.
 template <class Action>
 auto with_tableau(Method method, const Action& action) {
-    switch (method) {
-        case Method::rk4:
-            return action(RungeKutta4{});
-        case Method::dopri5:
-            return action(DormandPrince5{});
-        case Method::dop853:
-            return action(DormandPrince853{});
-        default:  // validation lets no such method pass
-            throw std::logic_error("there is no integrator for the method '" + name(method) + "'");
-    }
+    if (method == Method::rk4) return action(RungeKutta4{});
+    if (method == Method::dopri5) return action(DormandPrince5{});
+    if (method == Method::dop853) return action(DormandPrince853{});
+    // Validation lets no other method pass.
+    throw std::logic_error("there is no integrator for the method '" + name(method) + "'");
 }
 
 Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
