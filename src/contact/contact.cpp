@@ -43,14 +43,14 @@ class ContactRun {
     }
 
   private:
-    // Decides how the body goes on from its start. A body that touches the ground and moves into it
+    // Chooses the first motion after the start. A body that touches the ground and moves into it
     // hits it at once.
     void start() {
-        const Continuation next = first_continuation(scene_, state_);
         const bool touches = state_.z == geometry(axes(), state_.theta).h;
+        const double blur = angle_roundings(state_.theta);
         recount(state_, {state_.theta, 0.0});
         if (state_.mode != Mode::flight) {
-            start_with(next);
+            start_with(continuation(scene_, state_, true, blur));
         } else if (touches && gap_rate_ < 0) {
             hit(State(state_), geometry(axes(), state_.theta), gap_rate_);
         }
@@ -79,7 +79,7 @@ class ContactRun {
         return angle.rest;
     }
 
-    // Goes on from a state with its angle counted from a quarter turn; returns the angle.
+    // Continues from a state with its angle counted from a quarter turn; returns the angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);
@@ -91,16 +91,10 @@ class ContactRun {
         state_.mode = next_.mode;
         if (is_stuck()) return stop_stuck();
         if (next_.grazes) return graze();
-        switch (next_.mode) {
-            case Mode::rest:
-                return rest();
-            case Mode::rolling:
-                return scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
-            case Mode::sliding:
-                return slide();
-            case Mode::flight:
-                return fly();
-        }
+        if (next_.mode == Mode::rest) return rest();
+        if (next_.mode == Mode::sliding) return slide();
+        if (next_.mode == Mode::flight) return fly();
+        scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
     }
 
     void rest() {
@@ -158,7 +152,7 @@ class ContactRun {
         if (!advance(lasts)) return;
         const auto [end, omega, x] = sample(*kept, lasts);
         const double theta = count_from_quarter({end, 0.0}).high;
-        state_ = without_slip(geometry(axes(), theta), theta, omega, x, Mode::rolling);
+        state_ = without_slip(axes(), theta, omega, x, Mode::rolling);
         go_on_by_forces(false);
     }
 
@@ -197,8 +191,7 @@ class ContactRun {
         if (stop == SlideStop::pressure_vanishes) {
             return go_on_with({Mode::flight}, EventKind::lift_off, before);
         }
-        const Geometry at = geometry(axes(), before.theta);
-        state_ = without_slip(at, before.theta, before.omega, before.x, Mode::sliding);
+        state_ = without_slip(axes(), before.theta, before.omega, before.x, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
         // A body that slides keeps its x_dot: h omega would add a rounding.
         if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
@@ -327,7 +320,7 @@ class ContactRun {
         ending_ = Ending::completed;
     }
 
-    // Ends the motion at the time `lasts` after the begin of its last segment.
+    // Ends the motion at the time `lasts` after the start of its last segment.
     void give_up(Ending ending, double lasts) {
         t_ = t_ + lasts;
         ending_ = ending;
@@ -357,9 +350,9 @@ class ContactRun {
 Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint) {
-    Integration<Motion> found = ContactRun(scene, start, settings, t_end, checkpoint).run();
-    if (found.ending == Ending::completed) found.followed_until = t_end;
-    return found;
+    Integration<Motion> result = ContactRun(scene, start, settings, t_end, checkpoint).run();
+    if (result.ending == Ending::completed) result.followed_until = t_end;
+    return result;
 }
 
 }  // namespace rolling_ellipse

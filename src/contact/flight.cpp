@@ -42,8 +42,7 @@ BeyondSmall beyond_small(double x) {
 // By how much h grows as the body turns, with the sum of both h, physics (55):
 // h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + turned) sin(turned).
 double rise(const Axes& axes, double theta, double turned, double sum) {
-    const auto [a, b] = axes;
-    return (a - b) * (a + b) * std::sin(2 * theta + turned) * std::sin(turned) / sum;
+    return axes.c2() * std::sin(2 * theta + turned) * std::sin(turned) / sum;
 }
 
 // The gap between the body and the ground.
@@ -128,8 +127,7 @@ class Gap {
         const double phi = flight_.start.omega * t;
         const double tangent = start_.h + start_.dh * phi;
         if (!(std::abs(phi) <= small_turn && tangent > 0)) return std::nullopt;
-        const auto [a, b] = flight_.axes;
-        const double c2 = (a - b) * (a + b);
+        const double c2 = flight_.axes.c2();
         const double sin_twice = 2 * start_.sin * start_.cos;
         const double cos_twice = (start_.cos - start_.sin) * (start_.cos + start_.sin);
         const auto [sine, squared] = beyond_small(phi);

@@ -57,7 +57,7 @@ struct Settling {
     double lasts;
     State start;
     State end;
-    DoubleDouble angle;  // theta of the end, with all digits
+    DoubleDouble angle;  // theta of the end, to full accuracy
 };
 
 Settling settling(const Scene& scene, const State& start, const Bounce& first);

@@ -16,7 +16,7 @@ using OwnSample = std::conditional_t<
                            std::is_same_v<Law, SteppedRolling>,
                        FlowSample, ContactSample>>;
 
-// Samples of a law at times since its begin. Laws whose header declares `sample` need none here.
+// Samples of a law at times since its start. Laws whose header declares `sample` need none here.
 
 void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
     FlowSampler{flow, n}(times, n, samples);
@@ -113,9 +113,9 @@ void evaluate(const Scene& scene, const Law& law, const double* times, std::size
         sample(law, times, n, samples);
     } else {
         std::vector<std::conditional_t<std::is_same_v<Sample, ContactSample>, Own, ContactSample>>
-            found(n);
-        evaluate(scene, law, times, n, found.data());
-        convert(scene, law, found, samples);
+            from(n);
+        evaluate(scene, law, times, n, from.data());
+        convert(scene, law, from, samples);
     }
 }
 
@@ -137,6 +137,7 @@ void complete(ContactSample& sample, const Motion& motion, const Scene& scene,
     const Units& units = motion.units;
     State& state = sample.state;
     state = with_whole_angle(scene, state, turned, motion.scene);
+    if (motion.rests) state.mode = Mode::rest;
     const double force = units.of(unit::force);
     sample = {in_si(state, units), {sample.force.normal * force, sample.force.friction * force}};
 }
@@ -220,15 +221,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
                 evaluate(scene, itself(law), since.data(), since.size(), samples + i);
             },
             segment.law);
-        if constexpr (std::is_same_v<Sample, ContactSample>) {
-            if (motion_.rests) {
-                for (std::size_t j = 0; j < since.size(); ++j) {
-                    samples[i + j].state.mode = Mode::rest;
-                }
-            }
-        }
         const std::size_t last = i + since.size();
-        if (units.are_si() && segment.turned.high == 0) i = last;
+        if (units.are_si() && segment.turned.high == 0 && !motion_.rests) i = last;
         for (; i < last; ++i) complete(samples[i], motion_, scene, segment.turned);
     }
 }

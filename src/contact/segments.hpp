@@ -30,7 +30,7 @@ struct Event {
 // The state just after an event, and the impulse of the ground at an impact.
 InitialState start_after(const Scene& scene, const Event& event);
 
-// A body that stays as it is: at rest, or at the instant from which no motion goes on, where no
+// A body that stays as it is: at rest, or at the instant from which no motion continues, where no
 // force of the ground is right.
 using Standing = ContactSample;
 

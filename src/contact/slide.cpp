@@ -91,7 +91,7 @@ ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
     const double omega = double(point.omega);
     const Geometry at = geometry(slide.axes, theta);
     const double x = slide.x_base + double(point.path);
-    return {{theta, omega, x, at.h, double(point.x_dot), at.dh * omega, Mode::sliding},
+    return {on_ground(at, theta, omega, x, double(point.x_dot), Mode::sliding),
             sliding_force(slide.body, at, omega)};
 }
 
@@ -103,7 +103,9 @@ class SlideIntegration {
           bounds_(bounds),
           at_(geometry(slide.body.axes, slide.last.angle)) {
         const double b = response(slide.body, at_, last_.omega.high).b;
-        if (slide.body.may_jam() && b < small_response) slow_down();
+        if (slide.body.may_jam() && b < small_response) {
+            scaled_response_ = cancelled_response(slide_.body, at_, last_.angle);
+        }
     }
 
     // Adds a piece. Returns the reason if the slide stops there.
@@ -118,7 +120,7 @@ class SlideIntegration {
                           double(from.x_dot) * unit,
                           scaled_response_ ? scaled_response_
                                            : cancelled_response(slide_.body, at_, from.angle)},
-                         clock_);
+                         clock());
         auto& [angle, omega, x_dot, path, time] = series.motion;
         // Largest reach of a piece in units of its time: 1 + 15 times the time slid so far, for
         // circles, whose series never lose their digits. h omega and pressure bound the reach, too:
@@ -127,13 +129,8 @@ class SlideIntegration {
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
-        SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large
-        piece.centre = from;
-        piece.clock = clock_;
-        piece.unit = unit;
-        piece.reach = reach_;
-        piece.motion = series.motion;
-        SlidePoint next = moved(piece, reach_);
+        slide_.pieces.push_back({from, clock(), unit, reach_, series.motion});
+        SlidePoint next = moved(slide_.pieces.back(), reach_);
         // Powers of a rate beyond about 1e100 overflow.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
@@ -180,6 +177,8 @@ class SlideIntegration {
         most_slip_ = std::min(size, std::max(most_slip_, std::abs(double(last_.slip))));
     }
 
+    SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
+
     // 1 + the rate of turning + the rate at which the force changes B, where that is large. In
     // units of this rate no power overflows.
     double rate() const {
@@ -187,7 +186,7 @@ class SlideIntegration {
         const double omega = double(last_.omega);
         const auto [c, b] = response(slide_.body, at_, omega);
         double by_force = slowed_response_rate(slide_.body, at_, c);
-        if (clock_ == SlideClock::time) by_force /= b;
+        if (clock() == SlideClock::time) by_force /= b;
         return 1 + std::abs(omega) + (by_force > stiff && by_force < infinity ? by_force : 0.0);
     }
 
@@ -213,7 +212,7 @@ class SlideIntegration {
             });
         };
         if (body.side != 0) {
-            // A slip that begins after rolling at the limit has a rate of 0 to rounding.
+            // A slip that starts after rolling at the limit has a rate of 0 within rounding.
             const bool starts = series.slip[0] == 0;
             search(End::slip, [&](int k) -> Tracked {
                 const double slip = series.slip[k];
@@ -230,7 +229,7 @@ class SlideIntegration {
             const double c = series.pressure[k];
             return {c, 3 * std::abs(c) + (k == 0 ? cancelled : 0.0)};
         });
-        if (clock_ == SlideClock::slowed) {
+        if (clock() == SlideClock::slowed) {
             search_response(End::response, 1.0, no_response);
             search_response(End::recovery, -1.0, 2 * small_response);
         } else {
@@ -246,36 +245,22 @@ class SlideIntegration {
     }
 
     std::optional<SlideStop> end() {
-        switch (*end_) {
-            case End::slip:
-                return SlideStop::slip_vanishes;
-            case End::pressure:
-                if (grazes_ || leaves()) return SlideStop::pressure_vanishes;
-                grazes_ = true;
-                return std::nullopt;
-            case End::bounds:
-                return SlideStop::out_of_bounds;
-            case End::recovery:
-                clock_ = SlideClock::time;
-                scaled_response_.reset();
-                return std::nullopt;
-            case End::response:
-                break;
+        if (*end_ == End::slip) return SlideStop::slip_vanishes;
+        if (*end_ == End::bounds) return SlideStop::out_of_bounds;
+        if (*end_ == End::pressure) {
+            if (grazes_ || leaves()) return SlideStop::pressure_vanishes;
+            grazes_ = true;
+        } else if (*end_ == End::recovery) {
+            scaled_response_.reset();
+        } else {
+            if (!slide_.body.may_jam()) return SlideStop::jams;
+            if (clock() == SlideClock::slowed) return last_moment();
+            scaled_response_ = cancelled_response(slide_.body, at_, last_.angle);
         }
-        if (!slide_.body.may_jam()) return SlideStop::jams;
-        if (clock_ == SlideClock::slowed) return last_moment();
-        slow_down();
         return std::nullopt;
     }
 
-    // Goes over to the slower clock. From here on V is a sum of its changes, which shrink with it:
-    // so it keeps its digits where the body turns away from B = 0, however near that is.
-    void slow_down() {
-        clock_ = SlideClock::slowed;
-        scaled_response_ = cancelled_response(slide_.body, at_, last_.angle);
-    }
-
-    // Whether c, now 0 to rounding, will fall below 0: only on the way to the tip, where h'' is
+    // Whether c, now 0 within rounding, will fall below 0: only on the way to the tip, where h'' is
     // least.
     bool leaves() const {
         const Axes& axes = slide_.body.axes;
@@ -310,8 +295,9 @@ class SlideIntegration {
     double most_kinetic_ = 0.0;
     double most_slip_ = 0.0;
     double worked_ = 0.0;  // sum of the sizes of the work of friction [energy per mass]
-    SlideClock clock_ = SlideClock::time;
-    std::optional<double> scaled_response_;  // V of the slower clock
+    // V, while the slower clock is used: a sum of its changes, which shrink with it. So it keeps
+    // its digits where the body turns away from B = 0, however near that is.
+    std::optional<double> scaled_response_;
     double reach_ = 0.0;
     std::optional<End> end_;
     // True once c was found to be 0 within rounding, not negative: beside B = 0 a slide under
@@ -350,8 +336,7 @@ Slide slide_from(const Scene& scene, const State& start, double side,
         {}};
     slide.pieces.reserve(usual_pieces);
     if (end_of_other) {
-        const double rest = end_of_other->angle.low;
-        slide.last.angle = slide.last.angle + rest;
+        slide.last.angle = slide.last.angle + end_of_other->angle.low;
         slide.last.omega = end_of_other->omega;
         slide.last.x_dot = end_of_other->x_dot;
         slide.last.energy = end_of_other->energy;

@@ -48,7 +48,7 @@ struct Slide {
 };
 
 // A slide at its start, with the slip to the given side (0: without friction there is none). After
-// the end of another slide it starts without slip, with all digits that states round away.
+// the end of another slide it starts without slip, with the digits that a state rounds away.
 Slide slide_from(const Scene& scene, const State& start, double side,
                  const std::optional<SlidePoint>& end_of_other = {});
 
@@ -73,7 +73,7 @@ SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& ch
 
 // The state at the last point.
 State end_of(const Slide& slide);
-// The angle of the body at the last point of the slide, with all digits.
+// The angle of the body at the last point of the slide, to full accuracy.
 DoubleDouble angle_at_end(const Slide& slide);
 
 // The angular velocity at the last point, where the slip has vanished: by x_dot = h omega, if x_dot

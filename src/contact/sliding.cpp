@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "numerics/wide.hpp"
 #include "proof/law.hpp"
@@ -106,26 +105,17 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 // The derivatives of u = h^2, p = h h' and q = p' by the angle are 2 p, q and -4 p.
 ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre,
                                               SlideClock clock) {
-    const double sin = centre.sin;
-    const double cos = centre.cos;
-    const double a = body.axes.a;
-    const double b = body.axes.b;
-    const double c2 = (a - b) * (a + b);
+    const auto [sin, cos, omega0, slip0, x_dot0, response0] = centre;
+    const auto [a, b] = body.axes;
+    const double c2 = body.axes.c2();
     const double k2 = body.gyration2;
     const double nu = body.normal_share;
     const double phi = body.friction_share;
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
-    LongSeries& angle = slide.motion.angle;
-    LongSeries& w = slide.motion.omega;
-    LongSeries& x_dot = slide.motion.x_dot;
-    LongSeries& path = slide.motion.path;
-    LongSeries& time = slide.motion.time;
-    LongSeries& slip = slide.slip;
-    LongSeries& rolled = slide.rolled;
-    LongSeries& u = slide.height2;
-    LongSeries& work = slide.work;
+    auto& [motion, slip, rolled, pressure, response, u, work] = slide;
+    auto& [angle, w, x_dot, path, time] = motion;
     // Factors of products side by side, coefficient by coefficient.
     using Factors = std::array<Quad, long_order + 1>;
     Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) by (angle', angle', h, omega^2)
@@ -144,9 +134,9 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     double p = c2 * sin * cos;
     double q = c2 * ((cos - sin) * (cos + sin));
     double impulse = 0.0;
-    const double l0 = centre.response ? (*centre.response - nu * k2 * u0) / p : nu * p + phi * u0;
+    const double l0 = response0 ? (*response0 - nu * k2 * u0) / p : nu * p + phi * u0;
     u[0] = u0;
-    w[0] = centre.omega;
+    w[0] = omega0;
     angle[0] = path[0] = time[0] = work[0] = 0.0;
 
     for (int k = 0; k <= long_order; ++k) {
@@ -167,16 +157,16 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
         const double omega2 = k == 0 ? w[0] * w[0] : squares[0] + 2 * (squared[0][0] * w[k]);
         const double bend = k == 0 ? bend0 : -(squares[1] + 2 * (squared[0][1] * u[k]));
         const double weight = product(levers, lever, by_lever, 1, u[k], h);
-        const double v = k == 0 && centre.response
-                             ? *centre.response
+        const double v = k == 0 && response0
+                             ? *response0
                              : nu * k2 * u[k] + product(levers, lever, by_lever, 0, p, l);
         const double c =
             body.gravity.into * weight + product(curves, curve, by_curve, 3, bend, omega2);
         const double load = product(levers, lever, by_lever, 2, u[k], v);
         const double pull_load = product(levers, lever, by_lever, 3, h, v);
         const double torque = product(forces, force, by_force, 0, l, c);
-        slide.response[k] = v;
-        slide.pressure[k] = c;
+        response[k] = v;
+        pressure[k] = c;
         rolled[k] = product(forces, force, by_force, 1, h, w[k]);
 
         double turning = -torque;
@@ -199,8 +189,8 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
             turning *= over_turning;
             pulling *= over_pulling;
         }
-        x_dot[k] = k == 0 ? centre.x_dot : impulse + body.gravity.along * time[k];
-        slip[k] = k == 0 ? centre.slip : x_dot[k] - rolled[k];
+        x_dot[k] = k == 0 ? x_dot0 : impulse + body.gravity.along * time[k];
+        slip[k] = k == 0 ? slip0 : x_dot[k] - rolled[k];
         if (k == long_order) break;
 
         const double over = over_next[k];
@@ -247,7 +237,7 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 // it slips already can a slide with N = c/B > 0, c < 0, be a second motion beside flight: without
 // slip, the N and F of rolling rule out that slip starts to the side of this slide. Such a state
 // may be a start, but no motion leads to it: a slide ends before, where c or B vanishes, and an
-// impact with B < 0 goes on until the slip stops.
+// impact with B < 0 lasts until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);

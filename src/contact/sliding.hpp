@@ -1,5 +1,5 @@
 // Sliding with Coulomb friction to one side: the contact force, its effects, and the motion as
-// power series about a state; and the mode in which a body on the ground goes on.
+// power series about a state; and the mode in which a body on the ground continues.
 #pragma once
 
 #include <optional>
@@ -103,12 +103,12 @@ struct SlideSeries {
 // N = c/B grows without bound, all of that is polynomial in them: physics (54).
 SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock);
 
-// The number of motions that go on. A sliding contact may have none or two (P. Painleve, C. R.
+// The number of possible continuations. A slide may have none or two (P. Painleve, C. R.
 // Acad. Sci. 121 (1895) 112): pressed against the ground (c > 0) it has none if B <= 0; pulled off
 // it (c < 0) it has two if B < 0, flight and a slide with N = c/B > 0.
 enum class Painleve { determined, no_motion, two_motions };
 
-// The mode in which a body goes on that touches the ground and does not move into it.
+// How a body continues that touches the ground and does not move into it.
 struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
@@ -135,7 +135,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll 
 // gap: contact and no slip remain so.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
-// The mode in which a body goes on from its start, which may be in the air.
+// How a body continues from its start, which may be in the air.
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll = true);
 
 }  // namespace rolling_ellipse
