@@ -45,21 +45,16 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// End of valid rolling: an angle; on a slope also its time [s].
-struct Proof {
-    EndOfRolling end{Validity::no_proof};
-    double time = infinity;
-};
-
-// On a slope the law is followed up to a time, unless it is broken or touched before; beyond that
-// time the end is unknown, NaN.
-Proof prove(const Scene& scene, Beginning& from, double until = infinity) {
-    if (from.rolling) return {end_of_rolling(*from.rolling, scene.friction)};
-    if (!from.on_slope) return {};
+// The end of valid rolling. On a slope the law is followed up to a time, unless it is broken or
+// touched before; if rolling holds until then, the time of its end is unknown, NaN.
+EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity) {
+    if (from.rolling) return end_of_rolling(*from.rolling, scene.friction);
+    if (!from.on_slope) return {Validity::no_proof};
     LawMeetings met = law_meetings(*from.on_slope, scene.friction, until);
     if (met.touched) met = law_meetings(*from.on_slope, scene.friction);
-    const auto& end = met.touched ? met.touched : met.broken;
-    return {end_of_rolling(met), end ? end->time : until < infinity ? unknown : infinity};
+    EndOfRolling end = end_of_rolling(met);
+    if (!end.angle && until < infinity) end.time = unknown;
+    return end;
 }
 
 // Whether the contact model computes the motion: it proves each arc of rolling, up to the last time
@@ -79,13 +74,13 @@ void end_validity(double t, double t_end, Solution& solution) {
 }
 
 // Ends the validity of a computed rolling motion where the proof says.
-void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Solution& solution) {
-    if (std::isnan(proof.time)) solution.valid_until = proof.time;
-    if (!proof.end.angle) return;
-    if (from.on_slope) return end_validity(proof.time, t_end, solution);
+void judge_by_proof(const Beginning& from, const EndOfRolling& end, double t_end,
+                    Solution& solution) {
+    if (std::isnan(end.time)) solution.valid_until = end.time;
+    if (!end.angle) return;
+    if (from.on_slope) return end_validity(end.time, t_end, solution);
     const auto* flow = std::get_if<Apart<RollingFlow>>(&solution.motion.segments.front().law);
-    const double ends = time_of_end(flow ? **flow : rolling_flow(*from.rolling), proof.end);
-    end_validity(ends, t_end, solution);
+    end_validity(time_of_end(flow ? **flow : rolling_flow(*from.rolling), end), t_end, solution);
 }
 
 Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
@@ -103,9 +98,9 @@ Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, dou
 }
 
 template <class Law>
-Integration<Motion> as_motion(const Scene& scene, Integration<Law> found) {
-    return {single(scene, std::move(found.motion)), found.ending, found.followed_until,
-            found.counts};
+Integration<Motion> as_motion(const Scene& scene, Integration<Law> result) {
+    return {single(scene, std::move(result.motion)), result.ending, result.followed_until,
+            result.counts};
 }
 
 Integration<Motion> solve(const Scene& scene, const Beginning& from, const Settings& settings,
@@ -137,11 +132,11 @@ void raise(double& maximum, double value) {
     if (!(value <= maximum)) maximum = std::isnan(value) ? infinity : value;
 }
 
-Losses losses_in(const std::vector<Invariants>& found) {
-    const double start = found.front().energy.total();
+Losses losses_in(const std::vector<Invariants>& points) {
+    const double start = points.front().energy.total();
     Losses worst;
     double size = 0.0;
-    for (const auto& [energy, residual] : found) {
+    for (const auto& [energy, residual] : points) {
         size = std::max(size, energy.kinetic + std::abs(energy.potential));
         raise(worst.energy, std::abs(energy.total() - start));
         raise(worst.constraints, residual);
@@ -165,32 +160,33 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     validate(asked, t_end);
     Beginning from = beginning(scene);
     const bool chooses = asked.model == Model::automatic && asked.method == Method::automatic;
-    const Proof proof = is_proved_by_arcs(scene, from, asked)
-                            ? Proof{}
-                            : prove(scene, from, chooses ? infinity : t_end);
-    const Settings settings = chosen(asked, proof.end.validity);
-    Solution found = solution(solve(scene, from, settings, t_end, checkpoint), settings, t_end);
+    const EndOfRolling end = is_proved_by_arcs(scene, from, asked)
+                                 ? EndOfRolling{Validity::no_proof}
+                                 : prove(scene, from, chooses ? infinity : t_end);
+    const Settings settings = chosen(asked, end.validity);
+    Solution result = solution(solve(scene, from, settings, t_end, checkpoint), settings, t_end);
     if (settings.model != Model::contact) {
-        judge_by_proof(from, proof, t_end, found);
+        judge_by_proof(from, end, t_end, result);
         const State& start = from.initial.state;
-        found.motion.rests =
+        result.motion.rests =
             start.mode == Mode::rest && first_continuation(scene, start).mode == Mode::rest;
     }
-    return found;
+    return result;
 }
 
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const Settings settings = chosen(asked, Validity::no_proof);
-    Solution found = solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start),
-                                                                     settings, t_end, checkpoint)),
-                              settings, t_end);
-    end_validity(0.0, t_end, found);
-    if (found.ending == Ending::validity_lost) {
-        found.message = "the start violates the constraints, as no body on the ground does";
+    Solution result =
+        solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start), settings,
+                                                        t_end, checkpoint)),
+                 settings, t_end);
+    end_validity(0.0, t_end, result);
+    if (result.ending == Ending::validity_lost) {
+        result.message = "the start violates the constraints, as no body on the ground does";
     }
-    return found;
+    return result;
 }
 
 double valid_until(const Scene& scene, const Solution& solution) {

@@ -17,8 +17,8 @@ namespace rolling_ellipse {
 struct Solution : Integration<Motion> {
     Model model = Model::rolling;
     Method method = Method::exact;
-    // Time at which the model stops being valid; NaN if only its validity up to the last time asked
-    // for is known.
+    // Time at which the model stops being valid; NaN if only its validity up to the last
+    // requested time is known.
     double valid_until = infinity;
     std::string message = {};
 };
@@ -44,7 +44,7 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
                   double t_end, const Checkpoint& checkpoint);
 
 // The time at which the model of a scene's solution stops being valid, followed beyond the last
-// time asked for where that is needed.
+// requested time where necessary.
 double valid_until(const Scene& scene, const Solution& solution);
 
 // Numerical errors of energy and constraints in a motion with steps; empty for all others.

@@ -73,9 +73,9 @@ std::optional<double> holds_from(const Quarter& quarter) {
 }
 
 // Append the zeros of the law between `from` and `to` about a zero of its squared form. Near the
-// tip both forces may be small, and their squares have half their digits only. Where F vanishes,
-// too, the law may hold at the zero that was found and be broken on both sides of it.
-void add_refined(std::vector<double>& places, const Quarter& quarter, double found, double from,
+// tip both forces may be small, and squaring halves their digits. Where F vanishes, too, the law
+// may hold at this zero and fail on both sides of it.
+void add_refined(std::vector<double>& places, const Quarter& quarter, double zero, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };
     const auto add_between = [&](double low, double high) {
@@ -83,17 +83,17 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double fou
         const Bracket zero = bisect(low, high, [&](double at) { return holds(at) == rises; });
         places.push_back(0.5 * (zero.low + zero.high));
     };
-    double low = found;
-    double high = found;
-    const double scale = found != 0 ? std::abs(found) : half_pi;
+    double low = zero;
+    double high = zero;
+    const double scale = zero != 0 ? std::abs(zero) : half_pi;
     for (double reach = epsilon * scale; reach < half_pi; reach *= 4) {
-        low = std::max(found - reach, from);
-        high = std::min(found + reach, to);
+        low = std::max(zero - reach, from);
+        high = std::min(zero + reach, to);
         if (holds(low) != holds(high)) return add_between(low, high);
     }
-    if (holds(low) == holds(found)) return places.push_back(found);
-    add_between(low, found);
-    add_between(found, high);
+    if (holds(low) == holds(zero)) return places.push_back(zero);
+    add_between(low, zero);
+    add_between(zero, high);
 }
 
 // Places at which the law may begin to be broken, ascending: its zeros and the zeros of N. A zero
@@ -158,7 +158,7 @@ std::optional<Turn> first_meeting(const Quarter& quarter, double from,
     return Turn{on * ((tip - start) + (tip - places.back())), on};
 }
 
-// The end of rolling under a law that holds where N and the law's polynomial are positive.
+// Where rolling ends: the first place at which N or the law's polynomial turns negative.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
                            const Polynomial<N>& law_polynomial, double theta) {

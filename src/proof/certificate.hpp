@@ -17,6 +17,7 @@ struct EndOfRolling {
     Validity validity;
     std::optional<double> angle = std::nullopt;
     double heading = 0.0;
+    double time = infinity;  // [s]; known on slopes only, see time_of_end
 };
 
 struct Certificate {

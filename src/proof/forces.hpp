@@ -76,7 +76,7 @@ struct RollingForces {
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
-    // angle() is from the flat position, 0 .. pi/2; angle_to_tip() has all digits near the tip.
+    // angle() is from the flat position, 0 .. pi/2; angle_to_tip() is accurate near the tip.
     double angle() const { return std::atan2(sin, cos); }
     double angle_to_tip() const { return std::atan2(cos, sin); }
     // The friction needed, |F|/N; infinite where N <= 0, unless N = F = 0.

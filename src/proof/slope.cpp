@@ -31,10 +31,10 @@ class Well {
           rolling_(scene_.body(), scene_.slope),
           theta_(from.theta),
           side_(std::copysign(1.0, asked.slope)) {
-        const auto found = equilibria(axes_.a, axes_.b, std::tan(scene_.slope));
-        if (!found) return;
-        upright_ = half_pi + found->upright;
-        lying_ = found->lying;
+        const auto equilibrium = equilibria(axes_.a, axes_.b, std::tan(scene_.slope));
+        if (!equilibrium) return;
+        upright_ = half_pi + equilibrium->upright;
+        lying_ = equilibrium->lying;
         const FlatView at = flat_view(asked.axes(), theta_);
         const double angle = side_ * std::atan2(at.sin, at.cos);
         start_ = angle < upright_ ? angle : angle - pi;
@@ -45,7 +45,7 @@ class Well {
     // Whether the body cannot leave the well.
     bool holds() const { return holds_; }
 
-    void add_extremes(Certificate& found) const {
+    void add_extremes(Certificate& certificate) const {
         const double first = bisect(upright_ - pi, std::min(start_, lying_), [&](double at) {
                                  return energy(at) >= 0;
                              }).high;
@@ -55,10 +55,10 @@ class Well {
         const std::vector<double> at = places(first, last);
         const double light = highest(at, [&](double angle) { return -force(angle).normal; });
         const double rough = highest(at, [&](double angle) { return needed(angle); });
-        found.smallest_normal_force = force(light).normal;
-        found.smallest_normal_force_angle = theta_ + side_ * (light - start_);
-        found.largest_friction_needed = needed(rough);
-        found.largest_friction_needed_angle = theta_ + side_ * (rough - start_);
+        certificate.smallest_normal_force = force(light).normal;
+        certificate.smallest_normal_force_angle = theta_ + side_ * (light - start_);
+        certificate.largest_friction_needed = needed(rough);
+        certificate.largest_friction_needed_angle = theta_ + side_ * (rough - start_);
     }
 
   private:
@@ -81,7 +81,7 @@ class Well {
             return double(integrate(gauss_rule(20), start_, angle, rate));
         }
         const double path = centre_path(axes_, angle) - centre_path(axes_, start_);
-        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(turned) /
+        const double rise = axes_.c2() * std::sin(angle + start_) * std::sin(turned) /
                             (geometry(axes_, angle).h + from.h);
         return gravity_.along * path - gravity_.into * rise;
     }
@@ -98,18 +98,18 @@ class Well {
     // forces change within b/a and its square.
     std::vector<double> places(double first, double last) const {
         constexpr int count = 512;
-        std::vector<double> found{first, last};
+        std::vector<double> angles{first, last};
         const double thin = axes_.b / axes_.a;
         const double reach = std::asinh(half_pi / (thin * thin));
         for (int i = 1; i < count; ++i) {
-            found.push_back(first + (last - first) * i / count);
+            angles.push_back(first + (last - first) * i / count);
             const double offset = thin * thin * std::sinh(reach * (2.0 * i / count - 1));
-            for (const double axis : {-pi, -half_pi, 0.0, half_pi}) found.push_back(axis + offset);
+            for (const double axis : {-pi, -half_pi, 0.0, half_pi}) angles.push_back(axis + offset);
         }
         const auto outside = [&](double at) { return !(at >= first && at <= last); };
-        found.erase(std::remove_if(found.begin(), found.end(), outside), found.end());
-        std::sort(found.begin(), found.end());
-        return found;
+        angles.erase(std::remove_if(angles.begin(), angles.end(), outside), angles.end());
+        std::sort(angles.begin(), angles.end());
+        return angles;
     }
 
     // The angle of the largest value of a measure: golden section about every angle whose value is

@@ -50,7 +50,7 @@ class LawWatch {
 
     bool examine_parts(const SlopePiece& piece);
     void examine(const SlopePiece& piece, const Law& law, Stretch& near);
-    void break_at(const Meeting& found);
+    void break_at(const Meeting& meeting);
     Meeting meeting(const SlopePiece& piece, double share) const;
 
     const SlopeFlow& flow_;

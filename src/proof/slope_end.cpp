@@ -93,8 +93,8 @@ Meeting LawWatch::meeting(const SlopePiece& piece, double share) const {
             flow_.body.side * std::copysign(1.0, rate)};
 }
 
-void LawWatch::break_at(const Meeting& found) {
-    if (!met_.broken || found.time < met_.broken->time) met_.broken = found;
+void LawWatch::break_at(const Meeting& meeting) {
+    if (!met_.broken || meeting.time < met_.broken->time) met_.broken = meeting;
 }
 
 void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
@@ -257,7 +257,7 @@ LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
 
 // The meetings in the first half turn of a run in which the law is broken; it is broken in all
 // later ones, too. The search takes growing steps from a guess, then halves. A run is followed up
-// to a time since its begin at least.
+// at least to a time since its start.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
     const double all = run.half_turns - 1;
@@ -325,9 +325,10 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
 }
 
 EndOfRolling end_of_rolling(const LawMeetings& met) {
-    if (met.touched) return {Validity::edge, met.touched->theta, met.touched->heading};
-    if (met.broken) return {Validity::invalid, met.broken->theta, met.broken->heading};
-    return {Validity::valid};
+    const auto& first = met.touched ? met.touched : met.broken;
+    if (!first) return {Validity::valid};
+    return {met.touched ? Validity::edge : Validity::invalid, first->theta, first->heading,
+            first->time};
 }
 
 }  // namespace rolling_ellipse
