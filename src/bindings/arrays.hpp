@@ -58,7 +58,7 @@ class SignalWatch {
 void watch_main_thread();
 
 // Runs body(i, checkpoint) for each i of 0 .. n, without the GIL. Ctrl-C stops each thread at its
-// next checkpoint. Where the system cannot start as many threads as asked for, those that there are
+// next checkpoint. Where the system cannot start as many threads as requested, those that there are
 // do all of the work. If several pieces fail, the exception of the earliest one is thrown.
 using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);

@@ -69,47 +69,41 @@ std::vector<Sample> sampled(const Solution& solution, const double* times, py::s
 
 Answer answer(const double* row, const Settings& settings, const double* times, py::ssize_t n,
               const Checkpoint& checkpoint) {
-    Answer found;
-    Solution& solution = found.solution;
+    Answer answer;
+    Solution& solution = answer.solution;
     try {
         const Scene scene = scene_in(row, Origin::reached);
         solution = simulate(scene, settings, times[n - 1], checkpoint);
         solution.valid_until = valid_until(scene, solution);
     } catch (const std::invalid_argument& error) {
         solution.message = error.what();
-        return found;
+        return answer;
     }
-    found.ending = static_cast<int>(solution.ending);
-    found.segments = solution.motion.segments.size();
-    found.samples = reached(solution, times, n);
+    answer.ending = static_cast<int>(solution.ending);
+    answer.segments = solution.motion.segments.size();
+    answer.samples = reached(solution, times, n);
     if (solution.model == Model::contact) {
-        found.contact = sampled<ContactSample>(solution, times, found.samples, checkpoint);
+        answer.contact = sampled<ContactSample>(solution, times, answer.samples, checkpoint);
     } else if (solution.model == Model::multipliers) {
-        found.coordinates = sampled<CoordinateState>(solution, times, found.samples, checkpoint);
+        answer.coordinates = sampled<CoordinateState>(solution, times, answer.samples, checkpoint);
     } else {
-        found.rolling = sampled<FlowSample>(solution, times, found.samples, checkpoint);
+        answer.rolling = sampled<FlowSample>(solution, times, answer.samples, checkpoint);
     }
     solution.motion.segments = {};
-    return found;
+    return answer;
 }
 
 // Ending and counts of an answer, and the sizes of its parts of the other tables.
-std::array<Figure, 10> codes_of(const Answer& answer) {
+std::vector<Figure> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
-    const py::ssize_t events = solution.motion.events.size();
-    const py::ssize_t letters = solution.message.size();
-    const auto [segments, steps, rejected, evaluations] =
-        stats_of(answer.segments, solution.counts);
-    return {Figure{"ending", answer.ending},
-            Figure{"model", static_cast<int>(solution.model)},
-            Figure{"method", static_cast<int>(solution.method)},
-            Figure{"samples", answer.samples},
-            Figure{"events", events},
-            segments,
-            steps,
-            rejected,
-            evaluations,
-            Figure{"letters", letters}};
+    std::vector<Figure> codes{{"ending", answer.ending},
+                              {"model", static_cast<int>(solution.model)},
+                              {"method", static_cast<int>(solution.method)},
+                              {"samples", answer.samples},
+                              {"events", std::int64_t(solution.motion.events.size())}};
+    for (const Figure& each : stats_of(answer.segments, solution.counts)) codes.push_back(each);
+    codes.push_back({"letters", std::int64_t(solution.message.size())});
+    return codes;
 }
 
 // The lists of all answers, one after the other; `part` is a member of Answer or returns one.
@@ -164,14 +158,11 @@ py::dict samples(std::vector<Answer>& answers) {
         contact_columns.numbers.push_back(touch.mutable_data(row));
     }
     contact_columns.store(contact.data(), 0, contact.size());
-    Array q = matrix(coordinates.size(), 5);
-    Array q_dot = matrix(coordinates.size(), 5);
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        store(q, i, coordinates[i].q.data());
-        store(q_dot, i, coordinates[i].q_dot.data());
-    }
-    return py::dict("rolling"_a = flow, "contact"_a = touch, "mode"_a = mode, "q"_a = q,
-                    "q_dot"_a = q_dot);
+    const py::tuple q = computed(coordinates.size(), [&](py::ssize_t i) {
+        return std::tuple(coordinates[i].q, coordinates[i].q_dot);
+    });
+    return py::dict("rolling"_a = flow, "contact"_a = touch, "mode"_a = mode, "q"_a = q[0],
+                    "q_dot"_a = q[1]);
 }
 
 py::dict simulate_table(const Array& scenes, const Settings& settings, const Array& times,
@@ -182,14 +173,14 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
     run_each(n, workers, [&](py::ssize_t i, const std::function<void()>& checkpoint) {
         answers[i] = answer(scenes.data(i, 0), settings, times.data(), times.size(), checkpoint);
     });
-    py::dict found = facts(answers);
+    py::dict tables = facts(answers);
     const std::vector<char> text =
         joined(answers, [](Answer& each) -> auto& { return each.solution.message; });
-    found["text"] = array_of(std::vector<std::int8_t>(text.begin(), text.end()));
-    found["events"] = event_rows(
+    tables["text"] = array_of(std::vector<std::int8_t>(text.begin(), text.end()));
+    tables["events"] = event_rows(
         joined(answers, [](Answer& each) -> auto& { return each.solution.motion.events; }));
-    found.attr("update")(samples(answers));
-    return found;
+    tables.attr("update")(samples(answers));
+    return tables;
 }
 
 // The state of each motion at its time, NaN where the motion has ended before, and codes: its mode
@@ -206,20 +197,20 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     std::fill_n(codes.mutable_data(), codes.size(), -1);
     const auto end = [&](py::ssize_t i, const Checkpoint& checkpoint) {
         const double t = times.data()[i * each];
-        Solution found;
+        Solution solution;
         try {
             const Scene scene = scene_in(scenes.data(i, 0), Origin::reached);
-            found = simulate(scene, settings, t, checkpoint);
+            solution = simulate(scene, settings, t, checkpoint);
         } catch (const std::invalid_argument&) {
             return;
         }
-        const std::vector<Event>& events = found.motion.events;
+        const std::vector<Event>& events = solution.motion.events;
         codes.mutable_at(1, i) = static_cast<std::int32_t>(events.size());
         if (!events.empty()) codes.mutable_at(2, i) = static_cast<int>(events.front().kind);
-        codes.mutable_at(3, i) = static_cast<int>(found.ending);
-        if (found.motion.segments.empty() || t > found.followed_until) return;
+        codes.mutable_at(3, i) = static_cast<int>(solution.ending);
+        if (solution.motion.segments.empty() || t > solution.followed_until) return;
         ContactSample last;
-        Sampler(found.motion, 1)(&t, 1, &last);
+        Sampler(solution.motion, 1)(&t, 1, &last);
         double* to = states.mutable_data() + i;
         for (const auto& field : state_fields) {
             *to = last.state.*field.number;
@@ -247,10 +238,8 @@ Array friction_table(const Array& scenes, bool to_rest, int workers) {
 
 void bind_batch(py::module_& m) {
     m.def("first_refused", first_refused, "scenes"_a, "reached"_a);
-    m.def(
-        "validate_settings",
-        [](const Settings& settings, double t_end) { validate(settings, t_end); }, "settings"_a,
-        "t_end"_a);
+    m.def("validate_settings", py::overload_cast<const Settings&, double>(validate), "settings"_a,
+          "t_end"_a);
     m.attr("COLUMNS") = columns();
     m.def("ends_table", ends_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
     m.def("friction_table", friction_table, "scenes"_a, "to_rest"_a, "workers"_a);

@@ -47,14 +47,14 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
 // A certificate by the names of its fields; the validity as a code, since enums are slow to make.
 py::dict certificate(const Scene& scene) {
     const Certificate c = certify(scene);
-    py::dict found;
-    found["validity"] = static_cast<int>(c.end.validity);
-    found["smallest_normal_force"] = c.smallest_normal_force;
-    found["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
-    found["largest_friction_needed"] = c.largest_friction_needed;
-    found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
-    found["ends_at"] = c.end.angle;
-    return found;
+    py::dict fields;
+    fields["validity"] = static_cast<int>(c.end.validity);
+    fields["smallest_normal_force"] = c.smallest_normal_force;
+    fields["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
+    fields["largest_friction_needed"] = c.largest_friction_needed;
+    fields["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
+    fields["ends_at"] = c.end.angle;
+    return fields;
 }
 
 Body valid_body(double a, double b, double gravity, std::optional<double> gyration2) {
@@ -76,19 +76,13 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     const Body of = valid_body(a, b, gravity, gyration2);
     validate_friction(friction);
     const Thresholds t = thresholds(of, friction);
-    py::dict found;
-    found["roll_over_speed"] = t.roll_over_speed;
-    found["contact_loss_speed"] = t.contact_loss_speed;
-    found["contact_loss_angle"] = t.contact_loss_angle;
-    found["slip_speed"] = t.slip_speed();
-    found["slip_angle"] = t.slip_angle;
-    found["slip_windows"] = pairs(t.slip_windows);
-    found["friction_to_roll_over"] = t.friction_to_roll_over;
-    found["painleve_friction"] = t.painleve_friction;
-    found["painleve_angle"] = t.painleve_angle;
-    found["rocking_rate"] = t.rocking_rate;
-    found["tip_rate"] = t.tip_rate;
-    return found;
+    return py::dict(
+        "roll_over_speed"_a = t.roll_over_speed, "contact_loss_speed"_a = t.contact_loss_speed,
+        "contact_loss_angle"_a = t.contact_loss_angle, "slip_speed"_a = t.slip_speed(),
+        "slip_angle"_a = t.slip_angle, "slip_windows"_a = pairs(t.slip_windows),
+        "friction_to_roll_over"_a = t.friction_to_roll_over,
+        "painleve_friction"_a = t.painleve_friction, "painleve_angle"_a = t.painleve_angle,
+        "rocking_rate"_a = t.rocking_rate, "tip_rate"_a = t.tip_rate);
 }
 
 // Lift-off speed and the ranges of speeds that jam; slip_speed and painleve_friction are known.

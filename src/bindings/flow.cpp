@@ -18,34 +18,25 @@ RollingStart validated_start(const Body& body, double theta, double omega) {
     return rolling_start(body, theta, omega);
 }
 
-RollingFlow validated_flow(const Body& body, double theta, double omega) {
-    return rolling_flow(validated_start(body, theta, omega));
-}
-
-FlowSample level_sample(double t, const Body& body, double theta, double omega) {
-    const RollingFlow flow = validated_flow(body, theta, omega);
-    validate_time(t, longest_time(flow));
-    return sample(flow, t);
-}
-
 // theta, omega, x of one motion at many times.
 py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
+    const RollingFlow flow =
+        rolling_flow(validated_start(body(a, b, gyration2, gravity), theta, omega));
     const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
     FlowArrays out(n);
-    const FlowColumns found = out.columns();
+    const FlowColumns columns = out.columns();
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
         if (wrong < end) {
             validate_time(times[wrong], longest, "t[" + std::to_string(wrong) + "]");
         }
-        sampler(times + begin, end - begin, found.from(begin));
+        sampler(times + begin, end - begin, columns.from(begin));
     });
     return out.tuple();
 }
@@ -67,7 +58,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     // One scene alone is computed without vector lanes, which would cost more.
     const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
-    const FlowColumns found = out.columns();
+    const FlowColumns columns = out.columns();
     const auto sample_all = [&](const Kernel& by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
@@ -78,7 +69,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             times[i - begin] = t;
         }
         sample(by, starts.data(), times.data(), end - begin, samples.data());
-        for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], found, i);
+        for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], columns, i);
     };
     run_interruptible(n, workers, [&](py::ssize_t chunk_begin, py::ssize_t chunk_end) {
         for (py::ssize_t begin = chunk_begin; begin < chunk_end; begin += scenes_at_once) {
@@ -96,8 +87,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     return out.tuple();
 }
 
-// The arguments of a motion on a slope.
-using SlopeArguments = std::array<double, 8>;  // t, a, b, theta, omega, gravity, gyration2, slope
+using FlowArguments = std::array<double, 8>;  // t, a, b, theta, omega, gravity, gyration2, slope
 
 // A motion on a slope in the direction of its times: reversed in time, it is that of the reversed
 // start.
@@ -106,7 +96,7 @@ struct SlopeMotion {
     SlopeFlow flow;
 };
 
-SlopeMotion slope_motion(const SlopeArguments& of) {
+SlopeMotion slope_motion(const FlowArguments& of) {
     const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of;
     const Body body{a, b, gyration2, gravity};
     validate(body);
@@ -122,24 +112,29 @@ void prepare(SlopeMotion& motion, double t) {
     validate_time(t, longest_time(motion.flow, std::abs(t)));
 }
 
-bool is_same_motion(const SlopeArguments& x, const SlopeArguments& y) {
+bool is_same_motion(const FlowArguments& x, const FlowArguments& y) {
     return std::equal(x.begin() + 1, x.end(), y.begin() + 1) && (x[0] < 0) == (y[0] < 0);
 }
 
-FlowSample slope_sample(const SlopeArguments& of) {
+FlowSample flow_sample(const FlowArguments& of) {
+    const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of;
+    if (slope == 0) {
+        const Body body{a, b, gyration2, gravity};
+        const RollingFlow flow = rolling_flow(validated_start(body, theta, omega));
+        validate_time(t, longest_time(flow));
+        return sample(flow, t);
+    }
     SlopeMotion motion = slope_motion(of);
-    prepare(motion, of[0]);
-    FlowSample found = sample(motion.flow, std::abs(of[0]));
-    found.omega *= motion.heading;
-    return found;
+    prepare(motion, t);
+    FlowSample now = sample(motion.flow, std::abs(t));
+    now.omega *= motion.heading;
+    return now;
 }
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2, double slope) {
-    const Body of = body(a, b, gyration2, gravity);
-    const FlowSample now =
-        slope == 0 ? level_sample(t, of, theta, omega)
-                   : slope_sample({t, a, b, theta, omega, gravity, of.gyration2, slope});
+    const double k2 = body(a, b, gyration2, gravity).gyration2;
+    const FlowSample now = flow_sample({t, a, b, theta, omega, gravity, k2, slope});
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -148,18 +143,14 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
     const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
                           arguments, n);
     FlowArrays out(n);
-    const FlowColumns found = out.columns();
+    const FlowColumns columns = out.columns();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         std::vector<double> times;
         std::vector<FlowSample> samples;
         for (py::ssize_t i = begin; i < end;) {
-            const SlopeArguments first = of[i];
-            const auto [t, a, b, theta, omega, gravity, gyration2, slope] = first;
-            if (slope == 0) {
-                const Body body{a, b, gyration2, gravity};
-                of.naming(i, [&, t = t, theta = theta, omega = omega] {
-                    store(level_sample(t, body, theta, omega), found, i);
-                });
+            const FlowArguments first = of[i];
+            if (first.back() == 0) {
+                of.naming(i, [&] { store(flow_sample(first), columns, i); });
                 ++i;
                 continue;
             }
@@ -168,7 +159,7 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
             of.naming(i, [&] { motion = slope_motion(first); });
             times.clear();
             for (py::ssize_t next = i; next < end; ++next) {
-                const SlopeArguments here = of[next];
+                const FlowArguments here = of[next];
                 if (!is_same_motion(here, first)) break;
                 of.naming(next, [&] { prepare(*motion, here[0]); });
                 times.push_back(std::abs(here[0]));
@@ -176,17 +167,11 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
             samples.resize(times.size());
             sample(motion->flow, times.data(), times.size(), samples.data());
             for (const FlowSample& each : samples) {
-                store({each.theta, motion->heading * each.omega, each.x}, found, i++);
+                store({each.theta, motion->heading * each.omega, each.x}, columns, i++);
             }
         }
     });
     return out.tuple();
-}
-
-std::vector<std::string> flow_levels() {
-    std::vector<std::string> names;
-    for (const Kernel& each : kernels()) names.push_back(each.name);
-    return names;
 }
 
 }  // namespace
@@ -199,7 +184,7 @@ void bind_flow(py::module_& m) {
           "gyration2"_a, "workers"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a, "level"_a = "best");
     m.def("slope_flow_array", slope_flow_array, "n"_a, "arguments"_a, "workers"_a);
-    m.def("flow_levels", flow_levels);
+    m.def("flow_levels", [] { return py::list(names_of(kernels())); });
 }
 
 }  // namespace rolling_ellipse::bindings

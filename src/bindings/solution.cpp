@@ -48,12 +48,12 @@ void take_samples(const Solution& solution, const Array& t, const Take& take) {
 // theta, omega, x at each time.
 py::tuple rolling_samples(const Solution& solution, const Array& t) {
     FlowArrays out(t.size());
-    const FlowColumns found = out.columns();
+    const FlowColumns columns = out.columns();
     const double* const times = t.data();
     const Sampler sampler(solution.motion, t.size());
     run_interruptible(t.size(), 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);
-        sampler(times + begin, end - begin, found.from(begin));
+        sampler(times + begin, end - begin, columns.from(begin));
     });
     return py::make_tuple(read_only(t), read_only(out.theta), read_only(out.omega),
                           read_only(out.x));
@@ -76,21 +76,21 @@ py::tuple coordinate_samples(const Solution& solution, const Array& t) {
 // The numbers of state and force at each time, and the mode.
 py::tuple contact_samples(const Solution& solution, const Array& t) {
     constexpr std::size_t numbers = std::size(state_fields) + std::size(force_fields);
-    py::tuple found(numbers + 2);
+    py::tuple arrays(numbers + 2);
     py::array_t<std::int8_t> mode(t.size());
     ContactColumns columns{std::vector<double*>(numbers), mode.mutable_data()};
-    found[0] = read_only(t);
+    arrays[0] = read_only(t);
     for (std::size_t i = 0; i < numbers; ++i) {
         Array column = vector(t.size());
         columns.numbers[i] = column.mutable_data();
-        found[i + 1] = read_only(column);
+        arrays[i + 1] = read_only(column);
     }
     take_samples<ContactSample>(
         solution, t, [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
             columns.store(samples, begin, end);
         });
-    found[numbers + 1] = read_only(mode);
-    return found;
+    arrays[numbers + 1] = read_only(mode);
+    return arrays;
 }
 
 // Read-only arrays of the samples at times, the times before them: of rolling theta, omega, x; of
@@ -147,10 +147,10 @@ py::dict sample_at(const Solution& solution, const Scene& scene, const Settings&
 }
 
 // An array of times for each value, and phrases that say where some of them may be missing.
-py::tuple lists(const Passages& found) {
+py::tuple lists(const Passages& passages) {
     py::list times;
-    for (const std::vector<double>& each : found.times) times.append(array_of(each));
-    return py::make_tuple(times, found.unproved);
+    for (const std::vector<double>& each : passages.times) times.append(array_of(each));
+    return py::make_tuple(times, passages.unproved);
 }
 
 py::tuple passages_of(const Solution& solution, Quantity quantity,

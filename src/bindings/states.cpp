@@ -113,10 +113,10 @@ py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
 py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
                         const Array& x) {
     const auto row = [&](double angle, double speed, double position) {
-        RollingDetail found = rolling_detail(scene, angle, speed);
-        found.state.q[coordinate::x] = position;
-        return std::tuple(found.state.q, found.state.q_dot, found.q_ddot, found.force.normal,
-                          found.force.friction, found.multipliers);
+        RollingDetail detail = rolling_detail(scene, angle, speed);
+        detail.state.q[coordinate::x] = position;
+        return std::tuple(detail.state.q, detail.state.q_dot, detail.q_ddot, detail.force.normal,
+                          detail.force.friction, detail.multipliers);
     };
     return named({"q", "q_dot", "q_ddot", "normal_force", "friction_force", "multipliers"},
                  computed_from<3>(theta.size(), {"theta", "omega", "x"}, {theta, omega, x}, row));
