@@ -107,10 +107,10 @@ py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n
 struct FlowArrays {
     explicit FlowArrays(py::ssize_t n) : theta(vector(n)), omega(vector(n)), x(vector(n)) {}
 
-    FlowColumns columns() { return {theta.mutable_data(), omega.mutable_data(), x.mutable_data()}; }
     py::tuple tuple() const { return py::make_tuple(theta, omega, x); }
 
     Array theta, omega, x;
+    const FlowColumns columns{theta.mutable_data(), omega.mutable_data(), x.mutable_data()};
 };
 
 // Columns of contact samples: for each number of state_fields and force_fields, and for the modes.

@@ -29,14 +29,13 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
     FlowArrays out(n);
-    const FlowColumns columns = out.columns();
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
         if (wrong < end) {
             validate_time(times[wrong], longest, "t[" + std::to_string(wrong) + "]");
         }
-        sampler(times + begin, end - begin, columns.from(begin));
+        sampler(times + begin, end - begin, out.columns.from(begin));
     });
     return out.tuple();
 }
@@ -58,7 +57,6 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     // One scene alone is computed without vector lanes, which would cost more.
     const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
-    const FlowColumns columns = out.columns();
     const auto sample_all = [&](const Kernel& by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
@@ -69,7 +67,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             times[i - begin] = t;
         }
         sample(by, starts.data(), times.data(), end - begin, samples.data());
-        for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], columns, i);
+        for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], out.columns, i);
     };
     run_interruptible(n, workers, [&](py::ssize_t chunk_begin, py::ssize_t chunk_end) {
         for (py::ssize_t begin = chunk_begin; begin < chunk_end; begin += scenes_at_once) {
@@ -119,10 +117,7 @@ bool is_same_motion(const FlowArguments& x, const FlowArguments& y) {
 FlowSample flow_sample(const FlowArguments& of) {
     const auto [t, a, b, theta, omega, gravity, gyration2, slope] = of;
     if (slope == 0) {
-        const Body body{a, b, gyration2, gravity};
-        const RollingFlow flow = rolling_flow(validated_start(body, theta, omega));
-        validate_time(t, longest_time(flow));
-        return sample(flow, t);
+        return sample_alone(validated_start({a, b, gyration2, gravity}, theta, omega), t);
     }
     SlopeMotion motion = slope_motion(of);
     prepare(motion, t);
@@ -143,14 +138,13 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
     const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
                           arguments, n);
     FlowArrays out(n);
-    const FlowColumns columns = out.columns();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         std::vector<double> times;
         std::vector<FlowSample> samples;
         for (py::ssize_t i = begin; i < end;) {
             const FlowArguments first = of[i];
             if (first.back() == 0) {
-                of.naming(i, [&] { store(flow_sample(first), columns, i); });
+                of.naming(i, [&] { store(flow_sample(first), out.columns, i); });
                 ++i;
                 continue;
             }
@@ -167,7 +161,7 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
             samples.resize(times.size());
             sample(motion->flow, times.data(), times.size(), samples.data());
             for (const FlowSample& each : samples) {
-                store({each.theta, motion->heading * each.omega, each.x}, columns, i++);
+                store({each.theta, motion->heading * each.omega, each.x}, out.columns, i++);
             }
         }
     });

@@ -48,12 +48,11 @@ void take_samples(const Solution& solution, const Array& t, const Take& take) {
 // theta, omega, x at each time.
 py::tuple rolling_samples(const Solution& solution, const Array& t) {
     FlowArrays out(t.size());
-    const FlowColumns columns = out.columns();
     const double* const times = t.data();
     const Sampler sampler(solution.motion, t.size());
     run_interruptible(t.size(), 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);
-        sampler(times + begin, end - begin, columns.from(begin));
+        sampler(times + begin, end - begin, out.columns.from(begin));
     });
     return py::make_tuple(read_only(t), read_only(out.theta), read_only(out.omega),
                           read_only(out.x));

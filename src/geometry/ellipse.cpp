@@ -69,12 +69,12 @@ CarlsonPair carlson(double x, double y, double z) {
 
 // The arc of the ellipse between the contacts at the tip and at an angle from it, physics (10):
 // DLMF 19.25.10 without its last term, the lead -h' of the centre.
-double arc_from_tip(double long_axis, double short_axis, double s, double c) {
-    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
+double arc_from_tip(const Axes& lying, double s, double c) {
+    const auto [long_axis, short_axis] = lying;
     const double h = root_of_squares(long_axis * c, short_axis * s);
     const double l2 = long_axis * long_axis;
     const auto [rf, rd] = carlson(l2 * c * c, l2, h * h);
-    return short_axis * short_axis * s * (rf + c2 * s * s / 3 * rd);
+    return short_axis * short_axis * s * (rf + lying.c2() * s * s / 3 * rd);
 }
 
 // Path of the centre, and arc of the contact along the ellipse (h' longer), from theta = 0 to an
@@ -86,10 +86,10 @@ struct QuarterPath {
 
 QuarterPath quarter_path(const Axes& axes, double s, double c) {
     if (axes.a >= axes.b) {
-        const double centre = path_from_flat(axes.a, axes.b, s, c);
+        const double centre = path_from_flat(axes, s, c);
         return {centre, centre + geometry(axes, s, c).dh};
     }
-    const double contact = arc_from_tip(axes.b, axes.a, s, c);
+    const double contact = arc_from_tip({axes.b, axes.a}, s, c);
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
@@ -109,18 +109,17 @@ QuarterPath unwrapped_path(const Axes& axes, double theta) {
 }  // namespace
 
 // physics (10), DLMF 19.25.9 with negative parameter: every term is positive.
-double path_from_flat(double long_axis, double short_axis, double s, double c) {
-    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
-    const double s2 = short_axis * short_axis;
+double path_from_flat(const Axes& lying, double s, double c) {
+    const double c2 = lying.c2();
+    const double s2 = lying.b * lying.b;
     const double h2 = s2 + c2 * s * s;
     const auto [rf, rd] = carlson(s2 * c * c, h2, s2);
     return s2 * s * (rf + c2 * s * s / 3 * rd);
 }
 
-double path_from_tip(double long_axis, double short_axis, double s, double c) {
-    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
-    return arc_from_tip(long_axis, short_axis, s, c) +
-           c2 * s * c / root_of_squares(long_axis * c, short_axis * s);
+double path_from_tip(const Axes& lying, double s, double c) {
+    return arc_from_tip(lying, s, c) +
+           lying.c2() * s * c / root_of_squares(lying.a * c, lying.b * s);
 }
 
 FlatView flat_view(const Axes& axes, double theta) {
@@ -129,12 +128,10 @@ FlatView flat_view(const Axes& axes, double theta) {
 
 FlatView flat_view(const Axes& axes, double sin, double cos) {
     const bool a_is_long = axes.a >= axes.b;
-    const double long_axis = a_is_long ? axes.a : axes.b;
-    const double short_axis = a_is_long ? axes.b : axes.a;
+    const auto [long_axis, short_axis] = a_is_long ? axes : Axes{axes.b, axes.a};
     const double s = a_is_long ? sin : -cos;
     const double c = a_is_long ? cos : sin;
-    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
-    return {long_axis, short_axis, c2, c < 0 ? -s : s, std::abs(c)};
+    return {long_axis, short_axis, std::abs(axes.c2()), c < 0 ? -s : s, std::abs(c)};
 }
 
 bool is_equilibrium(const Geometry& at, double incline) {

@@ -62,6 +62,8 @@ struct FlatView {
     double c2;  // long_axis^2 - short_axis^2
     double sin;
     double cos;
+
+    Axes lying() const { return {long_axis, short_axis}; }
 };
 
 FlatView flat_view(const Axes& axes, double theta);
@@ -120,9 +122,9 @@ double centre_path(const Axes& axes, double theta);
 double arc_length(const Axes& axes, double theta);
 
 // path_from_flat is the path of the centre from the flat position (long axis along the ground),
-// path_from_tip from the tip, to the angle with sine s >= 0 and cosine c >= 0 from there.
-double path_from_flat(double long_axis, double short_axis, double s, double c);
-double path_from_tip(double long_axis, double short_axis, double s, double c);
+// path_from_tip from the tip, to the angle with sine s >= 0 and cosine c >= 0 from there; a >= b.
+double path_from_flat(const Axes& lying, double s, double c);
+double path_from_tip(const Axes& lying, double s, double c);
 
 // Half a turn, pi in two parts: the ellipse is the same after it.
 inline constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};

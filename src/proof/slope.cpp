@@ -31,7 +31,7 @@ class Well {
           rolling_(scene_.body(), scene_.slope),
           theta_(from.theta),
           side_(std::copysign(1.0, asked.slope)) {
-        const auto equilibrium = equilibria(axes_.a, axes_.b, std::tan(scene_.slope));
+        const auto equilibrium = equilibria(axes_, std::tan(scene_.slope));
         if (!equilibrium) return;
         upright_ = half_pi + equilibrium->upright;
         lying_ = equilibrium->lying;

@@ -70,10 +70,9 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     if (from.rests || from.view.c2 == 0) return flow;
     set_motion(flow, phase_start(from));
     flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
-    // With a tail the steps end 1e-9 of the path too early: the quarter's path is computed anew.
+    // With a tail the steps end 1e-9 of the path too early: the quarter's path is computed again.
     if (flow.phase.map.has_tail) {
-        flow.phase.quarter_path =
-            path_from_flat(from.view.long_axis, from.view.short_axis, 1.0, 0.0);
+        flow.phase.quarter_path = path_from_flat(from.view.lying(), 1.0, 0.0);
     }
     return flow;
 }
@@ -89,6 +88,12 @@ FlowSample sample(const RollingFlow& flow, double t) {
     FlowSample moved = sample_at<double>(flow, phase_start(flow.from), t);
     moved.x += flow.x;
     return moved;
+}
+
+FlowSample sample_alone(const RollingStart& from, double t) {
+    const RollingFlow flow = rolling_flow(from);
+    validate_time(t, longest_time(flow));
+    return sample(flow, t);
 }
 
 double longest_time(const RollingFlow& flow) { return 1e15 * (0.5 * period(flow)); }

@@ -184,6 +184,9 @@ inline bool may_be_short(const RollingStart& from, double t) {
 // The state at a time |t| <= longest_time.
 FlowSample sample(const RollingFlow& flow, double t);
 
+// The state of one body at a time, which is validated.
+FlowSample sample_alone(const RollingStart& from, double t);
+
 // The time of 1e15 half turns [s]; beyond, a double does not resolve the phase.
 double longest_time(const RollingFlow& flow);
 

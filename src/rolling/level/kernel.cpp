@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::size_t most_bodies = 512;  // bodies of one kernel call
 
-FlowSample sample_alone(const RollingStart& start, double t) {
-    const RollingFlow flow = rolling_flow(start);
-    validate_time(t, longest_time(flow));
-    return sample(flow, t);
-}
-
 constexpr int most_keys = 144;
 constexpr int no_key = -1;
 

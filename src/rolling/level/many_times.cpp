@@ -21,8 +21,8 @@ constexpr std::size_t most_pieces = 1000;
 // keep their digits near both.
 double path_in_quarter(const FlatView& body, double sin, double cos) {
     const double s = std::abs(sin);
-    const double path = s <= cos ? path_from_flat(body.long_axis, body.short_axis, s, cos)
-                                 : -path_from_tip(body.long_axis, body.short_axis, cos, s);
+    const Axes lying = body.lying();
+    const double path = s <= cos ? path_from_flat(lying, s, cos) : -path_from_tip(lying, cos, s);
     return std::copysign(1.0, sin) * path;
 }
 
@@ -189,7 +189,7 @@ class TableMaker {
         reader.quarters = quarters;
         reader.angle = two_sum(flow_.from.theta, -angle.high);
         reader.path = path_in_quarter(view, view.sin, view.cos);
-        reader.quarter_path = path_from_flat(view.long_axis, view.short_axis, 1.0, 0.0);
+        reader.quarter_path = path_from_flat(view.lying(), 1.0, 0.0);
         reader.theta = flow_.from.theta;
         reader.x = flow_.x;
     }
@@ -211,7 +211,7 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     // Number of times below which there is no table: it costs as much as ten single times. A search
-    // for a root, which asks for a few times again and again, so always gets the same bits.
+    // for a root, which samples a few times again and again, thus always gets the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

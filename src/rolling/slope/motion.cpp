@@ -115,9 +115,10 @@ double turning_in(const SlopePiece& piece) {
 
 }  // namespace
 
-std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline) {
+std::optional<Equilibria> equilibria(const Axes& lying, double incline) {
     // The tangents of both angles solve one quadratic equation; the product of its roots is known.
-    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
+    const auto [long_axis, short_axis] = lying;
+    const double c2 = lying.c2();
     const double both = 2 * long_axis * short_axis * incline;
     const double root = (c2 - both) * (c2 + both);
     if (root <= 0) return std::nullopt;
@@ -140,15 +141,14 @@ SlopeBody slope_body(const Body& from, double slope) {
     body.gyration2 = from.gyration2 / body.length / body.length;
     const double gravity = from.gravity / body.length * body.time * body.time;
     body.gravity = ground_gravity(gravity, std::abs(slope));
-    body.equilibria =
-        equilibria(body.long_axis, body.short_axis, body.gravity.along / body.gravity.into);
+    body.equilibria = equilibria(body.lying(), body.gravity.along / body.gravity.into);
     body.pull = gravity * body.c2;
     body.short_axis2 = square(body.short_axis);
     body.long_axis2 = square(body.long_axis);
     body.d0 = body.short_axis2 * (body.gyration2 + body.short_axis2);
     body.d1 = body.c2 * (body.gyration2 + body.long_axis2 + body.short_axis2);
     body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + body.short_axis2));
-    body.quarter_path = path_from_flat(body.long_axis, body.short_axis, 1.0, 0.0);
+    body.quarter_path = path_from_flat(body.lying(), 1.0, 0.0);
     body.gain = body.gravity.along * 2 * body.quarter_path;
     return body;
 }
@@ -156,8 +156,7 @@ SlopeBody slope_body(const Body& from, double slope) {
 Geometry geometry(const SlopeBody& body, double quarters, double angle) {
     const double s = std::sin(angle);
     const double c = std::cos(angle);
-    const Axes axes{body.long_axis, body.short_axis};
-    return is_odd(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
+    return is_odd(quarters) ? geometry(body.lying(), c, -s) : geometry(body.lying(), s, c);
 }
 
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to) {
@@ -251,7 +250,7 @@ double acceleration_at(const SlopeBody& body, const Geometry& at, double omega) 
 
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
-    const double w = bend_of_height({body.long_axis, body.short_axis}, at);
+    const double w = bend_of_height(body.lying(), at);
     const auto& [into, along] = body.gravity;
     const auto [normal, friction] =
         centre_of_rolling(body.gyration2, into, along, at.h, at.dh, at.ddh, w, square(place.omega))

@@ -20,7 +20,7 @@ struct Equilibria {
 };
 
 // The equilibria, empty where the slope is too steep. `incline` is the tangent of the slope.
-std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline);
+std::optional<Equilibria> equilibria(const Axes& lying, double incline);
 
 // Body and ground in units of their own, powers of two. The slope falls to the side of growing
 // angles; a slope that falls to the other side is seen from behind.
@@ -42,6 +42,8 @@ struct SlopeBody {
     double slowest;       // rate at which gravity moves a body that starts at rest
     double quarter_path;  // path of the centre in a quarter turn
     double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
+
+    Axes lying() const { return {long_axis, short_axis}; }
 };
 
 SlopeBody slope_body(const Body& body, double slope);

@@ -87,8 +87,7 @@ Datum datum_of(const SlopeRun& run, const Datum& start) {
     const double left = body.gain + std::abs(over_tip(body, energy, at));
     if (left > small * energy) return run.start;
     const bool is_ahead = run.heading * at.sin * at.cos >= 0;
-    const double way =
-        path_from_tip(body.long_axis, body.short_axis, std::abs(at.cos), std::abs(at.sin));
+    const double way = path_from_tip(body.lying(), std::abs(at.cos), std::abs(at.sin));
     const double path = is_ahead ? way : -way;
     const double since_start = double(run.from.path + run.heading * path);
     return {over_tip(body, start.energy, start.at) + body.gravity.along * since_start,

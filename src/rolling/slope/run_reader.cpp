@@ -8,7 +8,7 @@ namespace rolling_ellipse {
 namespace {
 
 // The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers cancel hardly.
+// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers hardly cancel.
 ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));
