@@ -41,16 +41,15 @@ bool reaches_the_tip(const Scene& scene, const State& start) {
     return square(start.z_dot) >= 2 * scene.gravity * to_tip;
 }
 
+// D in the flat position.
+double flat_inertia(const Body& body, const FlatView& at) {
+    return body.gyration2 + square(at.short_axis);
+}
+
 // The speed when passing the flat position of a motion with an energy over it, in units of the long
 // semi-axis: physics (44).
 double flat_speed(const Body& body, const FlatView& at, double over_flat) {
-    const double flat_inertia = body.gyration2 + square(at.short_axis);
-    return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia);
-}
-
-double contact_loss_speed(const Body& body) {
-    const FlatView at = flat_view(body.axes(), 0.0);
-    return flat_speed(body, at, contact_loss(shape(body, at)).value);
+    return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia(body, at));
 }
 
 // Fate of a body that rolls over the flat position, before it passes the tip.
@@ -123,8 +122,7 @@ struct Climb {
 // A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/c^2,
 // physics (53), with no more energy than at the start.
 double too_slow(const Body& body, const FlatView& at) {
-    const double flat_inertia = body.gyration2 + square(at.short_axis);
-    return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia);
+    return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia(body, at));
 }
 
 // The least speed of lift-off, by steps of a factor: coarse without jams, since a body that leaves
@@ -164,20 +162,19 @@ LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
 
 double roll_over_speed(const Body& body) {
     const FlatView at = flat_view(body.axes(), 0.0);
-    const double flat_inertia = body.gyration2 + square(at.short_axis);
-    return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
+    return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia(body, at));
 }
 
 Thresholds thresholds(const Body& body, double friction) {
     const FlatView at = flat_view(body.axes(), 0.0);
     const Shape shape = rolling_ellipse::shape(body, at);
-    const double flat_inertia = body.gyration2 + square(at.short_axis);
     const double tip_inertia = body.gyration2 + square(at.long_axis);
 
     Thresholds result{};
     // physics (44, 45)
     result.roll_over_speed = roll_over_speed(body);
-    result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
+    result.rocking_rate =
+        std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia(body, at)));
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
     if (at.c2 == 0) {
         if (friction > 0) return result;
@@ -212,15 +209,14 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
                  const Checkpoint& checkpoint) {
     const FlatView at = flat_view(body.axes(), 0.0);
     if (at.c2 == 0) return {};
-    const Scene level = level_scene(body, friction);
-    const Units units = natural_units(level.body(), level.mass);
-    const Scene scene = in_units(level, units);
+    const Units units = natural_units(body);
+    const Scene scene = in_units(level_scene(body, friction), units);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
     // At 50 times the speeds that weight decides gravity is 2500 times weaker in units of omega^2,
     // and no longer matters. The slip speed may be far below them: that of a body that slips at
     // rest.
-    const double weighty = std::max(roll_over_speed(body), contact_loss_speed(body)) * units.time;
-    const double high = 50 * std::max(low, weighty);
+    const double loss = flat_speed(body, at, contact_loss(shape(body, at)).value);
+    const double high = 50 * std::max(low, std::max(roll_over_speed(body), loss) * units.time);
     const bool may_jam = std::isfinite(friction) && friction > painleve_friction;
     LiftOff result = scanned(Climb{scene, checkpoint}, low, high, may_jam);
     result.speed /= units.time;

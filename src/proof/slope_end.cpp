@@ -283,25 +283,20 @@ Meeting start_of(const SlopeFlow& flow) {
     return {0.0, flow.theta, flow.omega == 0 ? flow.body.side : std::copysign(1.0, flow.omega)};
 }
 
-// The meetings of a circle or a body in equilibrium: both need the same friction all the time.
-LawMeetings law_of_constant_forces(const SlopeFlow& flow, double friction) {
-    const auto [into, along] = flow.body.gravity;
-    double needed = along / into;
-    if (!flow.rests) {
-        const double k2 = flow.body.gyration2;
-        needed *= k2 / (k2 + square(flow.body.long_axis));
-    }
-    if (std::isinf(friction)) return {};
-    const Sign margin = sign(tracked(friction) - tracked(needed));
-    if (margin == Sign::positive) return {};
-    const Meeting start = start_of(flow);
-    return margin == Sign::negative ? LawMeetings{{}, start} : LawMeetings{start, {}};
-}
-
 }  // namespace
 
+// A circle and a body in equilibrium need the same friction all the time.
 bool LawWatch::examine(const Even&) {
-    met_ = law_of_constant_forces(flow_, friction_);
+    if (std::isinf(friction_)) return false;
+    const auto [into, along] = flow_.body.gravity;
+    double needed = along / into;
+    if (!flow_.rests) {
+        const double k2 = flow_.body.gyration2;
+        needed *= k2 / (k2 + square(flow_.body.long_axis));
+    }
+    const Sign margin = sign(tracked(friction_) - tracked(needed));
+    if (margin == Sign::undecided) met_.touched = start_of(flow_);
+    if (margin == Sign::negative) met_.broken = start_of(flow_);
     return met_.broken.has_value();
 }
 
