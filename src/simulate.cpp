@@ -15,9 +15,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // The settings with "auto" replaced by the simplest model that the scene needs, and its method.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool fixed =
-            settings.method != Method::automatic;  // a method asks for the rolling model
-        settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
+        const bool rolls = settings.method != Method::automatic;  // methods are those of rolling
+        settings.model = rolls || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
         const bool stepped = settings.model == Model::multipliers;

@@ -115,7 +115,8 @@ class ContactRun {
         const double friction = friction_to_roll();
         const bool at_limit = friction != scene_.friction;
         EndOfRolling end = end_of_rolling(start, friction);
-        // At the limit of friction rolling may last less than a rounding of theta: it is made one.
+        // At the limit of friction rolling may last less than a rounding of theta: it then lasts
+        // one.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
@@ -153,7 +154,7 @@ class ContactRun {
         const auto [end, omega, x] = sample(*kept, lasts);
         const double theta = count_from_quarter({end, 0.0}).high;
         state_ = without_slip(axes(), theta, omega, x, Mode::rolling);
-        go_on_by_forces(false);
+        continue_by_forces(false);
     }
 
     void slide() {
@@ -189,7 +190,7 @@ class ContactRun {
             return note(EventKind::jam, before);
         }
         if (stop == SlideStop::pressure_vanishes) {
-            return go_on_with({Mode::flight}, EventKind::lift_off, before);
+            return continue_with({Mode::flight}, EventKind::lift_off, before);
         }
         state_ = without_slip(axes(), before.theta, before.omega, before.x, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
@@ -197,7 +198,7 @@ class ContactRun {
         if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
             state_.x_dot = before.x_dot;
         }
-        go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
+        continue_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
     // Follows a grazing contact as free flight: both motions agree to 1e-14 up to turn_of_grazing.
@@ -247,11 +248,11 @@ class ContactRun {
         // A rebound slower than a rounding of the speed of a fall counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
             state_.z_dot = at.dh * state_.omega;
-            return go_on_with(continuation(scene_, state_), EventKind::impact, before);
+            return continue_with(continuation(scene_, state_), EventKind::impact, before);
         }
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const Bounce bounce{rebound, rebound / -approach, c};
-        go_on_with({Mode::flight}, EventKind::impact, before, rebound);
+        continue_with({Mode::flight}, EventKind::impact, before, rebound);
         low_ = low;
         if (!ending_ && settles(scene_, state_.omega, bounce, rest_speed_)) settle(bounce);
     }
@@ -261,18 +262,18 @@ class ContactRun {
         add_segment(bounces);
         if (!advance(bounces.lasts)) return;
         recount(bounces.end, bounces.angle);
-        go_on_by_forces(true);
+        continue_by_forces(true);
     }
 
-    void go_on_by_forces(bool may_roll) {
+    void continue_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
         // A start at the limit of rolling is a tie.
         if (now() == 0 && motion_.events.empty()) return start_with(next);
-        go_on_with(next, kind_of(next.mode, EventKind::slip), State(state_));
+        continue_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
 
-    void go_on_with(const Continuation& next, EventKind kind, const State& before,
-                    double rebound = 0.0) {
+    void continue_with(const Continuation& next, EventKind kind, const State& before,
+                       double rebound = 0.0) {
         next_ = next;
         low_ = {};
         gap_rate_ = rebound;

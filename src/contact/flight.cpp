@@ -39,7 +39,7 @@ BeyondSmall beyond_small(double x) {
     return {-x * y2 / 6 * value(series[0], y2), -square(x) * y2 / 12 * value(series[1], y2)};
 }
 
-// By how much h grows as the body turns, with the sum of both h, physics (55):
+// The growth of h as the body turns, given the sum of both h, physics (55):
 // h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + turned) sin(turned).
 double rise(const Axes& axes, double theta, double turned, double sum) {
     return axes.c2() * std::sin(2 * theta + turned) * std::sin(turned) / sum;

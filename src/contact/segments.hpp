@@ -81,10 +81,10 @@ State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turne
 // A motion of one segment, with this law, in SI units.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Samples a motion at an expected number of times in all, which may come in parts: a table that so
-// many are worth is made once. A sample is a FlowSample (theta, omega, x), a ContactSample (state
-// and force) or a CoordinateState, in SI units; every segment has all three. At an event it is the
-// one just after it. A motion without segments has no samples.
+// Samples a motion at an expected number of times in all, which may come in parts: a table, if so
+// many times are worth one, is made once. A sample is a FlowSample (theta, omega, x), a
+// ContactSample (state and force) or a CoordinateState, in SI units; every segment has all three.
+// At an event it is the one just after it. A motion without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);

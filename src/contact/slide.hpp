@@ -77,7 +77,7 @@ State end_of(const Slide& slide);
 DoubleDouble angle_at_end(const Slide& slide);
 
 // The angular velocity at the last point, where the slip has vanished: by x_dot = h omega, if x_dot
-// has had smaller sizes, and so roundings, in the slide.
+// was smaller during the slide than h omega, and so has smaller roundings.
 DoubleDouble omega_without_slip(const Slide& slide);
 
 // States and forces at n times since the start, ascending.

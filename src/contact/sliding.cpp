@@ -276,7 +276,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
 
 // Whether a contact that rolls at the limit of its law, to within rounding of the forces and a blur
 // of theta, breaks it in the next moment: with finite friction |F| = mu N, else N = 0. The moment
-// is the first that rounding can tell.
+// is the first that rounding can resolve.
 bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
                  const ContactForce& force, double blur) {
     constexpr double least_turn = 0x1p-20;  // to the next moment [rad]

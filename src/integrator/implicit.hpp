@@ -195,12 +195,9 @@ class Radau {
         const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
         const Vector<N> mass = f_.mass() / h;
         Matrix<N> real_matrix = -jacobian;
-        ComplexMatrix complex_matrix;
-        for (int k = 0; k < N * N; ++k) complex_matrix(k) = real_matrix(k);
-        for (int k = 0; k < N; ++k) {
-            real_matrix(k, k) += C::gamma * mass[k];
-            complex_matrix(k, k) += pair * mass[k];
-        }
+        ComplexMatrix complex_matrix = real_matrix.template cast<std::complex<double>>();
+        real_matrix.diagonal() += C::gamma * mass;
+        complex_matrix.diagonal() += pair * mass;
         const LU<double, N> real(real_matrix);
         const LU<std::complex<double>, N> complex(complex_matrix);
 

@@ -86,7 +86,7 @@ struct StepCounts {
 };
 
 // Return value of a visitor: `changed` if it altered the point, so that f must be evaluated again.
-enum class AfterStep { go_on, changed };
+enum class AfterStep { unchanged, changed };
 
 // Reason for the end of a motion. Integrators return the first four; the others belong to whole
 // motions.

@@ -147,7 +147,7 @@ double project(const SteppedMultipliers& motion, CoordinateState& state) {
 
 template <int N>
 AfterStep adjust(SteppedMultipliers& motion, Point<N>& point) {
-    if (!projects(motion)) return AfterStep::go_on;
+    if (!projects(motion)) return AfterStep::unchanged;
     CoordinateState state = state_of<N>(point.y);
     motion.most_projected = std::fmax(motion.most_projected, project(motion, state));
     point.y.template head<10>() << state.q, state.q_dot;

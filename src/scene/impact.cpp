@@ -77,7 +77,7 @@ class ImpulsePath {
 
     // Follows the path with du/dp = `du` and `tangential` impulse per normal one, for a normal
     // impulse of at most `most`; false if restitution ends before.
-    bool go_on(double du, double tangential, double most) {
+    bool follow(double du, double tangential, double most) {
         double left = most;
         if (u_ < 0) {
             const double p = std::fmin(du > 0 ? -u_ / du : infinity, left);
@@ -142,17 +142,17 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
         const double side = std::copysign(1.0, c.v);
         const double v_gain = c.gtn - friction * side * c.gtt;
         const double to_stick = side * v_gain < 0 ? -c.v / v_gain : infinity;
-        if (!path.go_on(c.gnn - friction * side * c.gtn, -friction * side, to_stick)) {
+        if (!path.follow(c.gnn - friction * side * c.gtn, -friction * side, to_stick)) {
             return path.result(false);
         }
         path.stop_slip(c);
     }
     const bool sticks = std::abs(c.gtn) <= friction * c.gtt;
     if (sticks) {
-        path.go_on(c.determinant / c.gtt, -c.gtn / c.gtt, infinity);
+        path.follow(c.determinant / c.gtt, -c.gtn / c.gtt, infinity);
     } else {  // slip starts (again), driven by the normal impulse
         const double side = std::copysign(1.0, c.gtn);
-        path.go_on(c.gnn - friction * side * c.gtn, -friction * side, infinity);
+        path.follow(c.gnn - friction * side * c.gtn, -friction * side, infinity);
     }
     return path.result(sticks);
 }

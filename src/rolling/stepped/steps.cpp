@@ -228,7 +228,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
     result.followed_until = t_end;
     SteppedRolling& motion = result.motion;
     if (start.mode == Mode::rest) return result;
-    const auto keep = [](Point<2>&) { return AfterStep::go_on; };
+    const auto keep = [](Point<2>&) { return AfterStep::unchanged; };
     const auto reduce = [&](Point<2>& point) {
         const double half_turns = take_half_turns_off(point.y[0], point.carry[0]);
         point.origin[0] += half_turns * pi;
