@@ -255,7 +255,7 @@ Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
     return right == Sign::positive ? left : right;
 }
 
-// The first place in [0, 1] from which on p is provably negative. A value within rounding of zero
+// The first place in [0, 1] from which p is provably negative. A value within rounding of zero
 // does not count as negative. The place is 0 if only such values come before negative ones.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {

@@ -29,7 +29,7 @@ struct Onset {
     }
 };
 
-// The energy from which on N of rolling vanishes somewhere, physics (46).
+// The energy from which N of rolling vanishes somewhere, physics (46).
 Onset contact_loss(const Shape& shape);
 
 // Energies between which rolling needs more friction than there is.

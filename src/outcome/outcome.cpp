@@ -19,7 +19,7 @@ namespace {
 // N vanishes, so that with infinite friction, too, it starts to slide.
 
 // The outcome for a body that rolls up to the top: it passes the tip or turns back, if rounding can
-// tell.
+// decide it.
 Outcome at_the_top(const RollingStart& from) {
     const FlatView& at = from.view;
     const EnergyHeight& height = from.height;

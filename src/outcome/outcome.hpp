@@ -58,7 +58,7 @@ struct SpeedRange {
 // or friction is infinite, and its angle absent, where the change never happens.
 struct Thresholds {
     double roll_over_speed;                // above it the body turns over
-    double contact_loss_speed = infinity;  // from it on rolling would need N < 0 somewhere
+    double contact_loss_speed = infinity;  // from it up, rolling needs N < 0 somewhere
     std::optional<double> contact_loss_angle;
     // Between these speeds rolling needs more friction than there is somewhere: none for a circle,
     // one, or two, see outcome/onset.hpp. The last one has no upper end.

@@ -59,7 +59,7 @@ struct Quarter {
     }
 };
 
-// The place from which on the law holds: the start, or a place just ahead of a start at which the
+// The place from which the law holds: the start, or a place just ahead of a start at which the
 // law is at its limit; empty where the law is broken.
 std::optional<double> holds_from(const Quarter& quarter) {
     constexpr double ahead = 1e-8;  // share of way to flat or tip, far enough to pass rounding
