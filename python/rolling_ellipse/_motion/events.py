@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
-import numpy as np
-
 from .. import _core
 from .._ask.printing import Row, brief, html_table, printable, required, text_table
 from .._ask.records import FieldsOnly, find_late, trusted
@@ -20,7 +18,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
-_MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
+MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
 _SENTENCES = {
     EventKind.SLIP: "friction cannot hold the contact any more",
     EventKind.STICK: "the slip has come to an end; the body rolls",
@@ -91,6 +89,19 @@ class Event(FieldsOnly):
         )
 
 
+def _columns() -> dict[str, tuple[str, str]]:
+    """Return the columns of the table of events: attribute and unit; texts have the unit "1"."""
+    columns = {"t": ("t", "s"), "kind": ("kind.name", "1")}
+    for when in ("before", "after"):
+        for name, unit in STATE_UNITS.items():
+            columns[f"{name}_{when}"] = f"state_{when}.{name}", unit
+        columns[f"mode_{when}"] = f"state_{when}.mode.name", "1"
+        columns[f"energy_{when}"] = f"energy_{when}", "J"
+    for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after have them
+        columns[name] = f"state_after.{name}", InitialState._units[name]
+    return columns | {"reason": ("state_after.reason", "1")}
+
+
 class Events(tuple[Event, ...]):
     """A tuple of events in the order of time that prints as a table, as its slices do.
 
@@ -104,8 +115,8 @@ class Events(tuple[Event, ...]):
     @overload
     def __getitem__(self, place: slice) -> Events: ...
     def __getitem__(self, place: Any) -> Any:
-        found = super().__getitem__(place)
-        return Events(found) if isinstance(place, slice) else found
+        part = super().__getitem__(place)
+        return Events(part) if isinstance(place, slice) else part
 
     def _shown(self) -> list[Row]:
         hidden = len(self) - _FIRST - _LAST
@@ -139,27 +150,12 @@ class Events(tuple[Event, ...]):
             Without pandas: it comes with ``rolling_ellipse[data]``.
         """
         pandas = required("pandas", "to_dataframe")
-        columns: dict[str, Any] = {}
-        units: dict[str, str] = {}
-
-        def add(name: str, unit: str, values: Iterable[float]) -> None:
-            columns[name], units[name] = np.array(list(values), float), unit
-
-        def add_names(name: str, values: Iterable[Any]) -> None:
-            columns[name], units[name] = [each.name for each in values], "1"
-
-        add("t", "s", (each.t for each in self))
-        add_names("kind", (each.kind for each in self))
-        for when in ("before", "after"):
-            states = [getattr(each, f"state_{when}") for each in self]
-            for name, unit in STATE_UNITS.items():
-                add(f"{name}_{when}", unit, map(attrgetter(name), states))
-            add_names(f"mode_{when}", (state.mode for state in states))
-            add(f"energy_{when}", "J", map(attrgetter(f"energy_{when}"), self))
-        for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after have them
-            add(name, InitialState._units[name], map(attrgetter(name), states))
-        frame: DataFrame = pandas.DataFrame(columns | {"reason": [each.reason for each in states]})
-        frame.attrs = {"units": units | {"reason": "1"}}
+        columns = _columns()
+        values = {name: [*map(attrgetter(path), self)] for name, (path, _) in columns.items()}
+        frame: DataFrame = pandas.DataFrame(values)
+        units = {name: unit for name, (_, unit) in columns.items()}
+        frame = frame.astype({name: float for name, unit in units.items() if unit != "1"})
+        frame.attrs = {"units": units}
         return frame
 
 
@@ -167,24 +163,10 @@ def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
     """Return the events of rows of numbers; their states are made when first asked for."""
     return Events(
         [
-            trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
+            trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_numbers": row, "_scene": scene})
             for row in rows  # a row has the columns `_core.COLUMNS["events"]`
         ]
     )
-
-
-def _before(event: Any) -> InitialState:
-    return _state(event, after=False, reason="just before")
-
-
-def _after(event: Any) -> InitialState:
-    pulled = event.kind is EventKind.SLIP and math.isinf(event._scene.friction)
-    return _state(event, after=True, reason=_PULLED if pulled else _SENTENCES[event.kind])
-
-
-def _state(event: Any, after: bool, reason: str) -> InitialState:
-    found: dict[str, Any] = _core.event_state(event._scene.core, event._found, after)
-    return trusted(InitialState, found | {"mode": _MODES[found["mode"]], "reason": reason})
 
 
 def energies(scene: Scene, of: Any) -> tuple[Any, Any, Any]:
@@ -195,9 +177,22 @@ def energies(scene: Scene, of: Any) -> tuple[Any, Any, Any]:
     return translational, rotational, scene.mass * scene.gravity * height
 
 
-def _energy(name: str) -> Any:
-    return lambda event: sum(energies(event._scene, getattr(event, name)))
+def _state(event: Any, *, after: bool) -> InitialState:
+    state: dict[str, Any] = _core.event_state(event._scene.core, event._numbers, after)
+    reason = _SENTENCES[event.kind] if after else "just before"
+    if after and event.kind is EventKind.SLIP and math.isinf(event._scene.friction):
+        reason = _PULLED
+    return trusted(InitialState, state | {"mode": MODES[state["mode"]], "reason": reason})
 
 
-find_late(Event, state_before=_before, state_after=_after)
-find_late(Event, energy_before=_energy("state_before"), energy_after=_energy("state_after"))
+def _energy(event: Any, state: InitialState) -> float:
+    return sum(energies(event._scene, state))
+
+
+find_late(
+    Event,
+    state_before=lambda event: _state(event, after=False),
+    state_after=lambda event: _state(event, after=True),
+    energy_before=lambda event: _energy(event, event.state_before),
+    energy_after=lambda event: _energy(event, event.state_after),
+)
