@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._ask.printing import required
-from ..._ask.scene import Scene
 from ..._core import Mode
 from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity
 
@@ -58,46 +57,33 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
         each.name: ("t", getattr(trajectory, each.name).copy(), attributes(each))
         for each in QUANTITIES
     }
-    variables["multipliers"] = (
-        ("t", "constraint"),
-        trajectory.multipliers.copy(),
-        {
-            "units": ", ".join(each.unit for each in MULTIPLIERS),
-            "long_name": "; ".join(each.meaning for each in MULTIPLIERS),
-        },
-    )
+    _, units, meanings, _ = zip(*MULTIPLIERS, strict=True)
+    about = {"units": ", ".join(units), "long_name": "; ".join(meanings)}
+    variables["multipliers"] = ("t", "constraint"), trajectory.multipliers.copy(), about
     flags = {  # names of the codes, as in the CF conventions
         "flag_values": np.array(list(Mode), dtype=np.int8),
         "flag_meanings": " ".join(mode.name for mode in Mode),
     }
     variables["mode"] = ("t", trajectory.mode.copy(), attributes(MODE) | flags)
-    coordinates = {
-        "t": ("t", trajectory.t.copy(), attributes(TIME)),
-        "constraint": ["f1", "f2", "f3", "f4"],
-    }
-    found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
-    return found
+    times = "t", trajectory.t.copy(), attributes(TIME)
+    coordinates = {"t": times, "constraint": ["f1", "f2", "f3", "f4"]}
+    dataset: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
+    return dataset
 
 
 def attributes(quantity: Quantity) -> dict[str, Any]:
     return {"units": quantity.unit, "long_name": quantity.meaning}
 
 
-def _facts(trajectory: Trajectory) -> dict[str, float | str]:
+def _facts(trajectory: Trajectory) -> dict[str, Any]:
     """Return facts of scene and solution as numbers and strings, which every format can hold.
 
     A field of the scene that is None, its default, has no entry.
     """
-    scene = trajectory.scene
-    facts: dict[str, float | str] = {
-        field.name: value
-        for field in fields(Scene)
-        if field.name != "impulse" and (value := getattr(scene, field.name)) is not None
-    }
-    if scene.impulse is not None:
-        for field in fields(scene.impulse):
-            facts[f"impulse_{field.name}"] = getattr(scene.impulse, field.name)
+    facts: dict[str, Any] = asdict(trajectory.scene)
+    impulse = facts.pop("impulse") or {}
+    facts |= {f"impulse_{name}": value for name, value in impulse.items()}
     for name in ("model", "method", "message", "reason", "valid_until"):
         facts[name] = getattr(trajectory, name)
     facts["status"] = trajectory.status.name
-    return facts
+    return {name: value for name, value in facts.items() if value is not None}
