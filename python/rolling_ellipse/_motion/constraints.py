@@ -72,15 +72,9 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     require_together(q=q, q_dot=q_dot)
     q, q_dot = np.broadcast_arrays(q, q_dot)
     shape = q.shape[:-1]
-    position, velocity, gap, slip = _core.constraints(
-        q.reshape(-1, COORDINATES), q_dot.reshape(-1, COORDINATES), number("a", a), number("b", b)
-    )
-    return ConstraintResiduals(
-        position.reshape(*shape, 3),
-        velocity.reshape(*shape, 4),
-        gap.reshape(shape),
-        slip.reshape(shape),
-    )
+    rows = q.reshape(-1, COORDINATES), q_dot.reshape(-1, COORDINATES)
+    residuals = _core.constraints(*rows, number("a", a), number("b", b))
+    return ConstraintResiduals(*(each.reshape(*shape, *each.shape[1:]) for each in residuals))
 
 
 def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArray, FloatArray]:
@@ -116,20 +110,20 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
     for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, nor
     f1 and slip while sliding: they are NaN then.
     """
-    scene, found = motion.scene, motion.constraint_residuals()
+    scene, residuals = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)
     rate = float(np.max(np.abs(motion.omega))) or math.sqrt(scene.gravity / length)
     held = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
     stuck = np.where(motion.mode == Mode.SLIDING, np.nan, held)
-    f2, f3, f4 = np.abs(found.position).T
-    positions = {"f2": f2 * held, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * held}
-    f1, f2_dot, f3_dot, f4_dot = np.abs(found.velocity).T / rate
+    f2, f3, f4 = np.abs(residuals.position).T
+    positions = {"f2": f2 * held, "f3": f3 / length, "f4": f4, "gap": np.abs(residuals.gap) * held}
+    f1, f2_dot, f3_dot, f4_dot = np.abs(residuals.velocity).T / rate
     velocities = {
         "f1": f1 * stuck,
         "df2/dt": f2_dot * held,
         "df3/dt": f3_dot / length,
         "df4/dt": f4_dot,
-        "slip": np.abs(found.slip) / rate * stuck,
+        "slip": np.abs(residuals.slip) / rate * stuck,
     }
     return positions, velocities
 

@@ -39,17 +39,10 @@ def when(
     direction: int = 0,
 ) -> list[FloatArray]: ...  # fmt: skip
 def when(
-    motion: Trajectory,
-    *,
-    theta: Any = None,
-    x: Any = None,
-    z: Any = None,
-    omega: Any = None,
-    contact_x: Any = None,
-    function: Callable[[Trajectory], Any] | None = None,
-    event: str | EventKind | None = None,
-    direction: int = 0,
-) -> Any:
+    motion: Trajectory, *, theta: Any = None, x: Any = None, z: Any = None, omega: Any = None,
+    contact_x: Any = None, function: Callable[[Trajectory], Any] | None = None,
+    event: str | EventKind | None = None, direction: int = 0,
+) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
     They belong to the motion, to the last bits, not to its samples. No time is missed where the
@@ -86,10 +79,8 @@ def when(
         If there are more than a million times, if none or several quantities are given, or a
         value is not finite.
     """
-    given = {
-        "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
-        "function": function, "event": event,
-    }  # fmt: skip
+    given = locals()
+    del given["motion"], given["direction"]
     chosen = {name: value for name, value in given.items() if value is not None}
     if len(chosen) != 1:
         raise ValueError(
