@@ -109,16 +109,15 @@ py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
 
-// q, with the x that is given, q_dot, q_ddot, normal and friction force, multipliers of rolling.
+// q, with the x that is given, q_dot, q_ddot and multipliers of rolling.
 py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
                         const Array& x) {
     const auto row = [&](double angle, double speed, double position) {
         RollingDetail detail = rolling_detail(scene, angle, speed);
         detail.state.q[coordinate::x] = position;
-        return std::tuple(detail.state.q, detail.state.q_dot, detail.q_ddot, detail.force.normal,
-                          detail.force.friction, detail.multipliers);
+        return std::tuple(detail.state.q, detail.state.q_dot, detail.q_ddot, detail.multipliers);
     };
-    return named({"q", "q_dot", "q_ddot", "normal_force", "friction_force", "multipliers"},
+    return named({"q", "q_dot", "q_ddot", "multipliers"},
                  computed_from<3>(theta.size(), {"theta", "omega", "x"}, {theta, omega, x}, row));
 }
 
@@ -149,9 +148,9 @@ py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const 
 }  // namespace
 
 CoordinateState single_state(const Array& q, const Array& q_dot) {
-    require_matrix("q", q, 5, 1);
-    require_matrix("q_dot", q_dot, 5, 1);
-    return state_at(q, q_dot, 0);
+    require_length("q", q, 5);
+    require_length("q_dot", q_dot, 5);
+    return {Eigen::Map<const Coordinates>(q.data()), Eigen::Map<const Coordinates>(q_dot.data())};
 }
 
 void bind_states(py::module_& m) {

@@ -72,7 +72,7 @@ RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     const RollingEquation::Accelerations of_centre = rolling.accelerations(at, omega);
     const CoordinateState state = kinematics(axes, theta, omega);
     const ContactForce force = rolling.force(scene.mass, at, omega);
-    return {contact_solution(axes, at, state, force, of_centre), state, force};
+    return {contact_solution(axes, at, state, force, of_centre), state};
 }
 
 ConstrainedBody::ConstrainedBody(const Scene& scene)

@@ -24,10 +24,9 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// Rolling in full: state (its x the integral of h from 0), accelerations, multipliers and force.
+// Rolling in full: state (its x the integral of h from 0), accelerations and multipliers.
 struct RollingDetail : MultiplierSolution {
     CoordinateState state;
-    ContactForce force;
 };
 
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega);

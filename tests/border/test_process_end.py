@@ -113,7 +113,7 @@ plt.rcParams["figure.hooks"] = ["hooks:wait"]
 WORK = {
     "energy": (".energy", WITHIN.format("touch")),
     "q": (".q", WITHIN.format("details")),
-    "sol": (".sol([1.0])", WITHIN.format("solve")),
+    "sol": (".sol([1.0])", WITHIN.format("_core.simulate")),
     "a figure": (".plot_energy()", FIGURE),
 }
 

@@ -5,6 +5,7 @@ import random
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from operator import attrgetter
 from threading import Barrier, Event
 from typing import Any
 
@@ -189,7 +190,7 @@ def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
 READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
     "energy": ("touch", lambda motion: motion.energy),
     "q": ("details", lambda motion: motion.q),
-    "sol": ("solve", lambda motion: motion.sol([1.0])),
+    "sol": ("_core.simulate", lambda motion: motion.sol([1.0])),
 }
 
 
@@ -199,15 +200,15 @@ def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
 ) -> None:
     """A thread held inside a property lets another thread read the property of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
-    begun, go_on, usual = Event(), Event(), getattr(trajectories, within)
+    begun, go_on, usual = Event(), Event(), attrgetter(within)(trajectories)
 
     def slowly(of: Any, *more: Any) -> Any:
-        if of is held or of is held.scene:
+        if of is held or of is held.scene.core:
             begun.set()
             go_on.wait()
         return usual(of, *more)
 
-    monkeypatch.setattr(trajectories, within, slowly)
+    monkeypatch.setattr(f"{trajectories.__name__}.{within}", slowly)
     with ThreadPoolExecutor(2) as pool:
         first = pool.submit(read, held)
         begun.wait()

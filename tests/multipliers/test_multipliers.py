@@ -192,10 +192,10 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
     known = _core.rolling_detail(scene.core, theta, omega, np.zeros(50))
-    q, q_dot, exact, exact_multipliers, normal, friction = (
-        known[name]
-        for name in ("q", "q_dot", "q_ddot", "multipliers", "normal_force", "friction_force")
+    q, q_dot, exact, exact_multipliers = (
+        known[name] for name in ("q", "q_dot", "q_ddot", "multipliers")
     )
+    forces = _core.rolling_contact(scene.core, theta, omega)
     found, multipliers = _core.multiplier_detail(scene.core, settings().core, q, q_dot)
     r, rates2 = q[:, 4], q_dot[:, 2] ** 2 + q_dot[:, 3] ** 2
     way = scene.gravity + r * (np.abs(exact[:, 2]) + np.abs(exact[:, 3]) + rates2)
@@ -211,7 +211,8 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     share_of_push = np.abs(multipliers - exact_multipliers) / push
     told(f"accelerations {np.max(shares):.2g}, multipliers {np.max(share_of_push):.2g}")
     assert np.max(shares) <= 1e-12 and np.max(share_of_push) <= 1e-12
-    assert np.array_equal(exact_multipliers[:, :2], np.stack([friction, normal], axis=1))
+    assert np.array_equal(exact_multipliers[:, 0], forces["friction_force"])
+    assert np.array_equal(exact_multipliers[:, 1], forces["normal_force"])
 
 
 # -------------------------------------------------------------------------- projection
@@ -242,7 +243,7 @@ def test_projection_leaves_residuals_of_rounding_at_the_nearest_state(shape: Sha
             values + shift * generator.uniform(-1, 1, 5) * [size, size, 1, 1, size]
             for values in (rolling, rate)
         )
-        found, found_rate = _core.project(scene.core, q[None].copy(), q_dot[None].copy())
+        found, found_rate = _core.project(scene.core, q, q_dot)
         held = rl.constraints(found, found_rate, a=shape[0], b=shape[1])
         grain = 16 * EPS * max(1.0, abs(theta)) * (size / least) ** 2
         assert np.max(np.abs(held.position)) <= grain * size
@@ -254,7 +255,7 @@ def test_projection_leaves_residuals_of_rounding_at_the_nearest_state(shape: Sha
         along_position = (found - q)[1:] @ (inertia * direction)[1:] / weight
         assert abs(along_velocity) <= 16 * EPS * np.max(np.abs(q_dot)) * size / least
         assert abs(along_position) <= 50 * (shift * size / least) ** 2
-        again = _core.project(scene.core, found[None].copy(), found_rate[None].copy())
+        again = _core.project(scene.core, found, found_rate)
         assert np.max(np.abs(again[0] - found)) <= grain * size
         assert np.max(np.abs(again[1] - found_rate)) <= 8 * grain * size * np.max(np.abs(q_dot))
 

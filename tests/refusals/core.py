@@ -35,7 +35,7 @@ REFUSALS: list[Row] = [
     ("q", lambda _: _core.simulate(SCENE, SETTINGS, TWO, (FIVES, FIVES))),
     ("t", lambda _: _core.simulate(SCENE, SETTINGS, FIVES, None)),
     ("t", lambda _: _core.simulate(SCENE, SETTINGS, TWO[:0], None)),
-    ("q_dot", lambda _: _core.project(SCENE, FIVES[:1], FIVES)),
+    ("q_dot", lambda _: _core.project(SCENE, FIVES[0], FIVES)),
     ("q_dot", lambda _: _core.constraints(FIVES, TWO, 2.0, 1.0)),
     ("q", lambda _: _core.constraint_system(FIVES[0], FIVES, 2.0, 1.0)),
     ("omega", lambda _: _core.kinematics(2, TWO, THREE, 2.0, 1.0)),

@@ -13,8 +13,8 @@ from .._ask.check import FloatArray, finite
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
-from ..geometry import centre_path, contact_angle, contact_distance, support, support_slope
-from .samples import ContactSamples, fields_of, vector
+from ..geometry import centre_path, support
+from .samples import fields_of, vector
 from .status import COMPLETED
 
 if TYPE_CHECKING:
@@ -113,17 +113,6 @@ class _Samples:
         friction_force = scene.mass * (x_ddot - g * math.sin(scene.slope))
         columns = theta, omega, x, z, x_dot, z_dot, normal_force, friction_force
         return t, *(values.copy() for values in columns), mode
-
-    def sample_at(self, _scene: Any, _settings: Any, t: float) -> dict[str, Any]:
-        """Return the numbers of a sample at one time by name, as the core's Solution does."""
-        names = "t", "theta", "omega", "x", *ContactSamples._fields
-        columns = zip(names, self.samples(np.array([t])), strict=True)
-        values = {name: column[0].item() for name, column in columns}
-        theta, axes = values["theta"], {"a": self.scene.a, "b": self.scene.b}
-        values["contact_x"] = values["x"] + support_slope(theta, **axes)
-        return values | {
-            "psi": contact_angle(theta, **axes), "r": contact_distance(theta, **axes)
-        }  # fmt: skip
 
     def passages(self, *_: Any) -> Any:
         raise ValueError("trajectory must be computed to know passages, got one from arrays")

@@ -11,11 +11,12 @@ class Quantity(NamedTuple):
     name: str
     unit: str
     meaning: str
+    shape: str = "(n,)"
 
     @property
     def sentence(self) -> str:
         """Meaning, unit and shape as a docstring."""
-        return f"{self.meaning[0].upper()}{self.meaning[1:]} [{self.unit}], shape (n,)."
+        return f"{self.meaning[0].upper()}{self.meaning[1:]} [{self.unit}], shape {self.shape}."
 
 
 TIME = Quantity("t", "s", "time")
@@ -45,6 +46,11 @@ QUANTITIES = (
     Quantity("translational_energy", "J", "kinetic energy of the centre"),
     Quantity("rotational_energy", "J", "kinetic energy of the rotation about the centre"),
     Quantity("potential_energy", "J", "potential energy"),
+)
+MATRICES = (
+    Quantity("q", "m, m, rad, rad, m", "coordinates x, z, theta, psi, r", "(n, 5)"),
+    Quantity("q_dot", "m/s, m/s, rad/s, rad/s, m/s", "rates of `q`", "(n, 5)"),
+    Quantity("multipliers", "N, N, N, N m", "multipliers of f1 to f4, F and N first", "(n, 4)"),
 )
 MULTIPLIERS = (
     Quantity("lambda1", "N", "multiplier of the constraint f1: the friction force"),

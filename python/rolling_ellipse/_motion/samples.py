@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -13,8 +13,9 @@ import numpy.typing as npt
 from .. import _core
 from .._ask.check import FloatArray, array, shown
 from .._ask.records import trusted
+from .._ask.settings import GIVEN
 from .._core import Mode
-from .events import energies
+from .events import MODES, energies
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -35,7 +36,6 @@ class ContactSamples(NamedTuple):
 
 
 _OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
-_MODES = {mode.value: mode for mode in Mode}
 
 
 def frozen(values: _Values) -> _Values:
@@ -65,36 +65,25 @@ def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
     q_dot of the multiplier model.
     """
     if len(samples) == _OF_COORDINATES:
-        return _of_coordinates(*samples)
+        t, q, q_dot = samples
+        theta, omega, x = (frozen(each.copy()) for each in (q[:, 2], q_dot[:, 2], q[:, 0]))
+        return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
     t, theta, omega, x, *contact = samples
     found = {"t": t, "theta": theta, "omega": omega, "x": x}
-    if contact:
-        found["contact"] = ContactSamples._make(contact)
-    return found
-
-
-def _of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
-    theta, omega, x = (frozen(each.copy()) for each in (q[:, 2], q_dot[:, 2], q[:, 0]))
-    return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
+    return found | {"contact": ContactSamples(*contact)} if contact else found
 
 
 def details(of: Trajectory) -> dict[str, FloatArray]:
-    """Return q, q_dot, q_ddot, multipliers, normal and friction force at the samples."""
+    """Return q, q_dot, q_ddot and multipliers at the samples."""
     body = of.scene.core
     if of.contact is not None:
-        held = of.contact._asdict() | {"theta": of.theta, "omega": of.omega, "x": of.x}
-        del held["mode"]
-        forces = {name: held[name] for name in ("normal_force", "friction_force")}
-        return _core.contact_detail(body, held) | forces
+        direct = {"theta": of.theta, "omega": of.omega, "x": of.x}
+        return _core.contact_detail(body, direct | of.contact._asdict())
     if of.coordinates is None:
         return _core.rolling_detail(body, of.theta, of.omega, of.x)
     q, q_dot = of.coordinates
     q_ddot, multipliers = _core.multiplier_detail(body, of.settings.core, q, q_dot)
-    friction, normal = np.ascontiguousarray(multipliers.T[:2])
-    return {
-        "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
-        "normal_force": normal, "friction_force": friction,
-    }  # fmt: skip
+    return {"q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers}
 
 
 def touch(of: Trajectory) -> Mapping[str, FloatArray]:
@@ -103,15 +92,15 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
         return of.contact._asdict()
     if of.coordinates is None:
         return _core.rolling_contact(of.scene.core, of.theta, of.omega)
-    known = of._details
-    z, x_dot, z_dot = known["q"][:, 1], known["q_dot"][:, 0], known["q_dot"][:, 1]
-    return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
+    q, q_dot, forces = of.q, of.q_dot, of.multipliers
+    return {
+        "z": q[:, 1], "x_dot": q_dot[:, 0], "z_dot": q_dot[:, 1],
+        "normal_force": forces[:, 1], "friction_force": forces[:, 0],
+    }  # fmt: skip
 
 
 def _untouchable(values: _Values) -> _Values:
     """Return the array read-only: a copy if anybody could write to it, or if it is strided."""
-    if values.base is None and not values.flags.writeable:
-        return values  # read-only already, and no view of an array
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base
@@ -191,9 +180,13 @@ class Sample:
 def sample_at(motion: Trajectory, t: float) -> Sample:
     """Return a motion's sample at a time in [0, t_end]."""
     scene = motion.scene
+    if motion.method == GIVEN:
+        there = motion.sol(t)
+        values = {field.name: getattr(there, field.name)[0].item() for field in fields(Sample)}
+        return Sample(**values | {"mode": MODES[values["mode"]]})
     values = motion._solution.sample_at(scene.core, motion.settings.core, t)
     values["t"], values["turns"] = t, (values["theta"] - scene.theta) / (2 * math.pi)
-    values["mode"] = _MODES[values["mode"]]
-    found = trusted(Sample, values)
-    values["energy"] = sum(energies(scene, found))
-    return found
+    values["mode"] = MODES[values["mode"]]
+    sample = trusted(Sample, values)
+    values["energy"] = sum(energies(scene, sample))
+    return sample

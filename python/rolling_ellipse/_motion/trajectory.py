@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .events import Event, Events, energies, events
 from .methods import bind_methods
-from .quantities import MODE, QUANTITIES
+from .quantities import MATRICES, MODE, QUANTITIES
 from .samples import (
     ContactSamples,
     Pair,
@@ -43,12 +44,8 @@ if TYPE_CHECKING:
     import os
     from typing import Self
 
+    from .._pictures import errors, forces, overview, phase, stills
     from .._pictures.animation import RollingAnimation
-    from .._pictures.errors import Constraints, Energy, Error
-    from .._pictures.forces import Forces
-    from .._pictures.overview import Overview
-    from .._pictures.phase import Phase
-    from .._pictures.stills import Paths, Strobe
     from . import passages, strobe_svg
     from . import sensitivity as derivatives
     from .export import files, tables
@@ -59,21 +56,14 @@ if TYPE_CHECKING:
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 # Quantities that the ground leaves free, by modes
 _FREE = {_core.Mode.SLIDING: ("x_dot",), _core.Mode.FLIGHT: ("z", "x_dot", "z_dot")}
-_Values = TypeVar("_Values", bound=npt.NDArray[Any])
+_Number = TypeVar("_Number", bound=np.generic)
 
 
-def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
+def _derived(
+    function: Callable[[Trajectory], npt.NDArray[_Number]],
+) -> cached_property[npt.NDArray[_Number]]:
     """Make a property of a Trajectory: a read-only array, computed when first asked for."""
-
-    def values(self: Trajectory) -> _Values:
-        return frozen(function(self))
-
-    return cached_property(values)
-
-
-def _column(name: str, column: int) -> cached_property[FloatArray]:
-    """Make a property of a Trajectory: one column of q, q_dot or q_ddot, copied."""
-    return _derived(lambda self: np.ascontiguousarray(self._details[name][:, column]))
+    return cached_property(lambda self: frozen(np.ascontiguousarray(function(self))))
 
 
 def _part(whole: str, key: Any) -> cached_property[FloatArray]:
@@ -166,37 +156,35 @@ class Trajectory(FieldsOnly):
     stats: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        t = vector("t", self.t)
-        checked: dict[str, Any] = {"t": t}
+        given = self.__dict__
+        given["t"] = vector("t", self.t)
+        n = self.t.size
         for name in ("theta", "omega", "x"):
-            checked[name] = vector(name, getattr(self, name), t.size)
-        if self.coordinates is not None:
-            shape = t.size, COORDINATES
-            checked["coordinates"] = coordinate_pair("coordinates", self.coordinates, shape)
-        if self.start is not None:
-            checked["start"] = coordinate_pair("start", self.start, (COORDINATES,))
+            given[name] = vector(name, given[name], n)
+        for name, shape in (("coordinates", (n, COORDINATES)), ("start", (COORDINATES,))):
+            if given[name] is not None:
+                given[name] = coordinate_pair(name, given[name], shape)
         if self.contact is not None:
-            checked["contact"] = contact_samples(self.contact, t.size)
+            given["contact"] = contact_samples(self.contact, n)
         for name in ("valid_until", "t_end", "span"):
-            checked[name] = number(name, getattr(self, name))
+            given[name] = number(name, given[name])
         for name in ("message", "reason"):
-            checked[name] = sentence(name, getattr(self, name))
-        checked["model"] = choice("model", self.model, MODELS[1:])  # all models but "auto"
-        checked["method"] = choice("method", self.method, (*METHODS[1:], GIVEN))
+            given[name] = sentence(name, given[name])
+        given["model"] = choice("model", self.model, MODELS[1:])  # all models but "auto"
+        given["method"] = choice("method", self.method, (*METHODS[1:], GIVEN))
         require_scene(self.scene)
         for name, kind in (("settings", Settings), ("status", Status)):
-            if not isinstance(value := getattr(self, name), kind):
-                raise TypeError(f"{name} must be of the class {kind.__name__}, got {shown(value)}")
-        checked["kept_events"] = _kept(self.kept_events)
+            if not isinstance(given[name], kind):
+                got = shown(given[name])
+                raise TypeError(f"{name} must be of the class {kind.__name__}, got {got}")
+        _require_events(self.kept_events)
         _require_counts(self.stats)
-        self.__dict__.update(checked)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make the arrays read-only again: pickles and deep copies do not keep that."""
         self.__dict__.update(state)
-        samples = self.t, self.theta, self.omega, self.x
-        for group in (samples, self.coordinates, self.start, self.contact):
-            for values in group or ():
+        for group in self._arrays():
+            for values in group:
                 frozen(values)
 
     @classmethod
@@ -207,12 +195,12 @@ class Trajectory(FieldsOnly):
 
         A start (q, q_dot) off the constraints replaces the start of the scene.
         """
-        solution, samples = solve(scene, settings, times, start)
-        found = fields_of(samples)
-        found["scene"], found["settings"], found["span"] = scene, settings, float(times[-1])
-        found["start"] = start and coordinate_pair("start", start, (COORDINATES,))
-        found["_solution"], found["status"] = solution, STATUSES[solution.ending]
-        return trusted(cls, found)
+        solution, samples = _core.simulate(scene.core, settings.core, times, start)
+        values = fields_of(samples)
+        values["scene"], values["settings"], values["span"] = scene, settings, float(times[-1])
+        values["start"] = start and coordinate_pair("start", start, (COORDINATES,))
+        values["_solution"], values["status"] = solution, STATUSES[solution.ending]
+        return trusted(cls, values)
 
     @cached_property
     def _solution(self) -> _core.Solution:
@@ -220,45 +208,28 @@ class Trajectory(FieldsOnly):
             from .from_arrays import between_samples
 
             return between_samples(self)
-        return solve(self.scene, self.settings, np.array([self.span]), self.start)[0]
+        times = np.array([self.span])
+        return _core.simulate(self.scene.core, self.settings.core, times, self.start)[0]
 
     # -- what follows from the samples ----------------------------------------------------------
 
     @cached_property
     def _details(self) -> dict[str, FloatArray]:
-        """Coordinates, rates, accelerations, contact forces and multipliers at the samples."""
-        found = details(self)
-        for values in found.values():
-            frozen(values)
-        return found
+        return details(self)
 
-    @property
-    def q(self) -> FloatArray:
-        """Coordinates x, z, theta, psi, r [m, m, rad, rad, m], shape (n, 5)."""
-        return self._details["q"]
-
-    @property
-    def q_dot(self) -> FloatArray:
-        """Rates of `q` [m/s, m/s, rad/s, rad/s, m/s], shape (n, 5)."""
-        return self._details["q_dot"]
-
-    psi, r = _column("q", 3), _column("q", 4)
-    psi_dot, r_dot = _column("q_dot", 3), _column("q_dot", 4)
-    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column("q_ddot", i) for i in range(5))
+    q, q_dot, _q_ddot, multipliers = (
+        _part("_details", name) for name in ("q", "q_dot", "q_ddot", "multipliers")
+    )
+    psi, r, psi_dot, r_dot = (_part(of, (..., i)) for of in ("q", "q_dot") for i in (3, 4))
+    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_part("_q_ddot", (..., i)) for i in range(5))
 
     @cached_property
     def _touch(self) -> Mapping[str, FloatArray]:
-        """z, x_dot, z_dot, normal and friction force at the samples: cheaper than `_details`."""
         return touch(self)
 
     z, x_dot, z_dot, normal_force, friction_force = (
         _part("_touch", name) for name in ("z", "x_dot", "z_dot", "normal_force", "friction_force")
     )
-
-    @property
-    def multipliers(self) -> FloatArray:
-        """Multipliers of the constraints f1 to f4 [N, N, N, N m], shape (n, 4): F and N first."""
-        return self._details["multipliers"]
 
     @_derived
     def friction_needed(self) -> FloatArray:
@@ -337,9 +308,9 @@ class Trajectory(FieldsOnly):
             outside = times[~((times >= 0) & (times <= self.t_end))]
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
         solution, known = self._solution, vars(self)
-        found = {name: known[name] for name in self.__dataclass_fields__ if name in known}
-        found |= sampled(solution, times)  # what is still to be found is left to the new motion
-        return trusted(type(self), found | {"_solution": solution})
+        # What is still to be computed is left to the new motion
+        kept = {name: known[name] for name in self.__dataclass_fields__ if name in known}
+        return trusted(type(self), kept | sampled(solution, times) | {"_solution": solution})
 
     def at(self, t: float) -> Sample:
         """Return the state at time t [s] in plain floats.
@@ -382,14 +353,14 @@ class Trajectory(FieldsOnly):
         save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
         _repr_html_ = strobe_svg._repr_html_
 
-        def plot(self, path: _Path | None = None, **options: Any) -> Overview: ...
-        def plot_strobe(self, **options: Any) -> Strobe: ...
-        def plot_paths(self, **options: Any) -> Paths: ...
-        def plot_phase(self, **options: Any) -> Phase: ...
-        def plot_forces(self, **options: Any) -> Forces: ...
-        def plot_energy(self, **options: Any) -> Energy: ...
-        def plot_constraints(self, **options: Any) -> Constraints: ...
-        def plot_error(self, quantity: str = "theta", **options: Any) -> Error: ...
+        def plot(self, path: _Path | None = None, **options: Any) -> overview.Overview: ...
+        def plot_strobe(self, **options: Any) -> stills.Strobe: ...
+        def plot_paths(self, **options: Any) -> stills.Paths: ...
+        def plot_phase(self, **options: Any) -> phase.Phase: ...
+        def plot_forces(self, **options: Any) -> forces.Forces: ...
+        def plot_energy(self, **options: Any) -> errors.Energy: ...
+        def plot_constraints(self, **options: Any) -> errors.Constraints: ...
+        def plot_error(self, quantity: str = "theta", **options: Any) -> errors.Error: ...
         def animate(self, path: _Path | None = None, **options: Any) -> RollingAnimation: ...
         @classmethod
         def load(cls, path: _Path) -> Self: ...
@@ -413,26 +384,21 @@ class Trajectory(FieldsOnly):
         if not isinstance(other, Trajectory):
             return NotImplemented
         return self is other or (
-            self._facts() == other._facts()
+            _facts(self) == _facts(other)
             and self._bytes() == other._bytes()
             and self.events == other.events
         )
 
     def __hash__(self) -> int:
-        return hash(self._facts())
+        return hash(_facts(self))
 
-    def _facts(self) -> tuple[Any, ...]:
-        """Return the values that decide equality, except for arrays and events."""
-        return (
-            self.scene, self.settings, self.span, self.model, self.method, self.status,
-            self.message, self.reason, self.valid_until, self.t_end, self.t.shape,
-        )  # fmt: skip
+    def _arrays(self) -> list[tuple[npt.NDArray[Any], ...]]:
+        """Return the stored arrays: samples, coordinates, start, contact; () for missing ones."""
+        samples = self.t, self.theta, self.omega, self.x
+        return [samples, self.coordinates or (), self.start or (), self.contact or ()]
 
-    def _bytes(self) -> list[bytes | None]:
-        """Return the bytes of each array that decides equality: samples and start."""
-        groups = ((self.t, self.theta, self.omega, self.x), self.coordinates, self.start)
-        arrays = [group or (None,) for group in (*groups, self.contact)]
-        return [None if each is None else each.tobytes() for group in arrays for each in group]
+    def _bytes(self) -> list[list[bytes]]:
+        return [[values.tobytes() for values in group] for group in self._arrays()]
 
     def __repr__(self) -> str:
         if self.t.size == 0:
@@ -444,12 +410,18 @@ class Trajectory(FieldsOnly):
         )
 
 
-def _kept(found: Any) -> tuple[Event, ...] | None:
-    if found is not None and not (
-        isinstance(found, tuple) and all(isinstance(each, Event) for each in found)
+# What decides equality beside arrays and events
+_facts = attrgetter(
+    "scene", "settings", "span", "model", "method", "status", "message", "reason", "valid_until",
+    "t_end", "t.shape",
+)  # fmt: skip
+
+
+def _require_events(kept: Any) -> None:
+    if kept is not None and not (
+        isinstance(kept, tuple) and all(isinstance(each, Event) for each in kept)
     ):
-        raise TypeError(f"kept_events must be a tuple of Event or None, got {shown(found)}")
-    return found
+        raise TypeError(f"kept_events must be a tuple of Event or None, got {shown(kept)}")
 
 
 def _require_counts(stats: Any) -> None:
@@ -460,41 +432,29 @@ def _require_counts(stats: Any) -> None:
             raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
-def _valid_until(self: Trajectory) -> float:
-    """Time until which the model is true [s]; infinite if it always is."""
-    return self._solution.valid_until(self.scene.core)
-
-
-def _told(meaning: str, read: Callable[[_core.Solution], Any]) -> Callable[[Trajectory], Any]:
-    """Make a function that reads a fact of a motion from its solution."""
-
-    def fact(self: Trajectory) -> Any:
-        return read(self._solution)
-
-    fact.__doc__ = meaning
-    return fact
+def _told(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
+    """Return a function that reads a fact of a motion from its solution, with a docstring."""
+    read.__doc__ = meaning
+    return read
 
 
 find_late(
     Trajectory,
     reason=reason,
-    stats=_told(f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda s: s.stats),
-    model=_told("Model used.", lambda s: s.model),
-    method=_told("Method used.", lambda s: s.method),
-    status=_told("How the motion ended.", lambda s: STATUSES[s.ending]),
-    message=_told("The status as a sentence.", lambda s: s.message or STATUSES[s.ending].value),
-    valid_until=_valid_until,
-    t_end=_told("Last time that was reached [s].", lambda s: s.followed_until),
+    stats=_told(
+        f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats
+    ),
+    model=_told("Model used.", lambda m: m._solution.model),
+    method=_told("Method used.", lambda m: m._solution.method),
+    status=_told("How the motion ended.", lambda m: STATUSES[m._solution.ending]),
+    message=_told("The status as a sentence.", lambda m: m._solution.message or m.status.value),
+    valid_until=_told(
+        "Time until which the model is true [s]; infinite if it always is.",
+        lambda m: m._solution.valid_until(m.scene.core),
+    ),
+    t_end=_told("Last time that was reached [s].", lambda m: m._solution.followed_until),
 )
-for _each in (*QUANTITIES, MODE):
+for _each in (*QUANTITIES, *MATRICES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence
 bind_methods(Trajectory)
-
-
-def solve(
-    scene: Scene, settings: Settings, times: FloatArray, start: Pair | None
-) -> tuple[_core.Solution, tuple[FloatArray, ...]]:
-    """Return the core's solution up to the last time, and its samples at all that are reached."""
-    of_one = start and (np.atleast_2d(start[0]), np.atleast_2d(start[1]))
-    return _core.simulate(scene.core, settings.core, times, of_one)

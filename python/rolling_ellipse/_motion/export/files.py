@@ -6,7 +6,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict
 from operator import attrgetter
 from typing import Any, TypeVar
@@ -21,7 +21,7 @@ from ..._core import EventKind, Mode
 from ..events import Event, events
 from ..samples import ContactSamples
 from ..status import Status
-from ..trajectory import Trajectory, solve
+from ..trajectory import Trajectory
 from . import strict
 from .atomic import replacing
 
@@ -30,6 +30,7 @@ _Made = TypeVar("_Made", bound=Trajectory)
 _SCHEMA = 4
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
+_OF_MODELS = {"contact": ContactSamples._fields, "multipliers": ("coordinates",)}
 _state = attrgetter(*STATE_UNITS)
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 _ABOUT = ("schema", "scene", "settings", "status", "events", *_FACTS)
@@ -89,17 +90,17 @@ def _about(trajectory: Trajectory) -> dict[str, Any]:
         "scene": asdict(trajectory.scene),
         "settings": asdict(trajectory.settings),
         "status": trajectory.status.name,
-        "events": [event_values(found) for found in trajectory.events],
+        "events": [event_values(each) for each in trajectory.events],
         **{name: getattr(trajectory, name) for name in _FACTS},
     }
 
 
 def _arrays(trajectory: Trajectory) -> dict[str, Any]:
-    found = {name: getattr(trajectory, name) for name in _VECTORS}
+    arrays = {name: getattr(trajectory, name) for name in _VECTORS}
     for name in _PAIRS:
         if (pair := getattr(trajectory, name)) is not None:
-            found[name] = np.stack(pair)
-    return found if trajectory.contact is None else found | trajectory.contact._asdict()
+            arrays[name] = np.stack(pair)
+    return arrays if trajectory.contact is None else arrays | trajectory.contact._asdict()
 
 
 def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
@@ -111,7 +112,9 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     strict.require_names("about", about, _ABOUT)
     if about["schema"] != _SCHEMA:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
-    strict.require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
+    of_model = _OF_MODELS.get(about["model"], ())
+    start = {"start"} & set(arrays) if "coordinates" in of_model else ()
+    strict.require_names(f"model {about['model']!r}", arrays, {*_VECTORS, *of_model, *start})
     for name, values in arrays.items():
         strict.require_array(name, values, np.int8 if name == "mode" else np.float64, values.shape)
     scene, settings = strict.scene_of(about["scene"]), about["settings"]
@@ -136,22 +139,12 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     return trajectory
 
 
-def _array_names(model: Any, there: Collection[str]) -> set[str]:
-    """Return the names of the arrays in a file of a model; only "multipliers" may have a start."""
-    names = set(_VECTORS)
-    if model == "contact":
-        names |= set(ContactSamples._fields)
-    if model == "multipliers":
-        names |= {"coordinates"} | ({"start"} & set(there))
-    return names
-
-
-def event_values(found: Event) -> list[Any]:
+def event_values(event: Event) -> list[Any]:
     """Return an event as values of JSON."""
     before, after = (
-        [*_state(state), int(state.mode)] for state in (found.state_before, found.state_after)
+        [*_state(state), int(state.mode)] for state in (event.state_before, event.state_after)
     )
-    return [found.t, found.kind.name, before, after]
+    return [event.t, event.kind.name, before, after]
 
 
 def event_row(values: Any) -> list[float]:
@@ -177,17 +170,17 @@ def _require_consistent(trajectory: Trajectory) -> None:
     _require_within("t_end", [t_end], 0.0, span)
     _require_within("valid_until", [trajectory.valid_until], 0.0, math.inf)
     _require_within("t", t, 0.0, t_end)
-    times = [found.t for found in trajectory.events]
+    times = [event.t for event in trajectory.events]
     _require_within("times of events", times, 0.0, t_end)
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
     # The core refuses what it cannot solve.
-    solve(trajectory.scene, asked, np.zeros(1), trajectory.start)
+    _core.simulate(trajectory.scene.core, asked.core, np.zeros(1), trajectory.start)
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:
-    found = np.asarray(values)
-    outside = found[~((found >= least) & (found <= most))]
+    numbers = np.asarray(values)
+    outside = numbers[~((numbers >= least) & (numbers <= most))]
     if outside.size:
         raise ValueError(f"{name} must lie in [{least!r}, {most!r}], got {float(outside[0])!r}")
