@@ -15,7 +15,7 @@ import numpy as np
 
 from .._ask.check import FloatArray
 from .._core import EventKind, Mode
-from .differences import at_shares, knots_of, neighbours, settings_of, size
+from .differences import at_shares, kinds_of, knots_of, neighbours, settings_of, size
 from .inputs import BODY, STATE, size_of, units_of
 from .trajectory import Trajectory
 
@@ -109,7 +109,7 @@ def _derivatives(
 
 def _parts(motion: Trajectory) -> list[_Part]:
     """Return the parts; one whose events are not those of the motion is joined to that before."""
-    cuts = [0, *_cuts(motion), len(motion.events)]
+    cuts = _cuts(motion)
     while True:
         parts = [_part(motion, *pair) for pair in pairwise(cuts)]
         known = [part for part in parts if part is not None]
@@ -119,7 +119,7 @@ def _parts(motion: Trajectory) -> list[_Part]:
 
 
 def _cuts(motion: Trajectory) -> list[int]:
-    """Return numbers of events before cuts, each in the middle of the arc after them."""
+    """Return numbers of events before cuts, from 0 to all, each in the middle of an arc."""
     cuts = [0]
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode
@@ -127,7 +127,7 @@ def _cuts(motion: Trajectory) -> list[int]:
         plain = mode in _FREE and (mode is not Mode.FLIGHT or after.kind is EventKind.IMPACT)
         if plain and count - cuts[-1] >= EVENTS:
             cuts.append(count)
-    return cuts[1:]
+    return [*cuts, len(motion.events)]
 
 
 def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
@@ -138,12 +138,9 @@ def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
     inside = (motion.t >= begin) & ((motion.t < end) | whole)
     scene = motion.scene_at(begin) if first else motion.scene
     part = Trajectory.computed(scene, settings_of(motion), np.array([end - begin]))
-    of_motion = motion.events[first:last]
-    if [(e.kind, e.state_after.mode) for e in part.events] != [
-        (e.kind, e.state_after.mode) for e in of_motion
-    ]:
+    if kinds_of(part.events) != kinds_of(motion.events[first:last]):
         return None
-    between = np.array([begin, *(event.t for event in of_motion), end])
+    between = np.array([begin, *knots[first + 1 : last + 1], end])
     times = at_shares(motion.t[inside], between, knots_of(part))
     rows = [*np.flatnonzero(inside), *(len(motion.t) + np.arange(first, last))]
     return _Part(part.sol(np.append(times, part.t_end)), np.array(rows))

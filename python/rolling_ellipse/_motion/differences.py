@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from .._ask.check import FloatArray
 from .._ask.settings import Settings
+from .events import Event
 from .inputs import STATE, changed, size_of, units_of, value_of
 from .status import Status
 from .trajectory import Trajectory
@@ -189,11 +191,16 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
     """Return what neighbours share, with times: start, events with the next mode, and the end."""
-    events = [(f"{e.kind.name} to {e.state_after.mode.name}", e.t) for e in motion.events]
+    events = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     start = f"a start in {motion.scene.initial_state.mode.name}"
     ended = motion.status in (Status.COMPLETED, Status.VALIDITY_LOST)
     end = _END if ended else f"an end by {motion.status.name}"
     return [(start, 0.0), *events, (end, motion.t_end)]
+
+
+def kinds_of(events: Iterable[Event]) -> list[str]:
+    """Return the kinds of events, each with the mode after it."""
+    return [f"{event.kind.name} to {event.state_after.mode.name}" for event in events]
 
 
 def knots_of(motion: Trajectory) -> FloatArray:

@@ -185,7 +185,7 @@ def _state(event: Any, *, after: bool) -> InitialState:
     return trusted(InitialState, state | {"mode": MODES[state["mode"]], "reason": reason})
 
 
-def _energy(event: Any, state: InitialState) -> float:
+def _energy(event: Any, state: InitialState) -> Any:
     return sum(energies(event._scene, state))
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-_PACKAGE = __name__.partition(".")[0]
-
 #: Names of methods by module; the functions have the same names.
 METHODS = {
     "_motion.from_arrays": ("from_arrays",),
@@ -28,10 +26,10 @@ class _Later:
     """A method that is imported when first asked for, and then replaces this object."""
 
     def __init__(self, of: type, module: str, name: str) -> None:
-        self._of, self._module, self._name = of, f"{_PACKAGE}.{module}", name
+        self._of, self._module, self._name = of, module, name
 
     def __get__(self, instance: object | None, owner: type) -> Any:
-        method = getattr(import_module(self._module), self._name)
+        method = getattr(import_module(f"..{self._module}", __package__), self._name)
         if self._name in _OF_THE_CLASS:
             method = classmethod(method)
         setattr(self._of, self._name, method)

@@ -277,9 +277,10 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
             near, far = far, min(2 * far, farthest)
         while far - near > _NEAREST * max(far, _NEAREST * farthest):
             middle = (near + far) / 2
-            near, far = (
-                (middle, far) if _same_events(motion, {name: sign * middle}) else (near, middle)
-            )
+            if _same_events(motion, {name: sign * middle}):
+                near = middle
+            else:
+                far = middle
         return near
 
     return min(map(reach, (side,) if side else (-1, 1)))

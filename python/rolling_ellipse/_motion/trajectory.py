@@ -237,30 +237,16 @@ class Trajectory(FieldsOnly):
         needed = np.where(friction == 0, 0.0, np.inf)
         return np.divide(friction, normal, out=needed, where=normal > 0)
 
-    @_derived
-    def contact_x(self) -> FloatArray:
-        lead: FloatArray = support_slope(self.theta, a=self.scene.a, b=self.scene.b)
-        return self.x + lead
-
-    @_derived
-    def turns(self) -> FloatArray:
-        return (self.theta - self.scene.theta) / (2 * math.pi)
-
-    @cached_property
-    def _energies(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        return energies(self.scene, self)
-
+    contact_x = _derived(
+        lambda self: self.x + support_slope(self.theta, a=self.scene.a, b=self.scene.b)
+    )
+    turns = _derived(lambda self: (self.theta - self.scene.theta) / (2 * math.pi))
+    _energies = cached_property(lambda self: energies(self.scene, self))
     translational_energy, rotational_energy, potential_energy = (
         _part("_energies", i) for i in range(3)
     )
-
-    @_derived
-    def kinetic_energy(self) -> FloatArray:
-        return self.translational_energy + self.rotational_energy
-
-    @_derived
-    def energy(self) -> FloatArray:
-        return self.kinetic_energy + self.potential_energy
+    kinetic_energy = _derived(lambda self: self.translational_energy + self.rotational_energy)
+    energy = _derived(lambda self: self.kinetic_energy + self.potential_energy)
 
     @_derived
     def mode(self) -> npt.NDArray[np.int8]:
@@ -401,13 +387,12 @@ class Trajectory(FieldsOnly):
         return [[values.tobytes() for values in group] for group in self._arrays()]
 
     def __repr__(self) -> str:
-        if self.t.size == 0:
-            return f"<Trajectory {self.model}/{self.method}: no samples, {self.status.name}>"
-        return (
-            f"<Trajectory {self.model}/{self.method}: {self.t.size} samples, "
-            f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
-            f"{self.status.name}>"
-        )
+        samples = "no samples"
+        if self.t.size:
+            first, last = self.t[[0, -1]]
+            samples = f"{self.t.size} samples, t = {first:g} ... {last:g} s, "
+            samples += f"{self.turns[-1]:.3g} turns"
+        return f"<Trajectory {self.model}/{self.method}: {samples}, {self.status.name}>"
 
 
 # What decides equality beside arrays and events
