@@ -83,10 +83,10 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray] | None:
     """Return derivatives by the state at the start, (6, r, 6), with errors, (r, 6); 0 if fixed."""
     free = () if fixed else _FREE[part.scene.initial_state.mode]
-    found = _derivatives(part, [name if name in free else None for name in STATE], 0)
-    if found is None:
+    derivatives = _derivatives(part, [name if name in free else None for name in STATE], 0)
+    if derivatives is None:
         return None
-    value, error = found
+    value, error = derivatives
     units = units_of(part.scene)
     value[0, : len(part.t), 0] = 0 if fixed else 1 / units[0]  # x moves with x
     return value * units, error * units
@@ -133,14 +133,14 @@ def _cuts(motion: Trajectory) -> list[int]:
 def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
     """Return the part between cuts after numbers of events, or None if its events are others."""
     knots, whole = knots_of(motion), last == len(motion.events)
-    begin = float(knots[first : first + 2].mean()) if first else 0.0
+    start = float(knots[first : first + 2].mean()) if first else 0.0
     end = motion.t_end if whole else float(knots[last : last + 2].mean())
-    inside = (motion.t >= begin) & ((motion.t < end) | whole)
-    scene = motion.scene_at(begin) if first else motion.scene
-    part = Trajectory.computed(scene, settings_of(motion), np.array([end - begin]))
+    inside = (motion.t >= start) & ((motion.t < end) | whole)
+    scene = motion.scene_at(start) if first else motion.scene
+    part = Trajectory.computed(scene, settings_of(motion), np.array([end - start]))
     if kinds_of(part.events) != kinds_of(motion.events[first:last]):
         return None
-    between = np.array([begin, *knots[first + 1 : last + 1], end])
+    between = np.array([start, *knots[first + 1 : last + 1], end])
     times = at_shares(motion.t[inside], between, knots_of(part))
     rows = [*np.flatnonzero(inside), *(len(motion.t) + np.arange(first, last))]
     return _Part(part.sol(np.append(times, part.t_end)), np.array(rows))

@@ -46,10 +46,10 @@ def differenced(
     rise = sum((w * value for w, value in zip(weights, values, strict=True)), np.zeros(()))
     step = sum((w * change for w, change in zip(weights, moved, strict=True)), np.zeros(()))
     moves = step != 0  # a step below a rounding of the input does not
-    found: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
-    unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(found))
+    slopes: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
+    unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(slopes))
     rounding = _UNITS * sum(map(abs, weights)) * unit
-    return found, np.divide(rounding, np.abs(step), out=np.full(rise.shape, np.inf), where=moves)
+    return slopes, np.divide(rounding, np.abs(step), out=np.full(rise.shape, np.inf), where=moves)
 
 
 def size(values: FloatArray) -> FloatArray:
@@ -162,9 +162,9 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
     arc = np.searchsorted(knots[:-1], times, side="right") - 1
     length = knots[arc + 1] - knots[arc]
     share = np.divide(times - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
-    begin, end = others[..., arc], others[..., arc + 1]
-    within = np.where(arc < len(knots) - 2, np.nextafter(end, begin), end)
-    found: FloatArray = np.clip(begin + share * (end - begin), begin, within)
+    start, end = others[..., arc], others[..., arc + 1]
+    within = np.where(arc < len(knots) - 2, np.nextafter(end, start), end)
+    found: FloatArray = np.clip(start + share * (end - start), start, within)
     return found
 
 

@@ -21,10 +21,10 @@ INPUTS = (*BODY, "theta", "omega", "x", "z", "x_dot", "z_dot", *_BLOW, "t")
 def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
     """Return one or more names out of valid ones, each once, or raise ValueError."""
     several = isinstance(names, Iterable) and not isinstance(names, str)
-    found = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
-    if not found or len(set(found)) < len(found):
-        raise ValueError(f"{argument} must be one or more names, each once, got {found}")
-    return found
+    chosen = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
+    if not chosen or len(set(chosen)) < len(chosen):
+        raise ValueError(f"{argument} must be one or more names, each once, got {chosen}")
+    return chosen
 
 
 def changed(scene: Scene, values: dict[str, float]) -> Scene:

@@ -86,23 +86,23 @@ def when(
         raise ValueError(
             f"exactly one of {', '.join(given)} must be given, got {' and '.join(chosen) or 'none'}"
         )
-    ((name, asked),) = chosen.items()
-    if name == "function" and not callable(asked):
-        raise TypeError(f"function must be a function of a Trajectory, got {shown(asked)}")
+    ((name, wanted),) = chosen.items()
+    if name == "function" and not callable(wanted):
+        raise TypeError(f"function must be a function of a Trajectory, got {shown(wanted)}")
     sense = whole("direction", direction)
     if sense not in (-1, 0, 1):
         raise ValueError(f"direction must be 1, -1 or 0, got {shown(direction)}")
     if name == "event":
-        kind = choice("event", asked.name if isinstance(asked, EventKind) else asked, _EVENTS)
+        kind = choice("event", wanted.name if isinstance(wanted, EventKind) else wanted, _EVENTS)
         if kind != "roll_over":
             return np.array([each.t for each in motion.events if each.kind.name == kind.upper()])
         rolled = when(motion, theta=_tips(motion), direction=sense)
         return np.sort(np.concatenate([[], *rolled]))
-    values = np.empty(()) if name == "function" else finite(name, asked)
+    values = np.empty(()) if name == "function" else finite(name, wanted)
     if values.ndim > 1:
         raise ValueError(f"{name} must be a number or a 1-D array, got shape {values.shape}")
     if name == "function":
-        times, unproved = motion._solution.zeros(_measure(motion, asked), sense)
+        times, unproved = motion._solution.zeros(_measure(motion, wanted), sense)
     else:
         times, unproved = motion._solution.passages(Quantity[name], values.ravel(), sense)
     if unproved:

@@ -69,8 +69,8 @@ def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
         theta, omega, x = (frozen(each.copy()) for each in (q[:, 2], q_dot[:, 2], q[:, 0]))
         return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
     t, theta, omega, x, *contact = samples
-    found = {"t": t, "theta": theta, "omega": omega, "x": x}
-    return found | {"contact": ContactSamples(*contact)} if contact else found
+    direct = {"t": t, "theta": theta, "omega": omega, "x": x}
+    return direct | {"contact": ContactSamples(*contact)} if contact else direct
 
 
 def details(of: Trajectory) -> dict[str, FloatArray]:
@@ -118,12 +118,12 @@ def sentence(name: str, value: Any) -> str:
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
     """Return a 1-D array of numbers, read-only, of the given size (None: of any size)."""
-    found = array(name, values)
-    if found.ndim != 1:
-        raise ValueError(f"{name} must be a 1-D array, got shape {found.shape}")
-    if size is not None and found.size != size:
-        raise ValueError(f"{name} must have the length of t, {size}, got {found.size}")
-    return _untouchable(found)
+    numbers = array(name, values)
+    if numbers.ndim != 1:
+        raise ValueError(f"{name} must be a 1-D array, got shape {numbers.shape}")
+    if size is not None and numbers.size != size:
+        raise ValueError(f"{name} must have the length of t, {size}, got {numbers.size}")
+    return _untouchable(numbers)
 
 
 def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
@@ -134,7 +134,7 @@ def coordinate_pair(name: str, values: Any, shape: tuple[int, ...]) -> Pair:
     except (TypeError, ValueError):
         raise ValueError(f"{required}, got {shown(values)}") from None
     pair = array(f"{name}[0]", q), array(f"{name}[1]", q_dot)
-    if any(found.shape != shape for found in pair):
+    if any(each.shape != shape for each in pair):
         raise ValueError(f"{required}, got shapes {pair[0].shape} and {pair[1].shape}")
     return _untouchable(pair[0]), _untouchable(pair[1])
 
@@ -144,8 +144,8 @@ def contact_samples(values: Any, size: int) -> ContactSamples:
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields
-    found = [vector(name, getattr(values, name), size) for name in columns]
-    return ContactSamples._make([*found, _codes(mode, values.mode, size)])
+    checked = [vector(name, getattr(values, name), size) for name in columns]
+    return ContactSamples._make([*checked, _codes(mode, values.mode, size)])
 
 
 def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:

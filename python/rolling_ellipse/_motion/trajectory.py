@@ -417,7 +417,7 @@ def _require_counts(stats: Any) -> None:
             raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
-def _told(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
+def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
     """Return a function that reads a fact of a motion from its solution, with a docstring."""
     read.__doc__ = meaning
     return read
@@ -426,18 +426,18 @@ def _told(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajecto
 find_late(
     Trajectory,
     reason=reason,
-    stats=_told(
+    stats=_fact(
         f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats
     ),
-    model=_told("Model used.", lambda m: m._solution.model),
-    method=_told("Method used.", lambda m: m._solution.method),
-    status=_told("How the motion ended.", lambda m: STATUSES[m._solution.ending]),
-    message=_told("The status as a sentence.", lambda m: m._solution.message or m.status.value),
-    valid_until=_told(
+    model=_fact("Model used.", lambda m: m._solution.model),
+    method=_fact("Method used.", lambda m: m._solution.method),
+    status=_fact("How the motion ended.", lambda m: STATUSES[m._solution.ending]),
+    message=_fact("The status as a sentence.", lambda m: m._solution.message or m.status.value),
+    valid_until=_fact(
         "Time until which the model is true [s]; infinite if it always is.",
         lambda m: m._solution.valid_until(m.scene.core),
     ),
-    t_end=_told("Last time that was reached [s].", lambda m: m._solution.followed_until),
+    t_end=_fact("Last time that was reached [s].", lambda m: m._solution.followed_until),
 )
 for _each in (*QUANTITIES, *MATRICES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring

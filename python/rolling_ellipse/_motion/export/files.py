@@ -161,9 +161,9 @@ def event_row(values: Any) -> list[float]:
 
 def _require_consistent(trajectory: Trajectory) -> None:
     """Raise ValueError if parts of a trajectory contradict, or its scene cannot be solved."""
-    asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
+    settings, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     for name in ("model", "method"):
-        wanted, value = getattr(asked, name), getattr(trajectory, name)
+        wanted, value = getattr(settings, name), getattr(trajectory, name)
         if wanted not in ("auto", value):
             raise ValueError(f"{name} must be that of the settings, {wanted!r}, got {value!r}")
     _require_within("span", [span], 0.0, sys.float_info.max)
@@ -174,9 +174,9 @@ def _require_consistent(trajectory: Trajectory) -> None:
     _require_within("times of events", times, 0.0, t_end)
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
-    _core.validate_settings(asked.core, span)
+    _core.validate_settings(settings.core, span)
     # The core refuses what it cannot solve.
-    _core.simulate(trajectory.scene.core, asked.core, np.zeros(1), trajectory.start)
+    _core.simulate(trajectory.scene.core, settings.core, np.zeros(1), trajectory.start)
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:

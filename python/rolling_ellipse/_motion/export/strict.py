@@ -75,18 +75,18 @@ def parsed(name: str, text: str) -> Any:
         return float(literal)
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        if len(found) != len(pairs):
+        values = dict(pairs)
+        if len(values) != len(pairs):
             names = [key for key, _ in pairs]
             raise ValueError(f"{name} must have each name once, got {names}")
-        return found
+        return values
 
     return json.loads(text, parse_constant=constant, object_pairs_hook=once)
 
 
-def in_lines(found: Any, depth: int) -> str:
+def in_lines(value: Any, depth: int) -> str:
     """Return JSON with a line for each value down to a depth, such as that of a list's records."""
-    text = json.dumps(found, indent=1, allow_nan=False)
+    text = json.dumps(value, indent=1, allow_nan=False)
     deeper, closing = " " * (depth + 1), " " * depth
     return re.sub(rf"\n({deeper} *|{closing}(?=[\]}}]))", " ", text) + "\n"
 
@@ -95,11 +95,11 @@ def field_names(kind: type[Any]) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
 
 
-def require_names(what: str, found: Any, names: Iterable[str]) -> None:
+def require_names(what: str, values: Any, names: Iterable[str]) -> None:
     required = set(names)
-    if not isinstance(found, dict):
-        raise ValueError(f"{what} must hold names and values, got {found!r}")
-    for name in sorted(required ^ set(found)):
+    if not isinstance(values, dict):
+        raise ValueError(f"{what} must hold names and values, got {values!r}")
+    for name in sorted(required ^ set(values)):
         raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
 
 
