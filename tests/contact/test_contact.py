@@ -368,7 +368,7 @@ def test_a_jam() -> None:
     assert kinds(motion) == [EventKind.JAM] and motion.events[0].t == motion.t_end == 0
     assert motion.t.tolist() == [0.0] and motion.mode.tolist() == [Mode.SLIDING]
     assert motion.x_dot[0] == 5.0 and np.all(np.isfinite(motion.normal_force))
-    with pytest.raises(ValueError, match=r"t must lie in \[0, 0.0\]"):
+    with pytest.raises(ValueError, match=r"t must be within \[0, 0.0\]"):
         motion.sol(0.1)
     backwards = dataclasses.replace(JAMMING, x_dot=-5.0)
     assert simulate(backwards, 1.0).status is Status.COMPLETED

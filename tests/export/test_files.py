@@ -317,7 +317,7 @@ def test_what_load_would_refuse_is_not_saved(
         ({"method": "another"}, "method must be one of"),
         ({"model": "rolling"}, "model 'rolling' must not have"),
         ({"contact": None}, "model 'contact' must have 'friction_force'"),
-        ({"t_end": 0.0}, r"t must lie in \[0\.0, 0\.0\]"),
+        ({"t_end": 0.0}, r"t must be within \[0\.0, 0\.0\]"),
         ({"stats": {"beats": 2}}, "stats must have no names but"),
     ):
         with pytest.raises(ValueError, match=f"^{said}"):

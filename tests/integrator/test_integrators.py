@@ -411,7 +411,7 @@ def test_max_steps(how: dict[str, Any]) -> None:
         assert trajectory.stats["steps"] == 40
         assert 0.3 < trajectory.t_end < 10
         assert np.array_equal(trajectory.t, times[times <= trajectory.t_end])
-        with pytest.raises(ValueError, match=r"^t must lie in"):
+        with pytest.raises(ValueError, match=r"^t must be within"):
             trajectory.sol(np.nextafter(trajectory.t_end, 50))
     enough = roll(rl.scenes.rolling, returned.t_end, "dop853", max_steps=40, **how)
     assert enough.status is Status.COMPLETED

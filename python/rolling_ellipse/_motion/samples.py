@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._ask.check import FloatArray, array, shown
+from .._ask.check import FloatArray, array, require, shown
 from .._ask.records import trusted
 from .._ask.settings import GIVEN
 from .._core import Mode
@@ -150,9 +150,7 @@ def contact_samples(values: Any, size: int) -> ContactSamples:
 
 def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
     numbers = vector(name, values, size)
-    wrong = numbers[~np.isin(numbers, list(Mode))]
-    if wrong.size:
-        raise ValueError(f"{name} must hold codes of Mode, got {float(wrong[0])!r}")
+    require(name, "codes of Mode", numbers, np.isin(numbers, list(Mode)))
     return _untouchable(np.asarray(values).astype(np.int8, copy=False))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._ask.check import FloatArray, array, choice, number, shown
+from .._ask.check import FloatArray, array, choice, number, require, shown
 from .._ask.habits import MEANT, meant
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
@@ -291,8 +291,7 @@ class Trajectory(FieldsOnly):
         if times.ndim != 1:
             raise ValueError(f"t must be a time or a 1-D array of times, got shape {times.shape}")
         if times.size and not (times.min() >= 0 and times.max() <= self.t_end):
-            outside = times[~((times >= 0) & (times <= self.t_end))]
-            raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
+            require("t", f"within [0, {self.t_end!r}]", times, (times >= 0) & (times <= self.t_end))
         solution, known = self._solution, vars(self)
         # What is still to be computed is left to the new motion
         kept = {name: known[name] for name in self.__dataclass_fields__ if name in known}
@@ -308,7 +307,7 @@ class Trajectory(FieldsOnly):
         """
         time = number("t", t)
         if not 0 <= time <= self.t_end:
-            raise ValueError(f"t must lie in [0, {self.t_end!r}], got {time!r}")
+            raise ValueError(f"t must be within [0, {self.t_end!r}], got {time!r}")
         return sample_at(self, time)
 
     def scene_at(self, t: float) -> Scene:

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ... import _core
-from ..._ask.check import choice, file_name
+from ..._ask.check import choice, file_name, require
 from ..._ask.scene import STATE_UNITS
 from ..._ask.settings import Settings
 from ..._core import EventKind, Mode
@@ -181,6 +181,5 @@ def _require_consistent(trajectory: Trajectory) -> None:
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:
     numbers = np.asarray(values)
-    outside = numbers[~((numbers >= least) & (numbers <= most))]
-    if outside.size:
-        raise ValueError(f"{name} must lie in [{least!r}, {most!r}], got {float(outside[0])!r}")
+    inside = (numbers >= least) & (numbers <= most)
+    require(name, f"within [{least!r}, {most!r}]", numbers, inside)

@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ..._ask.check import file_name
+from ..._ask.check import file_name, require
 from ..._ask.scene import Impulse, Scene, reached_scene
 
 ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON objects
@@ -155,5 +155,5 @@ def require_array(
             f"{name} must be of type {np.dtype(dtype)} and shape {shape}, got {values.dtype} and "
             f"{values.shape}"
         )
-    if finite and not np.isfinite(values).all():
-        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]!s}")
+    if finite:
+        require(name, "finite", values, np.isfinite(values))
