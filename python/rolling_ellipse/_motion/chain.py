@@ -17,18 +17,13 @@ from .._ask.check import FloatArray
 from .._core import EventKind, Mode
 from .differences import at_shares, kinds_of, knots_of, neighbours, settings_of, size
 from .inputs import BODY, STATE, size_of, units_of
+from .samples import FREE
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events of a part
 # Roundings of the start which, grown with the motion, make the relative difference of derivatives
 # along the arcs as computed and of the exact motion: at most 42 in 120 motions that grow up to 4e12
 _ROUNDINGS = 64
-# Components of a state that the ground leaves free; no arc depends on x
-_FREE = {
-    Mode.ROLLING: ("theta", "omega"),
-    Mode.SLIDING: ("theta", "x_dot", "omega"),
-    Mode.FLIGHT: ("z", "theta", "x_dot", "z_dot", "omega"),
-}
 
 
 class Chained(NamedTuple):
@@ -82,7 +77,8 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 
 def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray] | None:
     """Return derivatives by the state at the start, (6, r, 6), with errors, (r, 6); 0 if fixed."""
-    free = () if fixed else _FREE[part.scene.initial_state.mode]
+    # No arc depends on x
+    free = () if fixed else ("theta", "omega", *FREE[part.scene.initial_state.mode])
     derivatives = _derivatives(part, [name if name in free else None for name in STATE], 0)
     if derivatives is None:
         return None
@@ -124,7 +120,9 @@ def _cuts(motion: Trajectory) -> list[int]:
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode
         # A flight that does not end with an impact is the sum of many bounces
-        plain = mode in _FREE and (mode is not Mode.FLIGHT or after.kind is EventKind.IMPACT)
+        plain = mode is not Mode.REST and (
+            mode is not Mode.FLIGHT or after.kind is EventKind.IMPACT
+        )
         if plain and count - cuts[-1] >= EVENTS:
             cuts.append(count)
     return [*cuts, len(motion.events)]

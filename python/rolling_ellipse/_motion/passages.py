@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
@@ -102,7 +103,7 @@ def when(
     if values.ndim > 1:
         raise ValueError(f"{name} must be a number or a 1-D array, got shape {values.shape}")
     if name == "function":
-        times, unproved = motion._solution.zeros(_measure(motion, wanted), sense)
+        times, unproved = motion._solution.zeros(partial(_measured, motion, wanted), sense)
     else:
         times, unproved = motion._solution.passages(Quantity[name], values.ravel(), sense)
     if unproved:
@@ -141,21 +142,17 @@ def _tips(motion: Trajectory) -> FloatArray:
     return tip + math.pi * np.arange(first, last + 1)
 
 
-def _measure(
-    motion: Trajectory, function: Callable[[Trajectory], Any]
-) -> Callable[[FloatArray], FloatArray]:
-    """Return the caller's function of a Trajectory as a function of an array of times."""
-
-    def measure(times: FloatArray) -> FloatArray:
-        values = array("function's result", function(motion.sol(times)))
-        if values.shape != times.shape:
-            raise ValueError(
-                f"function must return one number a sample, shape {times.shape}, "
-                f"got shape {values.shape}"
-            )
-        if np.isnan(values).any():
-            first = float(times[np.isnan(values)][0])
-            raise ValueError(f"function must return numbers, got nan at t = {first!r}")
-        return values
-
-    return measure
+def _measured(
+    motion: Trajectory, function: Callable[[Trajectory], Any], times: FloatArray
+) -> FloatArray:
+    """Return the values of the caller's function of a Trajectory at times."""
+    values = array("function's result", function(motion.sol(times)))
+    if values.shape != times.shape:
+        raise ValueError(
+            f"function must return one number a sample, shape {times.shape}, "
+            f"got shape {values.shape}"
+        )
+    if np.isnan(values).any():
+        first = float(times[np.isnan(values)][0])
+        raise ValueError(f"function must return numbers, got nan at t = {first!r}")
+    return values

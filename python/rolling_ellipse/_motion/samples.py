@@ -35,6 +35,11 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
+# Components of a state that the ground leaves free beside theta, omega and x
+FREE: dict[Mode, tuple[str, ...]] = {
+    Mode.ROLLING: (), Mode.REST: (), Mode.SLIDING: ("x_dot",),
+    Mode.FLIGHT: ("z", "x_dot", "z_dot"),
+}  # fmt: skip
 _OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
 
 
@@ -100,13 +105,9 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return the array read-only: a copy if anybody could write to it, or if it is strided."""
-    layer: Any = values
-    while isinstance(layer, np.ndarray) and not layer.flags.writeable:
-        layer = layer.base
-    if isinstance(layer, np.ndarray) or not (values.flags.c_contiguous and values.flags.aligned):
-        return frozen(values.copy())
-    return values
+    """Return the array read-only; it is copied unless it is so already, and no view."""
+    is_own = values.base is None and not values.flags.writeable
+    return values if is_own else frozen(values.copy())
 
 
 def sentence(name: str, value: Any) -> str:

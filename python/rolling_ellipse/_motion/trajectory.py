@@ -23,6 +23,7 @@ from .events import Event, Events, energies, events
 from .methods import bind_methods
 from .quantities import MATRICES, MODE, QUANTITIES
 from .samples import (
+    FREE,
     ContactSamples,
     Pair,
     Sample,
@@ -54,8 +55,6 @@ if TYPE_CHECKING:
 
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
-# Quantities that the ground leaves free, by modes
-_FREE = {_core.Mode.SLIDING: ("x_dot",), _core.Mode.FLIGHT: ("z", "x_dot", "z_dot")}
 _Number = TypeVar("_Number", bound=np.generic)
 
 
@@ -326,8 +325,8 @@ class Trajectory(FieldsOnly):
             If t is outside of [0, t_end].
         """
         at = self.sol(number("t", t))
-        free = _FREE.get(_core.Mode(int(at.mode[0])), ())
-        state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x", *free)}
+        names = ("theta", "omega", "x", *FREE[_core.Mode(int(at.mode[0]))])
+        state = {name: float(getattr(at, name)[0]) for name in names}
         constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
         return reached_scene(self.scene.__getstate__() | constrained | state)
 
