@@ -74,7 +74,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     shape = q.shape[:-1]
     rows = q.reshape(-1, COORDINATES), q_dot.reshape(-1, COORDINATES)
     residuals = _core.constraints(*rows, number("a", a), number("b", b))
-    return ConstraintResiduals(*(each.reshape(*shape, *each.shape[1:]) for each in residuals))
+    return ConstraintResiduals(*(each.reshape((*shape, *each.shape[1:])) for each in residuals))
 
 
 def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArray, FloatArray]:
