@@ -6,10 +6,10 @@ import inspect
 import os
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
-from dataclasses import fields
+from dataclasses import dataclass
 from functools import wraps
 from threading import RLock
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -81,24 +81,16 @@ TypeError
 """
 
 
+@dataclass(frozen=True, repr=False)
 class Artists:
-    """A dataclass of artists that prints their names, and how many there are of each.
+    """The Axes of a picture; subclasses add its artists. It prints how many there are of each."""
 
-    `axes` has all Axes with artists, and `ax` is the only or the first one; a dataclass has a field
-    for one of the two.
-    """
-
-    ax: Axes
     axes: tuple[Axes, ...]
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            if name == "axes" and "ax" in self.__dict__:
-                return (self.ax,)
-            if name == "ax" and "axes" in self.__dict__:
-                return self.axes[0]
-            return object.__getattribute__(self, name)
+    @property
+    def ax(self) -> Axes:
+        """The only or the first Axes."""
+        return self.axes[0]
 
     @property
     def figure(self) -> Figure:
@@ -110,12 +102,12 @@ class Artists:
         self.ax.get_figure(root=True).savefig(path, **options)  # type: ignore[union-attr]
 
     def __repr__(self) -> str:
-        names = []
-        for field in fields(self):  # type: ignore[arg-type]
-            artists: Any = getattr(self, field.name)
-            if artists is not None:
-                several = isinstance(artists, (tuple, list, dict))
-                names.append(f"{len(artists)} {field.name}" if several else field.name)
+        names = [
+            f"{len(artists)} {name}" if isinstance(artists, (tuple, list, dict)) else name
+            for name, artists in vars(self).items()
+            if artists is not None
+        ]
+        names[0] = "ax" if len(self.axes) == 1 else names[0]
         return f"<{type(self).__name__}: {', '.join(names)}>"
 
 

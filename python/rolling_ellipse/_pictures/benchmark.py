@@ -24,7 +24,6 @@ _SHAPES = {"right": "o", "wrong": "X", "failed": "s"}
 class ScoresChart(Artists):
     """Artists of `Scores.plot`; keys are the id of a problem and a setting."""
 
-    ax: Axes
     marks: dict[tuple[str, float | None], Line2D]
 
 
@@ -42,7 +41,7 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     settings = list(dict.fromkeys(score.setting for score in scores))
     shades = dict(zip(settings, palette.times(np.linspace(1, 0, len(settings))[::-1]), strict=True))
     how: dict[str, Any] = {"ls": "", "ms": 6.5, "mec": palette.text, "mew": 0.5}
-    chart = ScoresChart(ax, {})
+    chart = ScoresChart((ax,), {})
     for y, problem in enumerate(rows):
         if family[problem] % 2 == 0:
             ax.axhspan(y - 0.5, y + 0.5, color=palette.shade(0.06), lw=0, zorder=0)

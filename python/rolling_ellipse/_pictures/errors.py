@@ -83,7 +83,6 @@ class Energy(Artists):
     Of kind "energies" `error` is empty; of kind "error" `total`, `kinetic` and `potential` are.
     """
 
-    ax: Axes
     total: tuple[Line2D, ...]
     kinetic: tuple[Line2D, ...]
     potential: tuple[Line2D, ...]
@@ -128,19 +127,18 @@ def plot_energy(
     if wanted == "energies":
         total, kinetic, potential = draw_curves(ax, shown, "energy [J]", ENERGIES)
         handles = shown.handles(ax, list(zip(ENERGIES.values(), DASHES, strict=True)))
-        return Energy(ax, total, kinetic, potential, (), finish([ax], shown, handles))
+        return Energy((ax,), total, kinetic, potential, (), finish([ax], shown, handles))
     errors = [{style.label or "energy error": energy_error(motion)} for motion, style in shown]
     kept = any(np.isfinite(values).any() for own in errors for values in own.values())
     none = "exactly 0 throughout" if kept else "friction takes energy throughout"
     found = draw_errors(ax, shown, errors, "relative energy error", none)
-    return Energy(ax, (), (), (), found, finish([ax], shown, some_of(found)))
+    return Energy((ax,), (), (), (), found, finish([ax], shown, some_of(found)))
 
 
 @dataclass(frozen=True, repr=False)
 class Constraints(Artists):
     """Artists of `plot_constraints`: lines[i] are those in axes[i], each labelled."""
 
-    axes: tuple[Axes, ...]
     lines: tuple[tuple[Line2D, ...], ...]
     marks: tuple[Artist, ...]
 
@@ -203,7 +201,6 @@ def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[st
 class Error(Artists):
     """Artists of `plot_error`; item i of `errors` and of `references` belongs to motion i."""
 
-    ax: Axes
     errors: tuple[Line2D, ...]
     references: tuple[Trajectory, ...]
     marks: tuple[Artist, ...]
@@ -253,7 +250,7 @@ def plot_error(
     label = f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}"
     errors = draw_errors(ax, compared, found, label, none, dashed=True)
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
-    return Error(ax, errors, references, marks)
+    return Error((ax,), errors, references, marks)
 
 
 def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajectory:

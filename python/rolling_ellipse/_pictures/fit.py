@@ -7,7 +7,6 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -29,7 +28,6 @@ _RATES = {"x_dot": "x_dot [m/s]", "z_dot": "z_dot [m/s]", "omega": "ω [rad/s]"}
 class FitChart(Artists):
     """Artists of `Fit.plot` and `FittedImpacts.plot`; keys are the names of what was measured."""
 
-    axes: tuple[Axes, ...]
     measured: dict[str, Line2D]
     fitted: dict[str, Line2D]
     residuals: dict[str, Line2D]

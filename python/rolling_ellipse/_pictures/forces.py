@@ -41,7 +41,6 @@ class Forces(Artists):
     was given.
     """
 
-    axes: tuple[Axes, ...]
     normal: tuple[Line2D, ...]
     friction: tuple[Line2D, ...]
     limits: tuple[PolyCollection | None, ...]

@@ -38,7 +38,6 @@ class Overview(Artists):
     `phase` is None for angles that `plot_phase` refuses.
     """
 
-    axes: tuple[Axes, ...]
     strobe: Strobe
     phase: Phase | None
     theta: Line2D

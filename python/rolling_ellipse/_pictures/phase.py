@@ -44,7 +44,6 @@ class Phase(Artists):
     has its samples and, at each fold, two points with a break (NaN) between.
     """
 
-    ax: Axes
     motions: tuple[Line2D, ...]
     starts: tuple[Line2D, ...]
     separatrices: tuple[Line2D, ...]
@@ -111,7 +110,7 @@ def plot_phase(
     handles = [] if shown.alone else shown.motion_handles(solid=False)
     name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
     title_beside_legend(ax, next(filter(None, notes), ""), ending_of(*motions))
-    return Phase(ax, tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
+    return Phase((ax,), tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:

@@ -76,7 +76,6 @@ class PhaseMap(Artists):
     "lift-off", "Painlevé", "tip" (a/b = root 3), "last to roll over" (a/b = 9.753).
     """
 
-    ax: Axes
     cells: QuadMesh
     marks: dict[str, Line2D]
     names: dict[str, Text]
@@ -159,7 +158,7 @@ def plot_phase_map(
         ax.set_ylim(*plane.ranges[1])
     found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
     name_curves(ax, [_handle(outcome) for outcome in found])
-    return PhaseMap(ax, cells, *_draw_marks(ax, plane))
+    return PhaseMap((ax,), cells, *_draw_marks(ax, plane))
 
 
 def _handle(outcome: Outcome) -> Patch:

@@ -49,7 +49,6 @@ class Strobe(Artists):
     `contact_path` are NaN in flight, those of `slides` and `skid_path` wherever nothing slides.
     """
 
-    ax: Axes
     bodies: tuple[Ellipse, ...]
     hands: tuple[Line2D, ...]
     centre_path: Line2D
@@ -108,7 +107,9 @@ def plot_strobe(
         f"{count} positions over {part}{last - first:.4g} s" if first < last else f"at {first:g} s"
     )
     title_beside_legend(ax, title, ending_of(trajectory))
-    return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground)
+    return Strobe(
+        (ax,), bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground
+    )
 
 
 def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> None:
@@ -198,7 +199,6 @@ class Paths(Artists):
     the places of one kind of event.
     """
 
-    ax: Axes
     centres: tuple[Line2D, ...]
     tips: tuple[Line2D, ...]
     contacts: tuple[Line2D, ...]
@@ -261,7 +261,7 @@ def plot_paths(
     name_curves(ax, [*handles, *kinds.values()])
     part = f"the first {end:.3g} s of {last:.4g} s" if end < last else ""
     title_beside_legend(ax, part, ending_of(*motions))
-    return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
+    return Paths((ax,), centres, tips, contacts, tuple(events), ground, marks)
 
 
 def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, float, float]:

@@ -56,7 +56,6 @@ class WorkPrecisionChart(Artists):
     the state.
     """
 
-    axes: tuple[Axes, ...]
     gaps: Gaps
     lines: dict[str, Line2D] = field(default_factory=dict)
     fronts: dict[str, Line2D] = field(default_factory=dict)
