@@ -215,12 +215,12 @@ def picture_file(path: Any) -> str | None:
     return name
 
 
-def write(drawn: Artists, name: str | None, *, new: bool) -> None:
+def write(drawn: Artists, name: str | None) -> None:
     """Write the whole figure to a file, if there is a name; a new figure then leaves pyplot."""
     if name is not None:
         drawn.savefig(name)
-        if new:
-            close(drawn.figure)
+        for figure in _opened.get():
+            close(figure)
 
 
 def close(figure: Figure) -> None:

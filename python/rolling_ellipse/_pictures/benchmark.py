@@ -33,7 +33,6 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     if not scores:
         raise ValueError("scores must be of at least one problem, got none")
     name = picture_file(path)
-    new = ax is None
     family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
     rows = sorted(family, key=family.__getitem__)
     ax = axes_of(ax, (7.2, 1.3 + 0.24 * len(rows)), figsize)
@@ -66,5 +65,5 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     ax.spines[["left", "right", "top"]].set_visible(False)
     letters = max(20, int(12 * ax.get_window_extent().width / ax.figure.dpi))
     title_beside_legend(ax, fill(f"{scores.verdict().partition('. ')[0]}.", letters))
-    write(chart, name, new=new)
+    write(chart, name)
     return chart

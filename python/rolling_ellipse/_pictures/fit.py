@@ -58,7 +58,7 @@ def draw_fit(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
     bottom.axhspan(-2, 2, color=shades.shade(0.07), lw=0, zorder=0)  # 95 % of normal residuals
     bottom.set(xlabel="t [s]", ylabel="residual / σ")
     name_curves(bottom)
-    return _finished(chart, whole, fit.message, path, figure is None)
+    return _finished(chart, whole, fit.message, path)
 
 
 @picture
@@ -80,15 +80,15 @@ def draw_impacts(fit: FittedImpacts, path: Any, figure: Any, figsize: Any) -> Fi
     axes[0, 0].set_ylabel("predicted")
     axes[1, 0].set_ylabel("residual")
     whole.supxlabel("measured", fontsize="medium")
-    return _finished(chart, whole, repr(fit)[1:-1], path, figure is None)
+    return _finished(chart, whole, repr(fit)[1:-1], path)
 
 
-def _finished(chart: FitChart, whole: Figure, said: str, path: Any, own: bool) -> FitChart:
+def _finished(chart: FitChart, whole: Figure, title: str, path: Any) -> FitChart:
     """Dress the axes, set the title, and write the picture to a file if there is a path."""
     for ax in chart.axes:
         dress_grid(ax)
     whole.align_ylabels(chart.axes)
     width = whole.bbox.width / whole.get_figure(root=True).dpi
-    whole.suptitle(fill(said, max(20, int(13 * width))), fontsize="medium")
-    write(chart, picture_file(path), new=own)
+    whole.suptitle(fill(title, max(20, int(13 * width))), fontsize="medium")
+    write(chart, picture_file(path))
     return chart

@@ -113,7 +113,7 @@ def plot(
         (strobe.ax, *panels), strobe, phase, theta, omega, height, normal, friction, limit,
         impulses, total, kinetic, potential, *errors, marks,
     )  # fmt: skip
-    write(drawn, name, new=figure is None)
+    write(drawn, name)
     return drawn
 
 
