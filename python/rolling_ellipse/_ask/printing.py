@@ -16,6 +16,8 @@ import numpy as np
 from .._core import EventKind, Mode, Outcome, Validity
 
 Row = tuple[str, ...]
+# Least size [m] of bodies whose lengths have the unit, how many of it are 1 m, and its name
+_LENGTHS = (500.0, 1e-3, "km"), (0.05, 1.0, "m"), (5e-5, 1e3, "mm"), (0.0, 1e6, "µm")
 _Enum = TypeVar("_Enum", bound=type[enum.Enum])
 
 
@@ -101,6 +103,11 @@ def with_unit(value: Any, unit: str) -> str:
     """Return `brief` of a value and its unit; None and empty tuples have no unit."""
     missing = value is None or (isinstance(value, tuple) and not value)
     return brief(value) if missing else f"{brief(value)} {unit}".rstrip()
+
+
+def length_unit(size: float) -> tuple[float, str]:
+    """Return how many of the unit that suits lengths of about `size` [m] are 1 m, and its name."""
+    return next((per_metre, name) for least, per_metre, name in _LENGTHS if size >= least)
 
 
 def text_table(rows: Sequence[Row]) -> str:

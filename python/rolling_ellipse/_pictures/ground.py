@@ -18,6 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
 from .._ask.check import FloatArray, require_near
+from .._ask.printing import length_unit
 from .._ask.scene import InitialState, Scene
 from .._core import Mode
 from .._motion.trajectory import Trajectory
@@ -28,8 +29,6 @@ SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha
 SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 QUARTER = math.pi / 2
-# Least longer semi-axis [m] of bodies whose lengths have the unit, how many of it are 1 m, its name
-_UNITS = (500.0, 1e-3, "km"), (0.05, 1.0, "m"), (5e-5, 1e3, "mm"), (0.0, 1e6, "µm")
 _TICKS = 8.0  # most ticks of the ground on an inch
 _LONG = 1e6  # figures beyond it are left to matplotlib, which takes an offset out of them
 
@@ -39,15 +38,9 @@ def tilted(scene: Scene) -> Affine2D:
     return Affine2D().rotate(-scene.slope)
 
 
-def length_unit(scene: Scene) -> tuple[float, str]:
-    """Return how many of the unit that suits lengths about the body are 1 m, and its name."""
-    size = max(scene.a, scene.b)
-    return next((per_metre, name) for least, per_metre, name in _UNITS if size >= least)
-
-
 def label_lengths(axis: Axis, name: str, scene: Scene) -> None:
     """Name an axis whose data are in metres, with figures in the unit that suits the body."""
-    per_metre, unit = length_unit(scene)
+    per_metre, unit = length_unit(max(scene.a, scene.b))
     if per_metre * float(np.max(np.abs(axis.get_view_interval()))) > _LONG:
         per_metre, unit = 1.0, "m"
     if per_metre != 1:
@@ -140,7 +133,7 @@ class Ruler:
         most = min(24, max(16, round(_TICKS * ax.bbox.width / ax.figure.dpi)))
         steps = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
-        self._unit = length_unit(scene)
+        self._unit = length_unit(max(scene.a, scene.b))
         self._fifths = math.ceil(span / (5 * self.step))
         self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
         grey = palette_of(ax).grey

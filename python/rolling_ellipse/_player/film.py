@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from .._ask.check import FloatArray
+from .._ask.printing import length_unit
 from .._ask.scene import Scene
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.strip import cameras, in_rows
-from .._pictures.ground import length_unit, touching_x
+from .._pictures.ground import touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
@@ -216,7 +217,7 @@ def body(scene: Scene) -> dict[str, Any]:
         "a": scene.a,
         "b": scene.b,
         "slope": scene.slope,
-        "unit": length_unit(scene),
+        "unit": length_unit(max(scene.a, scene.b)),
         "weight": scene.mass * scene.gravity,
         "blow": blow and [blow.jx, blow.jz, blow.dx, blow.dz],
     }

@@ -17,6 +17,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.transforms import ScaledTranslation
 
 from ..._ask.check import FloatArray
+from ..._ask.printing import length_unit
 from ..._core import Mode
 from ..._motion.trajectory import Trajectory
 from ...geometry import support
@@ -270,9 +271,9 @@ class Strip:
     def _caption(self, i: int) -> str:
         motion, parts = self.motion, []
         if self._film.cameras.follows == "own":
-            per_metre, unit = drawing.length_unit(motion.scene)
-            size = per_metre * max(motion.scene.a, motion.scene.b)
-            digits = max(0, 1 - math.floor(math.log10(size)))
+            size = max(motion.scene.a, motion.scene.b)
+            per_metre, unit = length_unit(size)
+            digits = max(0, 1 - math.floor(math.log10(per_metre * size)))
             parts.append(f"x = {per_metre * motion.x[i]:.{digits}f} {unit}".replace("-", "−"))
         if len(self._film.pace.parts) > 1:
             turn, turns = (max(1, math.ceil(abs(n) - 1e-6)) for n in (motion.turns[i], self._turns))
