@@ -487,7 +487,7 @@ def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
     assert plt.fignum_exists(animation.figure.number) if windows else True
     plt.close("all")
     rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)  # a file opens no window
-    with pytest.raises(ValueError, match="labels must be 1"):
+    with pytest.raises(ValueError, match="labels must be a sequence of 1 string, one"):
         rl.animate(report, labels=["one", "two"])
     assert plt.get_fignums() == []
 

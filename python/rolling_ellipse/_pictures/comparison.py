@@ -7,7 +7,9 @@ the quantities, motions differ in markers instead. So pictures can be read in gr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from contextlib import suppress
+from dataclasses import astuple, dataclass, fields
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -22,9 +24,10 @@ from .._motion.trajectory import Trajectory
 from .axes import listed, quantity_handles, some_of
 from .palette import Palette, palette_of
 
+_ABOUT = "method", "model"
 MOST_FACTS = 3  # in one label: more would be wider than a small picture
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
-_MARKERS = (".", "x", "+", "1", "2")
+MARKERS = (".", "x", "+", "1", "2")
 
 
 @dataclass(frozen=True)
@@ -37,15 +40,12 @@ class Style:
     marker: str = ""
 
 
-PLAIN = Style()
-
-
 class Comparison:
     """The motions of one picture in the order given, each with samples.
 
-    Iteration gives each motion with its style. A single motion without a given colour has the style
-    `PLAIN`, so that its quantities can differ in colour. `options` are properties of Line2D for the
-    curves of all motions.
+    Iteration gives each motion with its style. A single motion without a given colour has the plain
+    `Style()`, so that its quantities can differ in colour. `options` are properties of Line2D for
+    the curves of all motions.
     """
 
     def __init__(
@@ -53,32 +53,29 @@ class Comparison:
         trajectories: Trajectory | Sequence[Trajectory],
         labels: Sequence[str] | None = None,
         colors: Sequence[Any] | None = None,
-        *,
         ax: Any = None,
         options: dict[str, Any] | None = None,
     ) -> None:
         self.motions = _motions(trajectories)
-        first = next(iter(listed(ax)), None)
-        self.palette = palette_of(first if isinstance(first, Axes) else None)
+        self.palette = palette_of(next(iter(listed(ax)), None))
         self.options = options or {}
         names = labels_of(self.motions, labels)
-        self.styles = _styles(names, self.palette, _colors(colors, len(names)))
+        self.styles = _styles(names, self.palette, colors)
         self.alone = len(self.motions) == 1
         self._plain = self.alone and colors is None
 
     def __iter__(self) -> Iterator[tuple[Trajectory, Style]]:
-        return zip(self.motions, [PLAIN] if self._plain else self.styles, strict=True)
+        return zip(self.motions, [Style()] if self._plain else self.styles, strict=True)
 
     def sampled(self, sample: Callable[[Trajectory], Trajectory]) -> Comparison:
         """Sample all motions by a function, and return itself."""
         self.motions = tuple(map(sample, self.motions))
         return self
 
-    def restyle(self, *artists: Artist | None) -> None:
+    def restyle(self, *artists: Artist) -> None:
         """Give artists the properties of all curves."""
         for artist in artists:
-            if artist is not None and self.options:
-                artist.set(**self.options)
+            artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
         """Return entries of a legend: the curves of one motion, else motions and quantities."""
@@ -123,28 +120,27 @@ def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajector
     return tuple(trajectories)
 
 
-def _colors(colors: Any, count: int) -> tuple[Any, ...] | None:
-    """Return the colours given for so many motions; None if none are given."""
-    if colors is None:
-        return None
-    wanted = f"colors must be a sequence of {count} matplotlib colours, one for each trajectory"
-    try:
-        found = () if isinstance(colors, str) else tuple(colors)
-    except TypeError:
-        found = ()
-    if len(found) != count or not all(map(is_color_like, found)):
-        raise ValueError(f"{wanted}, got {shown(colors)}")
-    return found
+def _one_each(
+    name: str, given: Any, count: int, kind: str, fits: Callable[[Any], bool]
+) -> list[Any]:
+    """Return the labels or colours given for so many motions, or raise ValueError."""
+    values: list[Any] = []
+    with suppress(TypeError):
+        values = [] if isinstance(given, str) else list(islice(given, count + 1))
+    if len(values) != count or not all(map(fits, values)):
+        wanted = f"{name} must be a sequence of {count} {kind}{'s' * (count != 1)}"
+        raise ValueError(f"{wanted}, one for each trajectory, got {shown(given)}")
+    return values
 
 
-def _styles(
-    labels: Sequence[str], palette: Palette, colors: tuple[Any, ...] | None
-) -> tuple[Style, ...]:
+def _styles(labels: Sequence[str], palette: Palette, colors: Any) -> tuple[Style, ...]:
     count = len(labels)
-    colours = colors or palette.curves[:count]
-    if count > len(colours):  # more motions than colours: from light to dark
-        colours = tuple(to_hex(palette.times(share)) for share in np.linspace(0, 1, count))
-    markers = _MARKERS if count > 1 else ("",)
+    colours: Sequence[Any] = palette.curves
+    if colors is not None:
+        colours = _one_each("colors", colors, count, "matplotlib colour", is_color_like)
+    elif count > len(colours):  # more motions than colours: from light to dark
+        colours = [to_hex(palette.times(share)) for share in np.linspace(0, 1, count)]
+    markers = MARKERS if count > 1 else ("",)
     return tuple(
         Style(label, colours[i], _DASHES[i % len(_DASHES)], markers[i % len(markers)])
         for i, label in enumerate(labels)
@@ -161,21 +157,12 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
     """
     count = len(trajectories)
     if labels is not None:
-        several = isinstance(labels, Sequence) and not isinstance(labels, str)
-        if not several or not all(isinstance(label, str) for label in labels):
-            raise ValueError(f"labels must be a sequence of strings, got {shown(labels)}")
-        if len(labels) != count:
-            raise ValueError(
-                f"labels must be {count}, one for each trajectory, got {len(labels)}: "
-                f"{shown(labels)}"
-            )
-        return list(labels)
+        return _one_each("labels", labels, count, "string", lambda label: isinstance(label, str))
     if count == 1:
         return [""]
-    facts: list[list[str]] = [[each.method for each in trajectories]]
-    facts.append([each.model for each in trajectories])
+    facts: list[list[str]] = [[getattr(m, name) for m in trajectories] for name in _ABOUT]
     for field in fields(Scene):
-        facts.append(_texts(field.name, [getattr(each.scene, field.name) for each in trajectories]))
+        facts.append(_texts(field.name, [getattr(m.scene, field.name) for m in trajectories]))
     facts = [texts for texts in facts if len(set(texts)) > 1]
     names = [", ".join(parts) for parts in zip(*facts[:MOST_FACTS], strict=True)]
     if len(set(names)) < count:
@@ -194,14 +181,10 @@ def _texts(name: str, values: list[Any]) -> list[str]:
 
 
 def _text(name: str, value: float | Impulse | None, digits: int) -> str:
-    def figure(number: float) -> str:
-        return f"{number:.{digits}g}".replace("-", "−").replace("inf", "∞")
-
-    if isinstance(value, Impulse):
-        force, lever = (
-            f"({figure(x)}, {figure(z)})" for x, z in ((value.jx, value.jz), (value.dx, value.dz))
-        )
-        return f"impulse {force} N s at {lever} m"
     if value is None:
         return "no impulse" if name == "impulse" else f"{name} by default"
-    return f"{name} = {figure(value)} {SCENE_UNITS[name]}".rstrip()
+    numbers = astuple(value) if isinstance(value, Impulse) else [value]
+    texts = [f"{number:.{digits}g}".replace("-", "−").replace("inf", "∞") for number in numbers]
+    if isinstance(value, Impulse):
+        return "impulse ({}, {}) N s at ({}, {}) m".format(*texts)
+    return f"{name} = {texts[0]} {SCENE_UNITS[name]}".rstrip()

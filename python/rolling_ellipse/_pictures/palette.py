@@ -10,17 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib import rcParams, rcParamsDefault
+from matplotlib import colors, rcParams, rcParamsDefault
 from matplotlib.axes import Axes
-from matplotlib.colors import (
-    Colormap,
-    LinearSegmentedColormap,
-    is_color_like,
-    to_hex,
-    to_rgb,
-    to_rgba,
-)
-from matplotlib.figure import FigureBase
 
 from .._ask.records import cached_property
 
@@ -45,8 +36,8 @@ class Palette:
 
     def shade(self, share: float) -> str:
         """Return the background with a share of ink."""
-        paper, ink = np.array(to_rgb(self.background)), np.array(to_rgb(self.text))
-        return to_hex((*((1 - share) * paper + share * ink).tolist(), 1.0))
+        paper, ink = np.array(colors.to_rgb(self.background)), np.array(colors.to_rgb(self.text))
+        return colors.to_hex((*((1 - share) * paper + share * ink).tolist(), 1.0))
 
     @property
     def text(self) -> str:
@@ -54,10 +45,10 @@ class Palette:
         return "black" if _lightness(self.background) > 0.5 else "white"
 
     @cached_property
-    def times(self) -> Colormap:
+    def times(self) -> colors.Colormap:
         """Colours from early to late."""
         pale = "#bcd9ea" if self.blue == BLUE else self.shade(0.3)
-        return LinearSegmentedColormap.from_list("times", [pale, self.blue, self.ink])
+        return colors.LinearSegmentedColormap.from_list("times", [pale, self.blue, self.ink])
 
     @property
     def curves(self) -> tuple[str, ...]:
@@ -65,9 +56,15 @@ class Palette:
         return self.ink, self.orange, self.blue, self.sky, self.plum
 
 
-def palette_of(where: Axes | FigureBase | None = None) -> Palette:
-    """Return the colours of the style in force that suit the background of Axes or a figure."""
-    background = _background(where)
+def palette_of(ax: Any = None) -> Palette:
+    """Return the colours of the style in force that suit the background of Axes, or of new ones."""
+    colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
+    if isinstance(ax, Axes):
+        places = ax, ax.get_figure(), ax.get_figure(root=True)
+        colours[:0] = [place.get_facecolor() for place in places if place is not None]
+    background = next(
+        colors.to_hex(colour) for colour in colours if colors.to_rgba(colour)[3] > 0.5
+    )
     if rcParams["axes.prop_cycle"] != rcParamsDefault["axes.prop_cycle"]:
         return _styled(background)
     if _lightness(background) > 0.5:
@@ -79,7 +76,7 @@ def _styled(background: str) -> Palette:
     """Return the colours of a style with its own, those first that differ most from others."""
     plain = Palette(background, "", "", "", "", "", "", "")
     given = [properties.get("color") for properties in rcParams["axes.prop_cycle"]]
-    left = [to_hex(colour) for colour in given if is_color_like(colour)]
+    left = [colors.to_hex(colour) for colour in given if colors.is_color_like(colour)]
     taken = [background, plain.text]
     while left:
         apart, best = max((min(_difference(c, other) for other in taken), c) for c in left)
@@ -94,20 +91,11 @@ def _styled(background: str) -> Palette:
     )
 
 
-def _background(where: Any) -> str:
-    colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
-    while where is not None:  # Axes, their SubFigure or Figure, the Figure of a SubFigure
-        colours.insert(len(colours) - 3, where.get_facecolor())
-        parent = getattr(where, "figure", None)
-        where = None if parent is where else parent
-    return next(to_hex(c) for c in colours if to_rgba(c)[3] > 0.5)
-
-
 def _lightness(colour: str) -> float:
     """Return the lightness of a colour: the luma of ITU-R BT.601."""
-    red, green, blue = to_rgb(colour)
+    red, green, blue = colors.to_rgb(colour)
     return 0.299 * red + 0.587 * green + 0.114 * blue
 
 
 def _difference(colour: Any, other: Any) -> float:
-    return max(abs(a - b) for a, b in zip(to_rgb(colour), to_rgb(other), strict=True))
+    return max(abs(a - b) for a, b in zip(colors.to_rgb(colour), colors.to_rgb(other), strict=True))
