@@ -19,8 +19,8 @@ from .._motion.trajectory import Trajectory
 from .axes import Artists, name_curves, panels_of, picture, quantity_handles
 from .comparison import Comparison, Style
 from .palette import palette_of
-from .panels import DASHES, RANGE, dot, draw_curves, entries_of, events_shown, finish
-from .sampling import are_ranges, curve, over_time, ranges
+from .panels import DASHES, draw_curves, draw_line, entries_of, events_shown, finish
+from .sampling import are_ranges, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]
 """The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
@@ -64,7 +64,7 @@ def plot_forces(
 
     The upper panel shows N and F [N], F over the band +-friction N; where a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
-    impacts, as mean forces over the time that the legend tells. The lower panel shows ``|F|/N``
+    impacts, as mean forces over the time that the legend states. The lower panel shows ``|F|/N``
     against the coefficient of friction; it is infinite where N <= 0. The ground of the curves is
     hatched while the body slides, grey in flight, where both forces are 0, and dotted at rest (of
     several motions, each has a row at the top); dotted lines mark events, those of a single motion
@@ -72,8 +72,8 @@ def plot_forces(
     grey.
 
     The curves are those of the motion itself, whatever samples the trajectory has. More half turns
-    than can be told apart are drawn as ranges: from the least to the largest value in each of 800
-    parts of the time; the title then says how many there are.
+    than can be distinguished are drawn as ranges: from the least to the largest value in each of
+    800 parts of the time; the title then says how many there are.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def plot_forces(
     {figsize}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(over_time)
+    shown = Comparison(trajectories, labels, colors, ax, options).sampled(over_time)
     panels = panels_of(ax, figsize)
     normal, friction, limits, impulses = draw_forces(panels[0], shown)
     needed, available = _draw_needed(panels[1], shown) if len(panels) == 2 else ((), ())
@@ -132,29 +132,25 @@ def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | 
 
 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
-    """Draw impulses as stems as high as the mean force over a time that their label tells.
+    """Draw impulses as stems as high as the mean force over a time that their label states.
 
     By this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's own
     height becomes a force of some weights.
     """
     scene = shown.motions[0].scene
     time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
-    drawn: list[Stems] = []
+    line: dict[str, Any] = {"lw": 1.2, "marker": "o", "ms": 2.5, "markevery": (1, 3)}
+    stems: list[Stems] = []
     for motion, style in shown:
         hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
-        given = [(hit.state_after.reaction_z, hit.state_after.reaction_x) for hit in hits]
-        name = f"impulse / {time:g} s" if hits else "_"
-        line: dict[str, Any] = {"lw": 1.2, "marker": "o", "ms": 2.5, "markevery": (1, 3)}
-        t, stem = np.repeat([hit.t for hit in hits], 3), [0, 1 / time, np.nan]
-        upright, along = (
-            ax.plot(
-                t, np.outer(np.where(part == 0, np.nan, part), stem).ravel(), **line,  # 0: no stem
-                color=style.colour or palette_of(ax).curves[rank], label="_" if rank else name,
-            )[0]
-            for rank, part in enumerate(np.reshape(given, (-1, 2)).T)
-        )  # fmt: skip
-        drawn.append((upright, along))
-    return tuple(drawn)
+        t, stem, pair = np.repeat([hit.t for hit in hits], 3), [0, 1 / time, np.nan], list[Line2D]()
+        for rank, part in enumerate(("reaction_z", "reaction_x")):
+            impulses = [getattr(hit.state_after, part) or np.nan for hit in hits]  # 0 has no stem
+            colour = style.colour or palette_of(ax).curves[rank]
+            name = f"impulse / {time:g} s" if hits and rank == 0 else "_"
+            pair += ax.plot(t, np.outer(impulses, stem).ravel(), color=colour, label=name, **line)
+        stems.append((pair[0], pair[1]))
+    return tuple(stems)
 
 
 def _fit_lines(ax: Axes) -> None:
@@ -167,24 +163,19 @@ def _fit_lines(ax: Axes) -> None:
 
 def _draw_needed(ax: Axes, shown: Comparison) -> tuple[_Lines, tuple[Line2D | None, ...]]:
     """Draw and return |F|/N, and the coefficients of friction where they are finite."""
-    needed: list[Line2D] = []
+    needed = []
     for motion, style in shown:
         colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
-        options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
-        t, values = curve(motion.t, motion.friction_needed)
-        options |= {"color": colour, "ls": style.dash, "label": label} | dot(t)
-        needed += ax.plot(t, values, **options)
+        how = {"color": colour, "ls": style.dash, "label": label}
+        needed.append(draw_line(ax, motion, motion.friction_needed, **how))
     available = [
         ax.axhline(motion.scene.friction, color=style.colour or palette_of(ax).grey, **_LIMIT)
         if math.isfinite(motion.scene.friction)
         else None
         for motion, style in shown
     ]
-    every = [motion.friction_needed for motion in shown.motions]
-    every.append(np.array([motion.scene.friction for motion in shown.motions]))
-    finite = np.concatenate([each[np.isfinite(each)] for each in every])
-    reach = min(float(np.max(finite, initial=0.0)), _STEEP)
-    top = 1.15 * reach or 1.0
+    every = np.hstack([np.append(m.friction_needed, m.scene.friction) for m in shown.motions])
+    top = 1.15 * min(float(np.max(every, where=np.isfinite(every), initial=0.0)), _STEEP) or 1.0
     ax.set_ylim(-0.03 * top, top)
     ax.set_ylabel("|F|/N")
     limits = quantity_handles([("μ", _LIMIT["ls"])], shown.palette) if any(available) else []

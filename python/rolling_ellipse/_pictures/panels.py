@@ -8,6 +8,7 @@ are dotted lines with names. Where the model of a motion is not valid, its curve
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
-RANGE = 0.6  # how opaque a range is: there may be one over another
+_RANGE = 0.6  # how opaque a range is: there may be one over another
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
     Mode.SLIDING: (0.05, 0.28, "////"),
@@ -50,19 +51,24 @@ def draw_curves(
 
     `names` has their names in legends by their attributes, `label` is for the axis.
     """
-    lines: dict[str, list[Line2D]] = {name: [] for name in names}
+    lines: list[list[Line2D]] = [[] for _ in names]
     for motion, style in shown:
         for rank, (name, called) in enumerate(names.items()):
-            t, values = curve(motion.t, getattr(motion, name))
-            how = {"ls": DASHES[rank]} | sparse_markers(style) | dot(t)
-            if are_ranges(motion):
-                how |= {"ls": "-", "alpha": RANGE}
+            dash = "-" if are_ranges(motion) else DASHES[rank]
             colour = style.colour or palette_of(ax).curves[rank]
             text = ", ".join(filter(None, (style.label, called)))
-            lines[name] += ax.plot(t, values, color=colour, label=text, **how)
-    shown.restyle(*(line for each in lines.values() for line in each))
+            how = {"color": colour, "ls": dash, "label": text} | sparse_markers(style)
+            lines[rank].append(draw_line(ax, motion, getattr(motion, name), **how))
+    shown.restyle(*chain(*lines))
     ax.set_ylabel(label)
-    return tuple(map(tuple, lines.values()))
+    return tuple(map(tuple, lines))
+
+
+def draw_line(ax: Axes, motion: Trajectory, values: FloatArray, **style: Any) -> Line2D:
+    """Draw values of a motion over time, or their range in each of many parts of the time."""
+    t, values = curve(motion.t, values)
+    style |= dot(t) | ({"alpha": _RANGE} if are_ranges(motion) else {})
+    return ax.plot(t, values, **style)[0]
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:
@@ -103,9 +109,8 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
     first = events[0].state_before.mode if events else Mode(motion.mode[0])
     modes = [first, *(event.state_after.mode for event in events)]
     times = [0.0, *(event.t for event in events), motion.t_end]
-    begin, end = float(motion.t[0]), float(motion.t[-1])
-    for mode, start, stop in zip(modes, times[:-1], times[1:], strict=True):
-        start, stop = max(start, begin), min(stop, end)
+    seen = np.clip(times, motion.t[0], motion.t[-1]).tolist()
+    for mode, (start, stop) in zip(modes, pairwise(seen), strict=True):
         if mode in spans and start < stop:
             spans[mode].append((start, stop - start))
     return spans
@@ -114,29 +119,27 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
 def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> list[Artist]:
     """Shade sliding, flight and rest: the whole ground, or a row at the top edged in a `colour`."""
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
-    edge: dict[str, Any] = {"ec": colour, "lw": 0.8} if colour else {"lw": 0}
-    upright = {"transform": ax.get_xaxis_transform(), "zorder": 0}
     shade, shades = palette_of(ax).shade, list[Artist]()
     for mode, spans in mode_spans(motion).items():
+        face, hatched, hatch = _SHADES[mode]
+        style: dict[str, Any] = {"fc": shade(face), "ec": colour or shade(hatched), "hatch": hatch}
+        style |= {"lw": 0.8 if colour else 0, "transform": ax.get_xaxis_transform(), "zorder": 0}
         if spans:
-            face, hatched, hatch = _SHADES[mode]
-            style = {"fc": shade(face), "ec": shade(hatched), "hatch": hatch} | edge | upright
             shades.append(ax.broken_barh(spans, (bottom, height), label=mode.name.lower(), **style))
     return shades
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:
     """Draw dotted lines at the events, if `named` with a few names, or counted in their label."""
-    events, upright = events_shown(motion), ax.get_xaxis_transform()
+    events = [(event.t, EVENT_NAMES[event.kind]) for event in events_shown(motion)]
     if not events:
         return []
-    moments, kinds = zip(*((event.t, EVENT_NAMES[event.kind]) for event in events), strict=True)
-    few = list(zip(moments, kinds, strict=True)) if len(events) <= _FEW_EVENTS else []
-    names = label_times(ax, few) if named else []
+    moments, kinds = zip(*events, strict=True)
+    names = label_times(ax, events) if named and len(events) <= _FEW_EVENTS else []
     word = kinds[0] if len(set(kinds)) == 1 else "event"
     label = f"{len(events)} {word}{'s'[: len(events) - 1]}" if named and not names else "_events"
     style: dict[str, Any] = {"color": colour, "lw": 1, "ls": ":", "label": label}
-    return [ax.vlines(moments, 0, 1, transform=upright, **style), *names]
+    return [ax.vlines(moments, 0, 1, transform=ax.get_xaxis_transform(), **style), *names]
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
@@ -181,8 +184,8 @@ def note_of(shown: Comparison) -> str:
 
 def entries_of(marks: Sequence[Artist]) -> list[Artist]:
     """Return entries of a legend for modes and counted events, one of each name."""
-    found = {str(mark.get_label()): mark for mark in marks}
-    return [mark for name, mark in found.items() if name and not name.startswith("_")]
+    by_name = {str(mark.get_label()): mark for mark in marks}
+    return [mark for name, mark in by_name.items() if name and not name.startswith("_")]
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
