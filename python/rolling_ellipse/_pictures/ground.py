@@ -15,7 +15,7 @@ from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import Affine2D
+from matplotlib.transforms import Affine2D, Transform
 
 from .._ask.check import FloatArray, require_near
 from .._ask.printing import length_unit
@@ -25,6 +25,7 @@ from .._motion.trajectory import Trajectory
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
 
+Places = tuple[FloatArray, FloatArray]  # x and z, (n,) [m]
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
@@ -36,6 +37,11 @@ _LONG = 1e6  # figures beyond it are left to matplotlib, which takes an offset o
 def tilted(scene: Scene) -> Affine2D:
     """Return the rotation from ground axes to the page, on which gravity points down."""
     return Affine2D().rotate(-scene.slope)
+
+
+def on_slope(ax: Axes, scene: Scene) -> Transform:
+    """Return the transform of artists whose data are in ground axes."""
+    return tilted(scene) + ax.transData
 
 
 def label_lengths(axis: Axis, name: str, scene: Scene) -> None:
@@ -53,7 +59,7 @@ def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse
     centre = (float(trajectory.x[i]), float(trajectory.z[i]))
     angle, scene = -math.degrees(trajectory.theta[i]), trajectory.scene
     body = Ellipse(centre, 2 * scene.a, 2 * scene.b, angle=angle, **style)
-    body.set_transform(tilted(scene) + ax.transData)
+    body.set_transform(on_slope(ax, scene))
     ax.add_patch(body)
     return body
 
@@ -63,27 +69,22 @@ def flat_angle(scene: Scene) -> float:
     return 0.0 if scene.a >= scene.b else QUARTER
 
 
-def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Return the end of axis a that lies on the right at theta = 0: x and z, (n,) [m]."""
+def tip(trajectory: Trajectory) -> Places:
+    """Return the end of axis a that lies on the right at theta = 0."""
     a, theta = trajectory.scene.a, trajectory.theta
     return trajectory.x + a * np.cos(theta), trajectory.z - a * np.sin(theta)
 
 
-def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Return where body and ground touch: x and z, (n,) [m]; NaN in flight."""
-    touching = trajectory.mode != Mode.FLIGHT
-    return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
+def contact_points(trajectory: Trajectory, *, sliding: bool = False) -> Places:
+    """Return where the body touches the ground, or only where it slides; NaN elsewhere."""
+    mode = trajectory.mode
+    here = mode == Mode.SLIDING if sliding else mode != Mode.FLIGHT
+    return np.where(here, trajectory.contact_x, np.nan), np.where(here, 0.0, np.nan)
 
 
 def touching_x(scene: Scene, state: InitialState) -> float:
     """Return the place on the ground that an event's body touches, or is above [m]."""
     return state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
-
-
-def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Return where the contact slides: x and z, (n,) [m]; NaN elsewhere."""
-    sliding = trajectory.mode == Mode.SLIDING
-    return np.where(sliding, trajectory.contact_x, np.nan), np.where(sliding, 0.0, np.nan)
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
@@ -115,7 +116,7 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
     earth = Polygon(
         [(left, -reach), (left, 0.0), (right, 0.0), (right, -reach)],
         facecolor=palette.earth, edgecolor=palette.grey, lw=1, zorder=1,
-        transform=tilted(scene) + ax.transData,
+        transform=on_slope(ax, scene),
     )  # fmt: skip
     ax.add_artist(earth)  # add_patch would widen the view to the whole earth
     return earth
@@ -129,7 +130,7 @@ class Ruler:
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
-        on_slope = tilted(scene) + ax.transData
+        in_ground_axes: dict[str, Any] = {"transform": on_slope(ax, scene), "zorder": 2}
         most = min(24, max(16, round(_TICKS * ax.bbox.width / ax.figure.dpi)))
         steps = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
@@ -137,12 +138,12 @@ class Ruler:
         self._fifths = math.ceil(span / (5 * self.step))
         self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
         grey = palette_of(ax).grey
-        self.ticks = LineCollection([], colors=grey, lw=1, transform=on_slope, zorder=2)
+        self.ticks = LineCollection([], colors=grey, lw=1, **in_ground_axes)
         ax.add_artist(self.ticks)
         self.labels = [
             ax.text(
-                0, 0, "", color=grey, fontsize="small", ha="center", va="top", zorder=2,
-                rotation=-math.degrees(scene.slope), clip_on=True, transform=on_slope,
+                0, 0, "", color=grey, fontsize="small", ha="center", va="top", clip_on=True,
+                rotation=-math.degrees(scene.slope), **in_ground_axes,
             )
             for _ in range(2 * self._fifths + 1)
         ]  # fmt: skip

@@ -103,10 +103,8 @@ def plot_strobe(
     dress_ground_axes(ax, path.scene, view)
     name_curves(ax)
     part = "" if end == last else f"the first {end - first:.3g} s of "
-    title = (
-        f"{count} positions over {part}{last - first:.4g} s" if first < last else f"at {first:g} s"
-    )
-    title_beside_legend(ax, title, ending_of(trajectory))
+    span = f"{count} positions over {part}{last - first:.4g} s"
+    title_beside_legend(ax, span if first < last else f"at {first:g} s", ending_of(trajectory))
     return Strobe(
         (ax,), bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground
     )
@@ -130,51 +128,37 @@ def figure_size(view: tuple[float, float, float, float]) -> tuple[float, float]:
 
 
 def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[Line2D, ...]]:
-    on_slope = drawing.tilted(at.scene) + ax.transData
-    palette, fill = palette_of(ax), _fill(at)
-    tip_x, tip_z = drawing.tip(at)
+    palette, size = palette_of(ax), 2 * max(at.scene.a, at.scene.b)
+    in_one_place = at.t.size * size / (size + float(np.ptp(at.x)))
+    face = (*to_rgb(palette.blue), min(0.1, _PILE / in_one_place))
     bodies: list[Ellipse] = []
     hands: list[Line2D] = []
-    for i, t in enumerate(at.t):
+    for i, (x, z) in enumerate(zip(*drawing.tip(at), strict=True)):
         colour = palette.times(i / (at.t.size - 1) if at.t.size > 1 else 1.0)
-        style = "-" if t < at.valid_until else ":"
-        face = (*to_rgb(palette.blue), fill)
-        bodies.append(drawing.draw_body(ax, at, i, fc=face, ec=colour, lw=1.3, ls=style, zorder=3))
+        line: dict[str, Any] = {"lw": 1.3, "ls": "-" if at.t[i] < at.valid_until else ":"}
+        bodies.append(drawing.draw_body(ax, at, i, fc=face, ec=colour, zorder=3, **line))
         hands += ax.plot(
-            [at.x[i], tip_x[i]], [at.z[i], tip_z[i]], color=colour, lw=1.3, ls=style, marker="o",
-            markevery=[1], ms=3, transform=on_slope, zorder=4,
+            [at.x[i], x], [at.z[i], z], color=colour, marker="o", markevery=[1], ms=3, zorder=4,
+            transform=drawing.on_slope(ax, at.scene), **line,
         )  # fmt: skip
     return tuple(bodies), tuple(hands)
 
 
-def _fill(at: Trajectory) -> float:
-    """Return the opacity of each body: a tenth, or less where many lie in one place."""
-    size = 2 * max(at.scene.a, at.scene.b)
-    piled = at.t.size * size / (size + float(np.ptp(at.x)))
-    return min(0.1, _PILE / piled)
-
-
 def _draw_tracks(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
     """Draw the paths of the centre and the contact, and marks where the bodies touch and slide."""
-    draw = partial(ax.plot, transform=drawing.tilted(at.scene) + ax.transData)
-    palette = palette_of(ax)
-    marker: dict[str, Any] = {"ls": "none", "mec": palette.ink}
-    skid = SKID | {"color": palette.plum}
-    skids = drawing.skids(path)
+    draw = partial(ax.plot, transform=drawing.on_slope(ax, at.scene))
+    palette, contact = palette_of(ax), drawing.contact_points
+    skids, skid = contact(path, sliding=True), SKID | {"color": palette.plum, "zorder": 4.5}
     name = "sliding" if np.isfinite(skids[0]).any() else "_sliding"
+    line: dict[str, Any] = {"color": palette.ink, "lw": 2.4, "solid_capstyle": "round", "zorder": 5}
+    mark: dict[str, Any] = {"ls": "none", "mec": palette.ink}
     return [
         *draw(path.x, path.z, color=palette.orange, lw=1.8, zorder=5, label="centre"),
-        *draw(
-            *drawing.contact_points(path), color=palette.ink, lw=2.4, solid_capstyle="round",
-            zorder=5, label="contact",
-        ),
-        *draw(
-            *drawing.contact_points(at), marker="o", ms=5, mfc=palette.background, zorder=6,
-            **marker,
-        ),
-        *draw(*skids, **skid, zorder=4.5, label=name),
-        *draw(*drawing.skids(at), marker="D", ms=6, mfc=palette.plum, zorder=7, **marker),
-    ]  # fmt: skip
+        *draw(*contact(path), label="contact", **line),
+        *draw(*contact(at), marker="o", ms=5, mfc=palette.background, zorder=6, **mark),
+        *draw(*skids, label=name, **skid),
+        *draw(*contact(at, sliding=True), marker="D", ms=6, mfc=palette.plum, zorder=7, **mark),
+    ]
 
 
 def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, float]) -> None:
@@ -220,7 +204,7 @@ def plot_paths(
     """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
 
     That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
-    is down. The path of the contact ends where the body leaves the ground and goes on where it hits
+    is down. The path of the contact ends where the body leaves the ground and resumes where it hits
     it; markers on it are events. Dots and an outline show the start. Of a long path the first three
     turns are shown, or the first swing (the title then says so). Where the model is not valid, the
     path of the centre has grey ground.
@@ -232,24 +216,27 @@ def plot_paths(
     {ax}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
-    motions = shown.motions
-    slopes = sorted({motion.scene.slope for motion in motions})
+    shown = Comparison(trajectories, labels, colors, ax, options)
+    slopes = sorted({motion.scene.slope for motion in shown.motions})
     if len(slopes) > 1:
         raise ValueError(f"trajectories must be on one slope, got {slopes!r}")
-    last = max(span_of(motion)[1] for motion in motions)
-    end = max(turned_until(motion, SHOWN_TURNS, "x_dot") for motion in motions)
-    shown.motions = motions = tuple(_until(motion, end) for motion in motions)
-    view = _view(motions, end)
+    last = max(span_of(motion)[1] for motion in shown.motions)
+    end = max(turned_until(motion, SHOWN_TURNS, "x_dot") for motion in shown.motions)
+    motions = shown.sampled(lambda motion: _until(motion, end)).motions
+    views = [
+        drawing.view_of(motion.scene, motion.x[motion.t <= end], motion.z[motion.t <= end])
+        for motion in motions
+        if motion.t[0] <= end
+    ]
+    left, right, bottom, top = zip(*views, strict=True)
+    view = min(left), max(right), min(bottom), max(top)
     ax = axes_of(ax, figure_size(view), figsize)
-    places = np.concatenate([motion.x for motion in motions])
-    ground = drawing.draw_ground(ax, motions[0].scene, places)
+    ground = drawing.draw_ground(ax, motions[0].scene, np.concatenate([m.x for m in motions]))
     drawn = [
         _draw_paths(ax, motion, style, rank / len(motions))
         for rank, (motion, style) in enumerate(shown)
     ]
-    quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
-    handles = shown.handles(ax, quantities)
+    handles = shown.handles(ax, [("centre", _CENTRE), ("end of axis a", _TIP)])
     ink = shown.palette.ink
     events = [_draw_events(ax, motion, style.colour or ink) for motion, style in shown]
     centres, tips, contacts = zip(*drawn, strict=True)
@@ -264,68 +251,50 @@ def plot_paths(
     return Paths((ax,), centres, tips, contacts, tuple(events), ground, marks)
 
 
-def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, float, float]:
-    """Return the view of all motions until `end` [s]: left, right, bottom, top [m]."""
-    views = [
-        drawing.view_of(motion.scene, motion.x[motion.t <= end], motion.z[motion.t <= end])
-        for motion in motions
-        if motion.t[0] <= end
-    ]
-    left, right, bottom, top = zip(*views, strict=True)
-    return min(left), max(right), min(bottom), max(top)
+def _until(motion: Trajectory, end: float) -> Trajectory:
+    """Return the motion up to a time [s], or its first sample if it starts later."""
+    start, last = span_of(motion)
+    return between(motion, start, max(start, min(end, last)), HALF_TURNS)
 
 
 def _draw_paths(
     ax: Axes, motion: Trajectory, style: Style, share: float
 ) -> tuple[Line2D, Line2D, Line2D]:
     """Draw the three paths of a motion; `share` of the motions are drawn before it."""
-    on_slope = drawing.tilted(motion.scene) + ax.transData
-    palette = palette_of(ax)
+    draw = partial(ax.plot, transform=drawing.on_slope(ax, motion.scene))
+    palette, name = palette_of(ax), f"{style.label}, " if style.label else ""
     drawing.draw_body(ax, motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
-    colours = [style.colour or own for own in (palette.orange, palette.blue, palette.ink)]
     start: dict[str, Any] = {"marker": ".", "ms": 6, "markevery": [0]}
-    name = f"{style.label}, " if style.label else ""
-    (centre,) = ax.plot(
-        motion.x, motion.z, color=colours[0], ls=_CENTRE, lw=1.8, label=f"{name}centre",
-        transform=on_slope, zorder=5, **(sparse_markers(style) or start),
+    (centre,) = draw(
+        motion.x, motion.z, color=style.colour or palette.orange, ls=_CENTRE, lw=1.8, zorder=5,
+        label=f"{name}centre", **(sparse_markers(style) or start),
     )  # fmt: skip
-    (tip,) = ax.plot(
-        *drawing.tip(motion), color=colours[1], ls=_TIP, lw=1.2, label=f"{name}end of axis a",
-        transform=on_slope, zorder=4, **start,
+    (tip,) = draw(
+        *drawing.tip(motion), color=style.colour or palette.blue, ls=_TIP, lw=1.2, zorder=4,
+        label=f"{name}end of axis a", **start,
     )  # fmt: skip
-    (contact,) = ax.plot(  # narrower than the contacts below it, so that all are seen
-        *drawing.contact_points(motion), color=colours[2], lw=2.4 + 4 * share,
-        solid_capstyle="butt", label=f"{name}contact", transform=on_slope, zorder=3 - share,
-        **start,
+    (contact,) = draw(  # narrower than the contacts below it, so that all are seen
+        *drawing.contact_points(motion), color=style.colour or palette.ink, lw=2.4 + 4 * share,
+        solid_capstyle="butt", zorder=3 - share, label=f"{name}contact", **start,
     )  # fmt: skip
     return centre, tip, contact
 
 
 def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...]:
     """Mark where the body touches the ground at its events, a line for each kind."""
-    on_slope = drawing.tilted(motion.scene) + ax.transData
-    events = events_shown(motion)
-    places = np.array([drawing.touching_x(motion.scene, event.state_after) for event in events])
-    kinds = np.array([event.kind.value for event in events])
-    lines: list[Line2D] = []
-    for kind in dict.fromkeys(event.kind for event in events):
-        x = places[kinds == kind.value]
-        lines += ax.plot(
-            x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mec=colour, mew=1.2,
-            mfc=palette_of(ax).background, label=EVENT_NAMES[kind], transform=on_slope,
-            zorder=6,
-        )  # fmt: skip
-    return tuple(lines)
+    look: dict[str, Any] = {"mec": colour, "mew": 1.2, "mfc": palette_of(ax).background, "ms": 6}
+    look |= {"ls": "none", "transform": drawing.on_slope(ax, motion.scene), "zorder": 6}
+    places: dict[EventKind, list[float]] = {}
+    for event in events_shown(motion):
+        place = drawing.touching_x(motion.scene, event.state_after)
+        places.setdefault(event.kind, []).append(place)
+    return tuple(
+        ax.plot(x, np.zeros(len(x)), marker=_EVENTS[kind], label=EVENT_NAMES[kind], **look)[0]
+        for kind, x in places.items()
+    )
 
 
 def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:
     late = np.where(motion.t >= motion.valid_until, motion.z, np.nan)
-    return draw_invalid_ground(
-        ax, motion.x, late, transform=drawing.tilted(motion.scene) + ax.transData
-    )
-
-
-def _until(motion: Trajectory, end: float) -> Trajectory:
-    """Return the motion up to a time [s], or its first sample if it begins later."""
-    begin, last = span_of(motion)
-    return between(motion, begin, max(begin, min(end, last)), HALF_TURNS)
+    transform = drawing.on_slope(ax, motion.scene)
+    return draw_invalid_ground(ax, motion.x, late, transform=transform)

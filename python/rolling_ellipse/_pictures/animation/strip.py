@@ -29,6 +29,10 @@ ROW = 0.18  # height of a further row of a caption [inch]
 FADES = 1.2  # a blow is seen for so long [s of film]
 
 
+View = tuple[float, float, float, float]
+_Ends = tuple[float, float]
+
+
 @dataclass(frozen=True)
 class Cameras:
     """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down.
@@ -40,7 +44,7 @@ class Cameras:
     views: tuple[FloatArray, ...]  # of each strip: one view a frame, (n, 4)
     heights: tuple[float, ...]  # of each strip: its share of the picture's height
     shape: float  # height of the picture over its width
-    windows: tuple[tuple[float, float, float, float], ...]  # views relative to the followed place
+    windows: tuple[View, ...]  # views relative to the followed place
     follows: str  # "nothing", the "middle" of all motions, or "own": each strip its own motion
 
 
@@ -50,11 +54,7 @@ def in_rows(label: str) -> str:
 
 
 def cameras(
-    motions: Sequence[Trajectory],
-    shape: float | None,
-    head: float,
-    foot: float,
-    beside: bool = False,
+    motions: Sequence[Trajectory], shape: float | None, head: float, foot: float, beside: bool
 ) -> Cameras:
     """Return the views of motions sampled at the same frames.
 
@@ -73,19 +73,14 @@ def cameras(
     targets = [np.zeros((motion.t.size, 2)) for motion in motions]
     follows = "nothing"
     if right - left > widest:
-        feet = [np.column_stack([motion.x, np.zeros_like(motion.x)]) for motion in motions]
-        targets = [  # the places on the ground below the centre, as the picture has them
-            np.asarray(drawing.tilted(motion.scene).transform(below))
-            for motion, below in zip(motions, feet, strict=True)
-        ]
+        targets = [_below(motion) for motion in motions]
         places = np.array([target[:, 0] for target in targets])
-        parted = float(np.max(np.ptp(places, axis=0)))
-        together = parted + (BEHIND + AHEAD) * size <= widest
-        follows = "middle" if together else "own"
-        if together:
-            middle = (places.min(axis=0) + places.max(axis=0)) / 2
-            targets = [np.column_stack([middle, target[:, 1]]) for target in targets]
-        room = parted / 2 if together else 0.0
+        parted, room = float(np.max(np.ptp(places, axis=0))), 0.0
+        follows = "middle" if parted + (BEHIND + AHEAD) * size <= widest else "own"
+        if follows == "middle":
+            room = parted / 2
+            for target in targets:
+                target[:, 0] = (places.min(axis=0) + places.max(axis=0)) / 2
         left, right = -BEHIND * size - room, AHEAD * size + room
         depths = [  # bottom and top in all frames, from the ground below the centre
             (-0.35 * own, float(np.max(motion.z + np.minimum(motion.z, own))) + 0.3 * own)
@@ -96,27 +91,23 @@ def cameras(
     windows, heights, shape = _framed(
         (left, right), depths, shape and shape * columns, head * columns, foot * columns, beside
     )
-    return Cameras(
-        columns,
-        tuple(
-            np.array(window) + target[:, [0, 0, 1, 1]]
-            for window, target in zip(windows * columns, targets, strict=True)
-        ),
-        heights * columns,
-        shape / columns,
-        windows * columns,
-        follows,
+    windows, heights = windows * columns, heights * columns
+    views = tuple(
+        np.array(window) + target[:, [0, 0, 1, 1]]
+        for window, target in zip(windows, targets, strict=True)
     )
+    return Cameras(columns, views, heights, shape / columns, windows, follows)
+
+
+def _below(motion: Trajectory) -> FloatArray:
+    """Return the places on the ground below the centre, as the picture has them, (n, 2)."""
+    along = np.column_stack([motion.x, np.zeros_like(motion.x)])
+    return np.array(drawing.tilted(motion.scene).transform(along))
 
 
 def _framed(
-    ends: tuple[float, float],
-    depths: list[tuple[float, float]],
-    shape: float | None,
-    head: float,
-    foot: float,
-    narrow: bool,
-) -> tuple[tuple[tuple[float, float, float, float], ...], tuple[float, ...], float]:
+    ends: _Ends, depths: list[_Ends], shape: float | None, head: float, foot: float, narrow: bool
+) -> tuple[tuple[View, ...], tuple[float, ...], float]:
     """Return windows of one scale that fill a column of strips, their heights and its shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
@@ -160,7 +151,7 @@ class Strip:
         ax, motion = self.ax, self.motion
         ax.set_axis_off()
         ax.autoscale(False)
-        on_slope = drawing.tilted(motion.scene) + ax.transData
+        on_slope, contact_points = drawing.on_slope(ax, motion.scene), drawing.contact_points
         span = float(self._views[0, 1] - self._views[0, 0])
         drawing.draw_ground(ax, motion.scene, motion.x, span)
         self.ruler = drawing.Ruler(ax, motion.scene, span)
@@ -190,8 +181,8 @@ class Strip:
             units="dots", width=0.035 * ax.figure.dpi, minlength=0,
         )  # fmt: skip
         self.names = [ax.text(0, 0, "", color=plum, zorder=9, clip_on=True) for _ in range(3)]
-        tip, skids, centre = drawing.tip(motion), drawing.skids(motion), (motion.x, motion.z)
-        touching = drawing.contact_points(motion)
+        tip, touching, centre = drawing.tip(motion), contact_points(motion), (motion.x, motion.z)
+        skids = contact_points(motion, sliding=True)
         self._traces = {self.skid_trace: skids, self.tip_trace: tip, self.centre_trace: centre}
         self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # in one frame
 
@@ -202,7 +193,7 @@ class Strip:
         cosine, sine = math.cos(theta), math.sin(theta)
         self.body.set_center((x, z))
         self.body.set_angle(-math.degrees(theta))
-        along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
+        along, across = np.outer([scene.a, scene.b], [-1, 1])
         self.axis_a.set_data(x + along * cosine, z - along * sine)
         self.axis_b.set_data(x + across * sine, z + across * cosine)
         for lines, first in ((self._marks, i), (self._traces, int(self._film.pace.first[i]))):
@@ -231,27 +222,23 @@ class Strip:
         """Let the arrows show the forces of the ground, and the blow while it fades."""
         motion, scene, blow = self.motion, self.motion.scene, self.motion.scene.impulse
         size, texts = max(scene.a, scene.b), ["", "", ""]
-        begins, arrows = np.zeros((3, 2)), np.zeros((3, 2))
+        feet, arrows = np.zeros((3, 2)), np.zeros((3, 2))
         if self._film.forces and motion.mode[i] != Mode.FLIGHT:
             forces = np.array([motion.normal_force[i], motion.friction_force[i]])
             N, F = np.clip(forces / (scene.mass * scene.gravity), -3, 3) * size
-            begins[:2, 0], arrows[0, 1], arrows[1, 0] = motion.contact_x[i], N, F
+            feet[:2, 0], arrows[0, 1], arrows[1, 0] = motion.contact_x[i], N, F
             texts[:2] = "N", "F" if F else ""
         fresh = max(0.0, 1 - self._film.t[i] / self._film.speed / FADES)
-        if (
-            self._film.blow
-            and blow is not None
-            and fresh
-            and (strength := np.hypot(blow.jx, blow.jz))
-        ):
+        strength = np.hypot(blow.jx, blow.jz) if blow is not None else 0.0
+        if self._film.blow and fresh and strength:
             start, texts[2] = self._source.sol([0.0]), f"  {strength:.3g} N s"
             arrows[2] = np.array([blow.jx, blow.jz]) * 0.9 * size / strength
-            begins[2] = np.array([start.x[0] + blow.dx, start.z[0] + blow.dz]) - arrows[2]
+            feet[2] = np.array([start.x[0] + blow.dx, start.z[0] + blow.dz]) - arrows[2]
         seen = drawing.tilted(scene).transform
-        self.arrows.set_offsets(seen(begins))
+        self.arrows.set_offsets(seen(feet))
         self.arrows.set_UVC(*seen(arrows).T)
         self.arrows.set_alpha([1, 1, fresh])
-        places = seen(begins + [[1], [1], [0]] * arrows)  # ends of forces, beginning of the blow
+        places = seen(feet + [[1], [1], [0]] * arrows)  # tips of the forces, foot of the blow
         for name, text, place, alpha in zip(self.names, texts, places, (1, 1, fresh), strict=True):
             name.set(text=text, position=place, alpha=alpha)
 
@@ -284,7 +271,6 @@ class Strip:
             parts.append("rolling is no longer valid")
         if motion.t[i] < self._film.t[i]:
             parts.append(f"ended at {motion.t[i]:g} s")
-        remarks = "   ".join(parts)
-        if self._beside:
-            return "\n".join(filter(None, [in_rows(self._label), remarks]))
-        return "   ".join(filter(None, [self._label, remarks]))
+        label = in_rows(self._label) if self._beside else self._label
+        gap = "\n" if self._beside else "   "
+        return gap.join(filter(None, [label, "   ".join(parts)]))
