@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import wraps
@@ -168,32 +169,37 @@ def panels_of(ax: Axes | Sequence[Axes] | None, figsize: Any) -> list[Axes]:
     if ax is None:
         return list(_new_figure((7, 5), figsize).subplots(2, sharex=True))
     panels = listed(ax)
+    wanted = "ax must be one matplotlib Axes or two"
     if not all(isinstance(panel, Axes) for panel in panels):
-        raise TypeError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
+        raise TypeError(f"{wanted}, got {shown(ax)}")
     if len(panels) not in (1, 2):
-        raise ValueError(f"ax must be one matplotlib Axes or two, got {len(panels)} of them")
+        raise ValueError(f"{wanted}, got {len(panels)} of them")
     return panels
 
 
 def listed(ax: Any) -> list[Any]:
-    """Return the entries of a list or an array, flat; a single object is the only entry."""
-    if isinstance(ax, np.ndarray):
-        return list(ax.ravel())
-    if isinstance(ax, (list, tuple)):
-        return [each for row in ax for each in listed(row)]
-    return [ax]
+    """Return the entries of nested lists and arrays, flat; a single object is the only entry."""
+    rows = ax.ravel().tolist() if isinstance(ax, np.ndarray) else ax
+    if not isinstance(rows, (list, tuple)):
+        return [ax]
+    return [each for row in rows for each in listed(row)]
 
 
 def figure_of(figure: Any, size: tuple[float, float], figsize: Any) -> Figure:
     """Return the figure given, or a new pyplot figure; `size` [inch] is what fits."""
     if figure is None:
         return _new_figure(size, figsize)
-    if not isinstance(figure, FigureBase):  # base class of Figure and SubFigure
-        raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
-    whole = figure.get_figure(root=True)
-    if whole is not None and whole.get_layout_engine() is None:
+    whole: Any = require_figure(figure).get_figure(root=True)
+    if whole.get_layout_engine() is None:
         whole.set_layout_engine("constrained")
-    return figure  # type: ignore[return-value]
+    return figure  # type: ignore[no-any-return]
+
+
+def require_figure(figure: Any) -> FigureBase:
+    """Return the Figure or SubFigure, or raise TypeError."""
+    if not isinstance(figure, FigureBase):
+        raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
+    return figure
 
 
 def pyplot_figure(**options: Any) -> Figure:
@@ -233,11 +239,10 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
     """Raise ValueError unless a size is two positive numbers, and of a new figure."""
     if figsize is None:
         return
-    try:
+    wrong = shown(figsize)
+    with suppress(TypeError, ValueError):
         _width, _height = (positive("figsize", side) for side in figsize)
         wrong = "" if ax is None and figure is None else "one for a figure that has a size"
-    except (TypeError, ValueError):
-        wrong = shown(figsize)
     if wrong:
         wanted = "figsize must be the width and the height [inch] of a new figure"
         raise ValueError(f"{wanted}, got {wrong}")

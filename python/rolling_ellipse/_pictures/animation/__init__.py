@@ -13,7 +13,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import choice, file_name, flag, number, shown
 from ..._motion.trajectory import Trajectory
-from ..axes import picture, pyplot_figure, require_axes
+from ..axes import picture, pyplot_figure, require_axes, require_figure
 from ..comparison import Comparison
 from .film import RollingAnimation
 from .movies import pace, within
@@ -49,7 +49,7 @@ def animate(
 
     The body is always where the motion has it at the time on the clock. A film that would last more
     than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts of
-    the motion in life's time: beginning, end and middle, the first and the last event between them;
+    the motion in real time: start, end and middle, the first and the last event between them;
     captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
     turn in a frame, and seem to roll backwards, is shown in slow motion, and the clock says so.
 
@@ -68,7 +68,7 @@ def animate(
         a page with a player that needs no network. Without it nothing is written: a notebook shows
         that player by itself, and where matplotlib has windows, `plt.show()` shows the film.
     labels : sequence of str, optional
-        Names of the motions; without them, several are told apart by what differs among them:
+        Names of the motions; without them, several are named by what differs among them:
         method, model, fields of the scene, else 1, 2, 3.
     t_end : float, optional
         Last time shown [s]; without it, the latest end.
@@ -80,7 +80,7 @@ def animate(
     speed : float, optional
         Seconds of motion in a second of film, which then shows all of it; 0.1 is slow motion.
     max_frames : int, optional
-        Most frames that may be made, at most a million; a film of more is refused.
+        Largest number of frames, at most a million; a film of more is refused.
     width : int
         Width of the picture [pixels], 16 to 16384; the height follows from what there is to see.
         The player takes the width it is given.
@@ -122,15 +122,16 @@ def animate(
         If the file cannot be written; what was there then stays.
     """
     width, dpi = round(within("width", width, *WIDTHS)), within("dpi", dpi, *DPI)
-    if figure is not None and not isinstance(figure, (Figure, SubFigure)):
-        raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
+    if figure is not None:
+        require_figure(figure)
     beside = choice("layout", layout, LAYOUTS) == LAYOUTS[1]
     panel = panel if panel is None else choice("panel", panel, PANELS)  # type: ignore[assignment]
     forces, blow = flag("forces", forces), flag("blow", blow)
     progress = progress if progress is None else flag("progress", progress)
     compared = Comparison(trajectories, labels)
     motions, names = compared.motions, [style.label for style in compared.styles]
-    _check_ax(ax, figure, len(motions), panel)
+    if ax is not None:
+        _check_ax(ax, figure, len(motions), panel)
     latest = max(float(motion.t[-1]) for motion in motions)
     last = latest if t_end is None else number("t_end", t_end)
     if not 0 <= last <= latest:
@@ -151,15 +152,14 @@ def animate(
 
 
 def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
-    if ax is None:
-        return
     require_axes(ax)
-    if figure is not None:
-        raise ValueError(f"ax must be None where a figure is given, got {shown(ax)}")
-    if motions > 1:
-        raise ValueError(f"ax must be None for {motions} motions, which need a figure, got one")
-    if panel is not None:
-        raise ValueError(f"ax must be None where there is a panel, got {shown(ax)}")
+    reasons = {
+        "where a figure is given": figure is not None,
+        f"for {motions} motions, which need a figure": motions > 1,
+        "where there is a panel": panel is not None,
+    }
+    for reason in (reason for reason, holds in reasons.items() if holds):
+        raise ValueError(f"ax must be None {reason}, got {shown(ax)}")
 
 
 def _has_windows() -> bool:

@@ -67,20 +67,10 @@ class RollingAnimation(FuncAnimation):
     _html: ClassVar[Callable[[RollingAnimation], str]]
 
     def __init__(
-        self,
-        motions: Sequence[Trajectory],
-        pace: Pace,
-        labels: Sequence[str],
-        *,
-        width: int = 640,
-        dpi: float = 100.0,
-        place: Figure | SubFigure | Axes | Callable[..., Figure] = Figure,
-        forces: bool = False,
-        blow: bool = False,
-        beside: bool = False,
-        panel: str | None = None,
-        drawn: bool = True,
-    ) -> None:
+        self, motions: Sequence[Trajectory], pace: Pace, labels: Sequence[str], *, width: int,
+        dpi: float, place: Figure | SubFigure | Axes | Callable[..., Figure], forces: bool,
+        blow: bool, beside: bool, panel: str | None, drawn: bool,
+    ) -> None:  # fmt: skip
         self.pace, self.sources, self.labels = pace, tuple(motions), tuple(labels)
         self.t, self.fps, self.speed, self.last = pace.t, pace.fps, pace.speed, pace.parts[-1][1]
         self.forces, self.blow, self.panel = forces, blow, panel
@@ -91,7 +81,7 @@ class RollingAnimation(FuncAnimation):
         shape, inches = None, width / dpi
         if not callable(place):
             shape = place.bbox.height / place.bbox.width * (0.55 if panel else 1)
-            inches = place.bbox.width / _root(place).dpi
+            inches = place.bbox.width / place.figure.dpi
         beside = beside and len(motions) > 1
         head = CAPTION / inches if any(labels) or len(pace.parts) > 1 else 0.0
         if beside:  # rows of the clock, of the label and of remarks
@@ -127,6 +117,7 @@ class RollingAnimation(FuncAnimation):
             place = place(figsize=(width / dpi, height / dpi), dpi=dpi)
             place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
+        self._root: Any = place.get_figure(root=True)
         share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of all strips
         if isinstance(place, Axes):
             place.set_aspect("equal", adjustable="datalim")
@@ -148,12 +139,9 @@ class RollingAnimation(FuncAnimation):
         self._fit_captions()
         self.draw(0)
         super().__init__(
-            _root(place),
-            self.draw,
-            frames=self.t.size,
-            interval=1000 / self.fps,
+            self._root, self.draw, frames=self.t.size, interval=1000 / self.fps,
             cache_frame_data=False,
-        )
+        )  # fmt: skip
         self.figure._rolling_animation = self  # type: ignore[attr-defined]
 
     def __del__(self) -> None:
@@ -161,7 +149,7 @@ class RollingAnimation(FuncAnimation):
 
     def _add_panel(self, place: Any, height: float) -> list[Line2D]:
         """Draw curves of the motions below the strips; return what marks the time on them."""
-        inches = np.array([place.bbox.width, place.bbox.height]) / _root(place).dpi
+        inches = np.array([place.bbox.width, place.bbox.height]) / place.figure.dpi
         left, bottom = (0.7, 0.5) / inches
         ax = place.add_axes((left, bottom, 0.97 - left, height - bottom - 0.3 / inches[1]))
         shown = [
@@ -215,7 +203,7 @@ class RollingAnimation(FuncAnimation):
             raise ValueError(f"t must be within [0, {self.last:g}] s, got {t!r}")
         self.draw(int(np.argmin(np.abs(self.t - t))))
         with replacing(file_name("path", path)) as new:
-            _root(self.figure).savefig(new, dpi=_root(self.figure).dpi)
+            self._root.savefig(new, dpi=self._root.dpi)
 
     def save(  # type: ignore[override]
         self,
@@ -258,12 +246,11 @@ class RollingAnimation(FuncAnimation):
 
     def _size(self) -> tuple[int, int]:
         """Return the width and height of a frame in pixels."""
-        box = _root(self.figure).bbox
-        return int(box.width), int(box.height)
+        return int(self._root.bbox.width), int(self._root.bbox.height)
 
     def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
         """Yield the pixels of frames, in one buffer: what stands still is drawn once."""
-        root, still = _root(self.figure), BytesIO()
+        root, still = self._root, BytesIO()
         seen = [artist for artist in self.draw(frames[0]) if artist.get_visible()]
         for artist in seen:
             artist.set_visible(False)
@@ -299,12 +286,6 @@ class RollingAnimation(FuncAnimation):
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
         with _with_settings(), rc_context(settings):  # type: ignore[arg-type]
             return str(self.to_jshtml() if wanted == "none" else super()._repr_html_())
-
-
-def _root(place: Figure | SubFigure | Axes) -> Figure:
-    found = place.get_figure(root=True)
-    assert found is not None
-    return found
 
 
 def _known(writer: Any) -> AbstractMovieWriter | str:

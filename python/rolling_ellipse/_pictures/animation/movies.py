@@ -157,14 +157,9 @@ class Pace:
 
 
 def pace(
-    path: str | PathLike[str] | None,
-    motions: Sequence[Trajectory],
-    last: float,
-    *,
-    fps: float | None,
-    speed: float | None,
-    max_frames: int | None,
-) -> Pace:
+    path: str | PathLike[str] | None, motions: Sequence[Trajectory], last: float, *,
+    fps: float | None, speed: float | None, max_frames: int | None,
+) -> Pace:  # fmt: skip
     """Return the frames that show motions up to a `last` time [s], as `animate` documents.
 
     Without a path the frames a second are those of a GIF, since every format can have them.
@@ -185,20 +180,19 @@ def pace(
     step, decimals = chosen / fps, _decimals(chosen / fps)
     parts: list[tuple[float, float]] = [(0.0, last)]
     if speed is None and last > longest:
-        begins = _parts(motions, last, longest / PARTS)
-        parts = [(round(begin, decimals), begin + longest / PARTS) for begin in begins]
+        starts = _parts(motions, last, longest / PARTS)
+        parts = [(round(start, decimals), start + longest / PARTS) for start in starts]
     # 0.58 s · 50 / s is 29, not 28.99…
-    counts = [math.floor(1 + (end - begin) / step * (1 + 1e-12)) for begin, end in parts]
-    most = (
-        MOST_FRAMES if max_frames is None else whole_within("max_frames", max_frames, MOST_FRAMES)
-    )
+    counts = [math.floor(1 + (end - start) / step * (1 + 1e-12)) for start, end in parts]
+    most = MOST_FRAMES if max_frames is None else max_frames
+    most = whole_within("max_frames", most, MOST_FRAMES)
     if sum(counts) > most:
         raise ValueError(
             f"max_frames must hold the whole film, {sum(counts):.7g} frames at fps = {fps:g} and "
             f"speed = {chosen:g}, got {most}: show less by t_end, or faster by speed"
         )
     first = np.repeat(np.cumsum([0, *counts[:-1]]), counts)
-    t = np.repeat([begin for begin, _ in parts], counts)
+    t = np.repeat([start for start, _ in parts], counts)
     t = np.round(t + (np.arange(first.size) - first) * step, decimals)
     return Pace(fps, chosen, decimals, fastest, parts, np.minimum(t, last), first)
 
@@ -211,14 +205,14 @@ def _spin(motion: Trajectory, last: float, fps: float) -> float:
 
 
 def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[float]:
-    """Return where parts of a `span` begin: beginning, end, an early and a late event, middle."""
+    """Return where parts of a `span` start: beginning, end, an early and a late event, middle."""
     events = sorted(each.t - span / 4 for motion in motions for each in motion.events)
-    events = [begin for begin in events if span <= begin <= last - 2 * span]
-    begins: list[float] = []
-    for begin in (0.0, last - span, *events[:1], *events[-1:], (last - span) / 2):
-        if all(abs(begin - other) >= span for other in begins):
-            begins.append(begin)
-    return sorted(begins)
+    events = [start for start in events if span <= start <= last - 2 * span]
+    starts: list[float] = []
+    for start in (0.0, last - span, *events[:1], *events[-1:], (last - span) / 2):
+        if all(abs(start - other) >= span for other in starts):
+            starts.append(start)
+    return sorted(starts)
 
 
 def _decimals(step: float) -> int:
@@ -230,7 +224,7 @@ def _decimals(step: float) -> int:
 
 def within(name: str, value: Any, least: float, most: float) -> float:
     """Return `value` as a number from `least` to `most`, or raise an error naming the argument."""
-    found = positive(name, value)
-    if not least <= found <= most:
-        raise ValueError(f"{name} must be from {least:g} to {most:g}, got {found!r}")
-    return found
+    size = positive(name, value)
+    if not least <= size <= most:
+        raise ValueError(f"{name} must be from {least:g} to {most:g}, got {size!r}")
+    return size
