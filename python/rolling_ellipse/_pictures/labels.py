@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
 
@@ -50,8 +51,7 @@ def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray
 
 def size_in_points(ax: Axes) -> FloatArray:
     """Return the width and height of the axes on the page [points]."""
-    window = ax.get_window_extent()
-    return np.array([window.width, window.height]) * 72 / ax.figure.dpi
+    return np.array([ax.bbox.width, ax.bbox.height]) * 72 / ax.figure.dpi
 
 
 def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
@@ -59,8 +59,7 @@ def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation
     if not names:
         return []
     points = FontProperties(size=_SMALL).get_size_in_points()
-    width, height = size_in_points(ax)
-    low, high = ax.get_xlim()
+    (width, height), (low, high) = size_in_points(ax), ax.get_xlim()
     wanted = np.array([(t - low) / (high - low) * width for t, _ in names])
     shifts = apart(wanted, 1.3 * points, 0.65 * points, width - 0.65 * points) - wanted
     share = (0.62 * points * max(len(name) for _, name in names) + 6) / height
@@ -85,14 +84,10 @@ def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
     """Return the longest part of a line in view: points (n, 2) in shares of the axes."""
     with np.errstate(invalid="ignore"):
         corners = (ax.transData - ax.transAxes).transform(np.column_stack([x, y]))
-    steps = np.linspace(0, len(corners) - 1, _FINE * (len(corners) - 1) + 1)
-    points = _at(steps, np.arange(len(corners), dtype=float), corners)
+    points = np.asarray(Path(corners).interpolated(_FINE).vertices)
     inside = np.all((points >= -1e-9) & (points <= 1 + 1e-9), axis=1)
-    ends = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]]).astype(int)))
-    if not ends.size:
-        return points[:0]
-    first, last = max(ends.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0])
-    return points[first:last]
+    runs = np.split(points, np.flatnonzero(np.diff(inside)) + 1)  # in turn inside and outside
+    return max(runs[0 if inside[0] else 1 :: 2], key=len, default=points[:0])
 
 
 class Label(NamedTuple):
@@ -124,6 +119,7 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
         dots.append(_dotted(corners * page, size / 3) if len(corners) else corners)
     lines = np.vstack(dots)
     lines = lines[np.all((lines > -size) & (lines < page + size), axis=1)]
+    grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 40), (-0.5, 0.0, 0.5)), axis=-1)
     taken, placed = np.empty((0, 2)), {}
     for key, label in labels.items():
         for text in label.texts:
@@ -131,7 +127,6 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
             extent = _extent(ax, text, size, label.must)
             spot = _best(label, extent, lines, taken, page, np.inf if last else _CROSSED)
             if spot is not None:
-                grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 40), (-0.5, 0.0, 0.5)), axis=-1)
                 frame = np.array([spot.lead, (-spot.lead[1], spot.lead[0])])
                 taken = np.vstack([taken, spot.middle + (grid.reshape(-1, 2) * extent) @ frame])
                 placed[key] = _written(ax, text, label, spot, size)
