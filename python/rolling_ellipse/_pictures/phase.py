@@ -82,18 +82,21 @@ def plot_phase(
     {ax}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
-    _require_parts_of_a_turn(shown.motions)
+    shown = Comparison(trajectories, labels, colors, ax, options)
+    for motion in shown.motions:
+        if not knows_turns(motion):
+            farthest = float(np.abs(motion.theta).max())
+            raise ValueError(
+                "trajectories must have angles of which a double knows thousandths of a radian, up "
+                f"to 4e12 rad, got theta = {farthest:.6g} rad: start as many half turns nearer to 0"
+            )
     if fold is None:
         fold = any(np.ptp(each.theta) > _FEW_TURNS * 2 * math.pi for each in shown.motions)
-    parts, notes = zip(*map(_part, shown.motions), strict=True)
-    motions = shown.motions = parts
-    fold = flag("fold", fold)
+    shown.motions, notes = zip(*map(_part, shown.motions), strict=True)
+    motions, fold = shown.motions, flag("fold", fold)
     ax = axes_of(ax, (6.4, 4.2), figsize)
     flat = flat_angle(motions[0].scene)
-    lines: list[Line2D] = []
-    starts: list[Line2D] = []
-    marks: list[Line2D] = []
+    lines, starts, marks = list[Line2D](), list[Line2D](), list[Line2D]()
     for motion, style in zip(motions, shown.styles, strict=True):
         theta, omega = _path(motion.theta, motion.omega, flat, fold)
         lines += ax.plot(theta, omega, color=style.colour, ls=style.dash, label=style.label)
@@ -108,7 +111,10 @@ def plot_phase(
     separatrices, equilibria = _draw_portrait(ax, bodies)
     _dress_phase(ax)
     handles = [] if shown.alone else shown.motion_handles(solid=False)
-    name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
+    for line in separatrices[:1]:
+        if line.get_path().intersects_bbox(ax.viewLim, filled=False):
+            handles.append(line)
+    name_curves(ax, handles)
     title_beside_legend(ax, next(filter(None, notes), ""), ending_of(*motions))
     return Phase((ax,), tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
 
@@ -117,18 +123,16 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
     """Return the part of a motion that is drawn, finely sampled, and a note on a part."""
     if not is_at_hand(motion):
         return motion, ""
-    begin, end = span_of(motion)
-    count, drawn = half_turns(motion), end
+    start, end = span_of(motion)
+    count, drawn, note = half_turns(motion), end, ""
     if count > FEW and motion.method == "exact" and motion.model == "rolling":
-        drawn = begin + 2 * (end - begin) / count
+        drawn = start + 2 * (end - start) / count
         kind = "turn" if np.all(motion.omega * motion.omega[0] > 0) else "swing"
         note = f"one {kind} of {count / 2:_.0f}, all alike".replace("_", "\u202f")
     elif count > _MOST:
-        drawn = begin + _MOST / count * (end - begin)
-        note = f"the first {drawn - begin:.3g} s of {end - begin:.4g} s"
-    else:
-        note = ""
-    return between(motion, begin, drawn, min(count, _MOST)), note
+        drawn = start + _MOST / count * (end - start)
+        note = f"the first {drawn - start:.3g} s of {end - start:.4g} s"
+    return between(motion, start, drawn, min(count, _MOST)), note
 
 
 def _path(
@@ -164,16 +168,6 @@ def knows_turns(motion: Trajectory) -> bool:
     return bool(np.spacing(np.abs(motion.theta).max()) <= _COARSE)
 
 
-def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
-    for motion in motions:
-        if not knows_turns(motion):
-            farthest = float(np.abs(motion.theta).max())
-            raise ValueError(
-                "trajectories must have angles of which a double knows thousandths of a radian, up "
-                f"to 4e12 rad, got theta = {farthest:.6g} rad: start as many half turns nearer to 0"
-            )
-
-
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
     """Return the different bodies that have a separatrix, with their colours."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
@@ -182,20 +176,18 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
         if scene.slope == 0 and scene.a != scene.b:
             key = (scene.a, scene.b, scene.gravity, scene.gyration2)
             bodies.setdefault(key, (scene, style.colour))
-    found = list(bodies.values())
-    return [(found[0][0], shown.palette.grey)] if len(found) == 1 else found
+    several = list(bodies.values())
+    return [(several[0][0], shown.palette.grey)] if len(several) == 1 else several
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
     """Show whole eyes of the separatrix; a small motion fills the view instead."""
-    fastest = max(float(np.max(np.abs(motion.omega))) for motion in motions)
-    flat = flat_angle(body)
+    theta, omega = (np.concatenate([getattr(m, n) for m in motions]) for n in ("theta", "omega"))
+    fastest = float(np.max(np.abs(omega)))
     if fold:
-        eyes = np.array([flat])
+        eyes = np.array([flat_angle(body)])
     elif fastest == 0 or fastest > _SMALL * _core.roll_over_speed(body.core):
-        left = min(float(np.min(motion.theta)) for motion in motions)
-        right = max(float(np.max(motion.theta)) for motion in motions)
-        eyes = _flat_angles(left, right, body)
+        eyes = _flat_angles(float(np.min(theta)), float(np.max(theta)), body)
     else:
         ax.set_xlim(ax.get_xlim())
         ax.set_ylim(ax.get_ylim())
@@ -210,35 +202,25 @@ def _draw_portrait(
     """Draw the separatrix of each body over the theta shown, and the equilibria of the first."""
     if not bodies:
         return (), ()
-    view = ax.get_xlim()
+    view, palette = ax.get_xlim(), palette_of(ax)
+    dotted: dict[str, Any] = {"lw": 1.1, "ls": ":", "label": "separatrix", "zorder": 1.9}
+    marks: dict[str, Any] = {"color": palette.grey, "mfc": palette.background, "ms": 5}
+    marks |= {"ls": "none", "zorder": 1.9}
     separatrices: list[Line2D] = []
     for scene, colour in bodies:
         theta, speed = _separatrix(scene, _flat_angles(*view, scene))
-        separatrices += ax.plot(
-            np.append(theta, theta[::-1]), np.append(speed, -speed[::-1]),
-            color=colour, lw=1.1, ls=":", label="separatrix", zorder=1.9,
-        )  # fmt: skip
+        there_and_back = np.append(theta, theta[::-1]), np.append(speed, -speed[::-1])
+        separatrices += ax.plot(*there_and_back, color=colour, **dotted)
     flats = _flat_angles(*view, bodies[0][0])
-    palette = palette_of(ax)
-    rest: dict[str, Any] = {
-        "color": palette.grey, "ls": "none", "mfc": palette.background, "ms": 5, "zorder": 1.9,
-    }  # fmt: skip
-    centres = ax.plot(flats, np.zeros_like(flats), marker="o", **rest)
-    saddles = ax.plot(flats + QUARTER, np.zeros_like(flats), marker="x", **rest)
+    centres = ax.plot(flats, np.zeros_like(flats), marker="o", **marks)
+    saddles = ax.plot(flats + QUARTER, np.zeros_like(flats), marker="x", **marks)
     ax.set_xlim(view)
     return tuple(separatrices), (*centres, *saddles)
 
 
-def _is_in_view(ax: Axes, line: Line2D) -> bool:
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    x, y = np.asarray(line.get_xydata()).T
-    return bool(np.any((left < x) & (x < right) & (bottom < y) & (y < top)))
-
-
 def _dress_phase(ax: Axes) -> None:
     ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
-    ax.set_xlabel("θ [rad]")
-    ax.set_ylabel("ω [rad/s]")
+    ax.set(xlabel="θ [rad]", ylabel="ω [rad/s]")
     dress_grid(ax)
     left, right = ax.get_xlim()
     if QUARTER < right - left < _FEW_TURNS * 3 * math.pi:
@@ -250,12 +232,10 @@ def _dress_phase(ax: Axes) -> None:
 
 def _quarters(angle: float, _position: float | None = None) -> str:
     """Return the text of a multiple of a quarter turn: 0, π/2, π, −3π/2."""
-    quarters = round(angle / QUARTER)
-    if quarters == 0:
-        return "0"
-    count, below = (quarters // 2, "") if quarters % 2 == 0 else (quarters, "/2")
-    factor = "" if abs(count) == 1 else str(abs(count))
-    return f"{'−' if count < 0 else ''}{factor}π{below}"
+    count = round(angle / QUARTER)
+    count, below = (count, "/2") if count % 2 else (count // 2, "")
+    factor = {1: "", -1: "−"}.get(count, f"{count}".replace("-", "−"))
+    return f"{factor}π{below}" if count else "0"
 
 
 def _flat_angles(left: float, right: float, scene: Scene) -> FloatArray:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -60,6 +61,10 @@ LAST_ASPECT = 9.75321681656
 
 There the speed that N > 0 allows is the one that rolling over takes, both of `thresholds`.
 """
+_ASPECTS = {
+    "tip": (TIP_ASPECT, ("beyond √3 N fails midway", "√3")),
+    "last to roll over": (LAST_ASPECT, ("beyond 9.753 none rolls over", "9.75")),
+}
 _POINTS = 49  # of a curve; each takes a call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
@@ -156,8 +161,7 @@ def plot_phase_map(
         ax.set_xlim(*plane.ranges[0])
     if free[1]:
         ax.set_ylim(*plane.ranges[1])
-    found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
-    name_curves(ax, [_handle(outcome) for outcome in found])
+    name_curves(ax, [_handle(Outcome(int(code))) for code in np.unique(np.asarray(codes))])
     return PhaseMap((ax,), cells, *_draw_marks(ax, plane))
 
 
@@ -206,23 +210,20 @@ def _marks_of(plane: Plane) -> Iterator[_Mark]:
         yield _painleve(plane)
     if "aspect" in plane.axes:
         low, high = plane.range_of("aspect")
-        if low < TIP_ASPECT < high:
-            names = ("beyond √3 N fails midway", "√3")
-            yield _straight(plane, "tip", "aspect", TIP_ASPECT, names)
-        if low < LAST_ASPECT < high:
-            names = (f"beyond {LAST_ASPECT:.4g} none rolls over", f"{LAST_ASPECT:.3g}")
-            yield _straight(plane, "last to roll over", "aspect", LAST_ASPECT, names)
+        for key, (at, names) in _ASPECTS.items():
+            if low < at < high:
+                yield _straight(plane, key, "aspect", at, names)
 
 
 def _level_marks(plane: Plane) -> Iterator[_Mark]:
     """Yield roll-over, loss of contact and lift-off over the axis of aspect or friction."""
-    along = next(axis for axis in plane.axes if axis != plane.level)
+    along = plane.other(plane.level)
     places = plane.spaced(along, _POINTS)
     if along == "aspect":
         places = places[places > 1]  # a circle has no tip
-    found = [_thresholds(plane, **{along: float(place)}) for place in places]
+    limits = [_thresholds(plane, **{along: float(place)}) for place in places]
     rolling_over, contact, flight = (
-        np.array([getattr(each, name) for each in found])
+        np.array([getattr(each, name) for each in limits])
         for name in ("roll_over_speed", "contact_loss_speed", "lift_off_speed")
     )
     if plane.level == "energy":
@@ -246,15 +247,13 @@ def _painleve(plane: Plane) -> _Mark:
 
 def _thresholds(plane: Plane, **along: float) -> Thresholds:
     values = {"friction": 0.0, **plane.fixed, **along}
-    return thresholds(
-        values["aspect"] * plane.b, plane.b, gravity=plane.gravity, friction=values["friction"]
-    )
+    how = {"gravity": plane.gravity, "friction": values["friction"]}
+    return thresholds(values["aspect"] * plane.b, plane.b, **how)
 
 
 def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ...]) -> _Mark:
     """Return the line across the plane at a value of one of its axes."""
-    along = next(each for each in plane.axes if each != axis)
-    line = {"ls": ":" if axis == "aspect" else "-."}
+    along, line = plane.other(axis), {"ls": ":" if axis == "aspect" else "-."}
     return _Mark(key, along, np.array(plane.range_of(along)), np.full(2, at), names, line, 0.7)
 
 
@@ -289,6 +288,10 @@ class Plane:
 
     def range_of(self, name: str) -> tuple[float, float]:
         return self.ranges[self.axes.index(name)]
+
+    def other(self, name: str) -> str:
+        """Return the quantity along the other axis."""
+        return self.axes[1 - self.axes.index(name)]
 
     def spaced(self, name: str, count: int) -> FloatArray:
         """Return even places from end to end of an axis, even in the logarithm for the aspect."""
@@ -353,9 +356,7 @@ def _values(axes: tuple[str, str], given: dict[str, float | None]) -> dict[str, 
             "energy and speed must not be given both, for one follows from the other, "
             f"got {values['energy']:g} and {values['speed']:g}"
         )
-    settled = {*axes}
-    if settled & _LEVELS:
-        settled |= _LEVELS
+    settled = {*axes}.union(_LEVELS if _LEVELS.intersection(axes) else ())
     for name, value in values.items():
         if name in settled:
             raise ValueError(
@@ -368,12 +369,10 @@ def _values(axes: tuple[str, str], given: dict[str, float | None]) -> dict[str, 
 
 
 def _check_fixed(name: str, value: float) -> None:
-    if name == "aspect":
-        wanted, holds = f"above 1, up to {_WIDEST:g}", 1 < value <= _WIDEST
-    elif name == "friction":
-        wanted, holds = "0 or more, inf allowed", value >= 0
-    else:
-        wanted, holds = "0 or more, finite", 0 <= value < math.inf
+    wanted, holds = {
+        "aspect": (f"above 1, up to {_WIDEST:g}", 1 < value <= _WIDEST),
+        "friction": ("0 or more, inf allowed", value >= 0),
+    }.get(name, ("0 or more, finite", 0 <= value < math.inf))
     if not holds:
         raise ValueError(f"{name} must be {wanted}, got {value}")
 
@@ -382,10 +381,8 @@ def _limits(argument: str, axis: str, given: Any) -> tuple[float, float]:
     least, most = (1.0, _WIDEST) if axis == "aspect" else (0.0, math.inf)
     wanted = f"{argument} must be two ascending finite numbers, not below {least:g}"
     wanted += f" and not above {most:g}" if math.isfinite(most) else ""
-    try:
+    with suppress(TypeError, ValueError):
         low, high = (number(argument, end) for end in given)
-    except (TypeError, ValueError):
-        raise ValueError(f"{wanted}, got {shown(given)}") from None
-    if not (least <= low < high <= most and high < math.inf):
-        raise ValueError(f"{wanted}, got {shown(given)}")
-    return low, high
+        if least <= low < high <= most and high < math.inf:
+            return low, high
+    raise ValueError(f"{wanted}, got {shown(given)}")
