@@ -44,16 +44,16 @@ def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChar
     for y, problem in enumerate(rows):
         if family[problem] % 2 == 0:
             ax.axhspan(y - 0.5, y + 0.5, color=palette.shade(0.06), lw=0, zorder=0)
-        found = [score for score in scores if score.problem == problem]
-        at = np.clip([score.over_condition for score in found], 1e-17, 1e3)
+        answers = [score for score in scores if score.problem == problem]
+        at = np.clip([score.over_condition for score in answers], 1e-17, 1e3)
         ax.plot(at, [y] * len(at), color=palette.grey, lw=0.8)
-        for x, score in zip(at, found, strict=True):
+        for x, score in zip(at, answers, strict=True):
             look = {"marker": _SHAPES.get(score.answer, ""), "color": shades[score.setting]} | how
             (chart.marks[problem, score.setting],) = ax.plot(x, y, **look)
         counts = score.answer == "right" and score.over_condition >= 0
-        told = f"{max(score.digits, 0):.1f} digits" if counts else score.answer
+        words = f"{max(score.digits, 0):.1f} digits" if counts else score.answer
         color = palette.grey if score.answer == "not supported" else palette.text
-        ax.text(1.01, y, told, va="center", color=color, transform=ax.get_yaxis_transform())
+        ax.text(1.01, y, words, va="center", color=color, transform=ax.get_yaxis_transform())
     marks = {f"setting {s:g}": ("o", shades[s]) for s in settings if s is not None}
     marks |= {s.answer: (_SHAPES[s.answer], palette.grey) for s in scores if s.answer in _SHAPES}
     handles = [Line2D([], [], marker=m, color=c, label=w, **how) for w, (m, c) in marks.items()]

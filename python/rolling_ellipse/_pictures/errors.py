@@ -17,7 +17,7 @@ from .._motion.constraints import constraint_errors, energy_error, may_lose_ener
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, name_curves, panels_of, picture, some_of
-from .comparison import Comparison, Style
+from .comparison import MARKERS, Comparison, Style
 from .palette import palette_of
 from .panels import DASHES, dot, draw_curves, finish
 from .sampling import are_ranges, for_dots, over_time, ranges
@@ -30,25 +30,19 @@ QUANTITIES = {  # quantities and their symbols
     "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
 }  # fmt: skip
 _UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
-_DOTS = (".", "x", "+", "1", "2")
 _ROUNDING = 1e-13  # the axis of errors reaches ten times this at least, so that it looks small
 _LEAST = 1e-17  # lower end of the axis of errors
 
 
 def draw_errors(
-    ax: Axes,
-    shown: Comparison,
-    errors: Iterable[Mapping[str, FloatArray]],
-    label: str,
-    none: str = "exactly 0 throughout",
-    *,
-    dashed: bool = False,
-) -> tuple[Line2D, ...]:
+    ax: Axes, shown: Comparison, errors: Iterable[Mapping[str, FloatArray]], label: str,
+    none: str = "exactly 0 throughout", *, dashed: bool = False,
+) -> tuple[Line2D, ...]:  # fmt: skip
     """Draw the errors of each motion by their names, on a logarithmic axis; lines if `dashed`.
 
     Else they are dots, because rounding jumps. The axis goes from below rounding to above the
     largest. It leaves out exact zeros; the label of an error that is always 0, or that the ground
-    does not hold, says so, and a sentence tells of errors that have no place on it.
+    does not hold, says so, and a sentence names errors that have no place on it.
     """
     palette, lines = palette_of(ax), list[Line2D]()
     colours = *palette.curves[:3], palette.plum, palette.grey
@@ -59,7 +53,7 @@ def draw_errors(
                 name += " = 0" if np.isfinite(values).any() else " not held"
             if are_ranges(motion):
                 t, _, values = ranges(t, values)
-            how: dict[str, Any] = {"ls": "none", "marker": style.marker or _DOTS[rank]}
+            how: dict[str, Any] = {"ls": "none", "marker": style.marker or MARKERS[rank]}
             how = {"ls": style.dash} | dot(t) if dashed else how | {"ms": 3, "mew": 0.7}
             lines += ax.plot(t, values, color=style.colour or colours[rank], label=name, **how)
     shown.restyle(*lines)
@@ -118,21 +112,21 @@ def plot_energy(
     {ax}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
-    energies = shown.alone or any(map(may_lose_energy, shown.motions))
-    default = "energies" if energies else "error"
-    wanted = choice("kind", default if kind is None else kind, KINDS)
-    shown = shown.sampled(over_time if wanted == "energies" else for_dots)
+    shown = Comparison(trajectories, labels, colors, ax, options)
+    if kind is None:
+        kind = "energies" if shown.alone or any(map(may_lose_energy, shown.motions)) else "error"
+    energies = choice("kind", kind, KINDS) == "energies"
+    shown.sampled(over_time if energies else for_dots)
     ax = axes_of(ax, (7, 3.4), figsize)
-    if wanted == "energies":
+    if energies:
         total, kinetic, potential = draw_curves(ax, shown, "energy [J]", ENERGIES)
         handles = shown.handles(ax, list(zip(ENERGIES.values(), DASHES, strict=True)))
         return Energy((ax,), total, kinetic, potential, (), finish([ax], shown, handles))
     errors = [{style.label or "energy error": energy_error(motion)} for motion, style in shown]
     kept = any(np.isfinite(values).any() for own in errors for values in own.values())
     none = "exactly 0 throughout" if kept else "friction takes energy throughout"
-    found = draw_errors(ax, shown, errors, "relative energy error", none)
-    return Energy((ax,), (), (), (), found, finish([ax], shown, some_of(found)))
+    lines = draw_errors(ax, shown, errors, "relative energy error", none)
+    return Energy((ax,), (), (), (), lines, finish([ax], shown, some_of(lines)))
 
 
 @dataclass(frozen=True, repr=False)
@@ -172,7 +166,7 @@ def plot_constraints(
     {figsize}
     {motions}
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).sampled(for_dots)
+    shown = Comparison(trajectories, labels, colors, ax, options).sampled(for_dots)
     panels = panels_of(ax, figsize)
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     errors = zip(*(_errors_of(*each, len(panels)) for each in shown), strict=True)
@@ -190,8 +184,8 @@ def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[st
     """Return the errors of each panel by name; of one of several motions only the worst."""
     positions, velocities = constraint_errors(motion)
     if style.label:
-        shown = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
-        return [{style.label: worst(errors)} for errors in shown]
+        of_panels = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
+        return [{style.label: worst(errors)} for errors in of_panels]
     if panels == 2:
         return [positions, velocities]
     return [{"positions": worst(positions), "velocities": worst(velocities)}]
@@ -238,17 +232,17 @@ def plot_error(
     {motions}
     """
     quantity = choice("quantity", quantity, tuple(QUANTITIES))
-    compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
+    compared = Comparison(trajectories, labels, colors, ax, options)
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
     compared.sampled(over_time)
     ax = axes_of(ax, (7, 3.4), figsize)
-    found = (
+    missed = (
         {style.label or "error": _error(motion, right, quantity)}
         for (motion, style), right in zip(compared, references, strict=True)
     )
     none = f"no error beside the {'exact motion' if reference is None else 'reference'}"
     label = f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}"
-    errors = draw_errors(ax, compared, found, label, none, dashed=True)
+    errors = draw_errors(ax, compared, missed, label, none, dashed=True)
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
     return Error((ax,), errors, references, marks)
 
@@ -281,8 +275,6 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
     """Return |error| at the times of a motion; NaN after the end of the right one."""
-    known = motion.t <= right.t_end
-    error = np.full(motion.t.shape, np.nan)
-    there = getattr(right.sol(motion.t[known]), quantity)
-    error[known] = np.abs(getattr(motion, quantity)[known] - there)
-    return error
+    there = right.sol(np.minimum(motion.t, right.t_end))
+    error = np.abs(getattr(motion, quantity) - getattr(there, quantity))
+    return np.where(motion.t <= right.t_end, error, np.nan)

@@ -68,13 +68,13 @@ def draw_impacts(fit: FittedImpacts, path: Any, figure: Any, figsize: Any) -> Fi
     axes = whole.subplots(2, 3, sharex="col", height_ratios=(2, 1))
     chart, shades = FitChart(tuple(axes.ravel()), {}, {}, {}), palette_of(axes[0, 0])
     dots: dict[str, Any] = {"marker": "o", "ls": "", "ms": 2.5, "mew": 0, "alpha": 0.5}
-    line: dict[str, Any] = {"color": shades.text, "lw": 0.8, "zorder": 3}
+    dots["color"], line = shades.blue, {"color": shades.text, "lw": 0.8, "zorder": 3}
     for k, (rate, label) in enumerate(_RATES.items()):
-        (top, bottom), seen, told = axes[:, k], fit.measured[k], fit.predicted[k]
-        ends = [told.min(), told.max()]
+        (top, bottom), seen, predicted = axes[:, k], fit.measured[k], fit.predicted[k]
+        ends = [predicted.min(), predicted.max()]
         (chart.fitted[rate],) = top.plot(ends, ends, **line)
-        (chart.measured[rate],) = top.plot(seen, told, color=shades.blue, **dots)
-        (chart.residuals[rate],) = bottom.plot(seen, seen - told, color=shades.blue, **dots)
+        (chart.measured[rate],) = top.plot(seen, predicted, **dots)
+        (chart.residuals[rate],) = bottom.plot(seen, seen - predicted, **dots)
         bottom.axhline(0, **line)
         bottom.set_xlabel(label)
     axes[0, 0].set_ylabel("predicted")

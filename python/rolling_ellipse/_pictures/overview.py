@@ -129,11 +129,8 @@ def _headline(trajectory: Trajectory, note: str) -> str:
 def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
     (trajectory,) = shown.motions
     positions, velocities = constraint_errors(trajectory)
-    errors = {
-        "positions": worst(positions),
-        "velocities": worst(velocities),
-        "energy": energy_error(trajectory),
-    }
+    errors = {"positions": worst(positions), "velocities": worst(velocities)}
+    errors["energy"] = energy_error(trajectory)
     position, velocity, energy = draw_errors(ax, shown, [errors], "relative error")
     if np.abs(trajectory.theta).max() > _MANY:  # an exact motion has these errors, too
         limit = np.spacing(np.abs(trajectory.theta))

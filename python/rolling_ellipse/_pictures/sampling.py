@@ -1,7 +1,7 @@
 """A motion sampled as finely as a picture draws it, whatever samples its trajectory holds.
 
-Few half turns are all drawn, with more points where curves bend. Of too many to be told apart a
-picture over time shows ranges: the least and the largest value in each of many parts of the time.
+Few half turns are all drawn, with more points where curves bend. Of more than can be distinguished
+a picture over time shows ranges: the least and the largest value in each of many parts of the time.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ask.check import FloatArray
-from .._motion.samples import ContactSamples, even_times, frozen
+from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .ground import flat_angle
@@ -47,17 +47,17 @@ def over_time(motion: Trajectory) -> Trajectory:
     """
     if not is_at_hand(motion):
         return motion
-    begin, end = span_of(motion)
+    start, end = span_of(motion)
     count = half_turns(motion)
     if count <= FEW:
-        return _refined(motion, begin, end, count)
-    part = (end - begin) / PARTS
+        return _refined(motion, start, end, count)
+    part = (end - start) / PARTS
     window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, for all of its part
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
-    starts = begin + part * np.arange(PARTS) + 0.5 * (part - window)
+    starts = start + part * np.arange(PARTS) + 0.5 * (part - window)
     times = np.add.outer(starts, inside).ravel()
-    times[[0, -1]] = begin, end
-    return motion.sol(np.clip(times, begin, end))
+    times[[0, -1]] = start, end
+    return motion.sol(np.clip(times, start, end))
 
 
 def for_dots(motion: Trajectory) -> Trajectory:
@@ -66,15 +66,15 @@ def for_dots(motion: Trajectory) -> Trajectory:
     return motion if own else over_time(motion)
 
 
-def between(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
-    """Return a motion from `begin` to `end` [s], about `count` half turns, finely sampled."""
-    return _refined(motion, begin, end, count) if is_at_hand(motion) else motion
+def between(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
+    """Return a motion from `start` to `end` [s], about `count` half turns, finely sampled."""
+    return _refined(motion, start, end, count) if is_at_hand(motion) else motion
 
 
-def _refined(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
+def _refined(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
     """Return a motion at even times and at those where a quantity bends more than `_BEND`."""
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
-    times = np.union1d(even_times(begin, end, points), _jumps(motion, begin, end))
+    times = np.union1d(even_times(start, end, points), _jumps(motion, start, end))
     values = _bending(motion, times)
     scale = np.ptp(values, axis=1, keepdims=True)
     scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # constants and infinities do not bend
@@ -135,17 +135,15 @@ def half_turns(motion: Trajectory) -> float:
     It follows from the period, if there is one. Else half turns and turning points are counted at
     more and more times, whose spacing is irregular, unlike any period.
     """
-    begin, end = span_of(motion)
-    swing = None
+    start, end = span_of(motion)
     if motion.model != "contact" and motion.start is None:
         with suppress(ValueError):  # downhill for ever
             swing = period(motion.scene)
-    if swing is not None:
-        return 2 * (end - begin) / swing if math.isfinite(swing) else 1.0
+            return 2 * (end - start) / swing if math.isfinite(swing) else 1.0
     turned = 0.0
     for count in _COUNTS:
         places = (np.arange(count) + (np.arange(count) * _GOLDEN) % 1) / count
-        seen = motion.sol(np.minimum(begin + places * (end - begin), end))
+        seen = motion.sol(np.minimum(start + places * (end - start), end))
         moving = seen.omega[seen.omega != 0]
         back = np.count_nonzero(moving[1:] * moving[:-1] < 0)
         tips = np.floor((seen.theta - flat_angle(motion.scene)) / math.pi + 0.5)
@@ -161,14 +159,14 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
     It is at most the time of the last sample, and of the end of the first whole swing: of the
     second turning point, where a rate ("omega", "x_dot") changes its sign, or starts from 0.
     """
-    begin, end = span_of(motion)
+    start, end = span_of(motion)
     if not is_at_hand(motion):
         return min(end, _used_up(motion, turns, rate))
     while True:
-        found = min(end, _used_up(motion.sol(even_times(begin, end, 2001)), turns, rate))
-        if not begin < found < begin + (end - begin) / 8:
-            return found
-        end = begin + 2 * (found - begin)  # a second pass with a finer grid
+        until = min(end, _used_up(motion.sol(even_times(start, end, 2001)), turns, rate))
+        if not start < until < start + (end - start) / 8:
+            return until
+        end = start + 2 * (until - start)  # a second pass with a finer grid
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
@@ -182,9 +180,8 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
 def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
     """Return samples at some places: of an array, or of each array in a tuple."""
     if isinstance(values, tuple):
-        parts = [_taken(part, places) for part in values]
-        return ContactSamples._make(parts) if isinstance(values, ContactSamples) else tuple(parts)
-    return None if values is None else frozen(values[places])
+        return getattr(values, "_make", tuple)([_taken(part, places) for part in values])
+    return None if values is None else values[places]
 
 
 def is_at_hand(motion: Trajectory) -> bool:
@@ -217,12 +214,12 @@ def _bending(motion: Trajectory, times: FloatArray) -> FloatArray:
     return np.nan_to_num(np.array(rows), posinf=np.nan, neginf=np.nan)
 
 
-def _jumps(motion: Trajectory, begin: float, end: float) -> FloatArray:
-    """Return the times of events from `begin` to `end` [s], and the doubles just before them."""
-    moments = np.array([event.t for event in motion.events if begin < event.t <= end])
+def _jumps(motion: Trajectory, start: float, end: float) -> FloatArray:
+    """Return the times of events from `start` to `end` [s], and the doubles just before them."""
+    moments = np.array([event.t for event in motion.events if start < event.t <= end])
     if moments.size > _EVENTS:
         moments = np.concatenate([moments[: _EVENTS // 2], moments[-_EVENTS // 2 :]])
-    return np.concatenate([np.nextafter(moments, begin), moments])
+    return np.concatenate([np.nextafter(moments, start), moments])
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:

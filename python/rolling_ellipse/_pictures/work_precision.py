@@ -106,11 +106,11 @@ class _Race:
     """The points of each contender, and the fronts of the two camps."""
 
     def __init__(
-        self, found: WorkPrecision, x: str, y: str, runs: tuple[Run, ...], highlight: Any
+        self, results: WorkPrecision, x: str, y: str, runs: tuple[Run, ...], highlight: Any
     ) -> None:
         self.x, self.y, self.runs = x, y, runs
-        self.gaps = replace(found, runs=runs).gaps(t_end=runs[0].t_end)
-        limits = found.judged_by(runs[0].t_end).limits(x)  # attained and judged at best
+        self.gaps = replace(results, runs=runs).gaps(t_end=runs[0].t_end)
+        limits = results.judged_by(runs[0].t_end).limits(x)  # attained and judged at best
         self.limit = float(np.nanmax([_LEAST, *limits]))
         self.points: dict[str, list[Point]] = {}
         for run in runs:
@@ -238,8 +238,8 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
                 *ends.T, color=color, lw=1, marker=CARETDOWN, ms=6, mew=0, markevery=[1], zorder=2.7
             )
             factor = f"{high / low:.0f} ×" if high > 9.95 * low else f"{high / low:.1f} ×"
-            told = [f"{factor} {word}\nthan {loser}"] if race.y in _SECONDS and wide else []
-            texts, sides = [*told, factor], BESIDE
+            sentence = [f"{factor} {word}\nthan {loser}"] if race.y in _SECONDS and wide else []
+            texts, sides = [*sentence, factor], BESIDE
         labels[decade] = Label(texts, visible_part(ax, *ends.T), 0.5, sides, color, halo, must=True)
     named: dict[str, Label] = {}
     for front, color in ((ours, palette.blue), (others, palette.orange)):
