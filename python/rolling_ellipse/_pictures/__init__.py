@@ -1,4 +1,4 @@
-"""Pictures and films: everything that needs matplotlib, loaded when first asked for."""
+"""Pictures and films: everything that needs matplotlib, loaded on first use."""
 
 from .animation import animate as animate
 from .errors import plot_constraints as plot_constraints

@@ -140,7 +140,7 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 
 def _hint(error: Exception, args: Sequence[Any]) -> str:
-    """Return what a picture was asked for in vain, and where it belongs, if that is known."""
+    """Return what the call got wrong and where it belongs; "" if that is unknown."""
     name = str(error).partition("unexpected keyword argument ")[2].strip("'")
     if hasattr(Axes, f"set_{name}"):
         return f"{name}, which belongs to the Axes that are drawn on: their set({name}=...)"
@@ -211,7 +211,7 @@ def pyplot_figure(**options: Any) -> Figure:
 
 
 def picture_file(path: Any) -> str | None:
-    """Return the name of the file to write, if any, or raise an error; a quantity is none."""
+    """Return the name of the file to write, if any, or raise an error: also for a quantity."""
     name = None if path is None else file_name("path", path)
     if any(name == each.name for each in QUANTITIES):
         raise ValueError(
@@ -249,13 +249,13 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
-    """Open a pyplot figure of the size asked for, or of that of the style, or of what fits."""
+    """Open a pyplot figure of the given size, of the style's, or of the size that fits."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
     return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")
 
 
 def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
-    """Return the entries that a legend has room for: all, or evenly spread ones with both ends."""
+    """Return the entries that a legend has room for: all, or evenly spaced ones with both ends."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
 
@@ -284,7 +284,7 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None
 class _Within:
     """A locator of axes that keeps legend, title and labels in their box if no layout does.
 
-    Axes with equal scales are fitted anew into each box: matplotlib only widens their limits.
+    Axes with equal scales are fitted to each box again: matplotlib only widens their limits.
     """
 
     def __init__(self, ax: Axes) -> None:

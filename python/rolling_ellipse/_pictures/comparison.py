@@ -123,7 +123,7 @@ def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajector
 def _one_each(
     name: str, given: Any, count: int, kind: str, fits: Callable[[Any], bool]
 ) -> list[Any]:
-    """Return the labels or colours given for so many motions, or raise ValueError."""
+    """Return the labels or colours given, one for each motion, or raise ValueError."""
     values: list[Any] = []
     with suppress(TypeError):
         values = [] if isinstance(given, str) else list(islice(given, count + 1))

@@ -134,8 +134,8 @@ def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw impulses as stems as high as the mean force over a time that their label states.
 
-    By this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's own
-    height becomes a force of some weights.
+    Over this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's
+    own height becomes a force of some weights.
     """
     scene = shown.motions[0].scene
     time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))

@@ -143,7 +143,7 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
-    """Shade the time without validity by a `share` of the darkness, begun by a line in `colour`."""
+    """Shade the time without validity by a `share` of the darkness, after a line in `colour`."""
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []

@@ -27,14 +27,14 @@ _IN_A_PART = 96  # samples of a part
 _POINTS = 400, 32  # first points of a curve: in all, and in a half turn
 _MOST_POINTS = 30_000  # most points of a curve
 _FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
-_ROUNDS = 16  # an interval is halved so many times at most
-_BEND = 1e-3  # a curve that misses its chord by more of its range is seen to bend
+_ROUNDS = 16  # most halvings of an interval
+_BEND = 1e-3  # a curve farther from its chord, as a share of its range, bends
 _COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
-_STEADY = 1.05  # two counts of half turns whose ratio is smaller are right
+_STEADY = 1.05  # counts of half turns in a smaller ratio agree
 _EVENTS = 4000  # the first and last half of so many events are drawn as jumps
 _SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
 _COMPARED = 64  # samples that are compared with the motion
-_SEEN = 1e-6  # a smaller relative difference is seen in no picture
+_SEEN = 1e-6  # no picture shows a smaller relative difference
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
 _Places = npt.NDArray[np.intp]
@@ -130,7 +130,7 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 
 
 def half_turns(motion: Trajectory) -> float:
-    """Return the number, about, of half turns and swings between the first and last sample.
+    """Return roughly how many half turns and swings the samples span.
 
     It follows from the period, if there is one. Else half turns and turning points are counted at
     more and more times, whose spacing is irregular, unlike any period.
@@ -187,8 +187,8 @@ def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
 def is_at_hand(motion: Trajectory) -> bool:
     """True if the motion of a trajectory can be sampled at any time; warns if not.
 
-    A trajectory that `simulate` computed can, also one from a file. A trajectory with samples of
-    other origin has no motion between them.
+    One computed by `simulate` can, also after reading it from a file. Samples from elsewhere have
+    no known motion between them.
     """
     some = np.unique(np.linspace(0, motion.t.size - 1, _COMPARED).round().astype(int))
     t, own = motion.t[some], np.array([motion.theta, motion.omega, motion.x])[:, some]

@@ -37,7 +37,7 @@ _EVENTS = {
     EventKind.REST: "s",
     EventKind.JAM: "X",
 }
-_PILE = 0.4  # opacity, about, of all bodies in one place together
+_PILE = 0.4  # opacity of all bodies in one place together, roughly
 _MOST = 10_000  # positions; each takes some milliseconds
 
 

@@ -91,7 +91,7 @@ def draw(
 
 
 def _chosen(argument: str, wanted: Any, runs: Sequence[Run]) -> set[str]:
-    """Return the names of the contenders that names and tags mean."""
+    """Return the names of the contenders with these names or tags."""
     if not isinstance(wanted, Iterable):
         raise TypeError(f"{argument} must be names or tags, got {shown(wanted)}")
     words = {wanted} if isinstance(wanted, str) else set(wanted)

@@ -59,7 +59,7 @@ class RollingAnimation(FuncAnimation):
         The time.
     figure : Figure or SubFigure
         Where it is drawn; it keeps the animation alive. A film that `animate` has written as .html
-        is drawn when this, or another of the artists, is first asked for.
+        is drawn when this or another artist is first used.
     """
 
     #: The player as a page and as a fragment of HTML; bound by `_player.film`.
@@ -95,7 +95,7 @@ class RollingAnimation(FuncAnimation):
     if not TYPE_CHECKING:  # a __getattr__ would let type checkers accept every name
 
         def __getattr__(self, name: str) -> Any:
-            """Draw a film that was only written, when one of its artists is first asked for.
+            """Draw a film that was only written, when one of its artists is first used.
 
             A page needs no figure. The reference cycles of a figure take long to collect, and a
             Ctrl-C during that time is lost in the callback of a weak reference.
