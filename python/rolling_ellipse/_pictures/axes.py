@@ -17,13 +17,11 @@ import numpy as np
 from matplotlib import rcParams, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
-from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox
 
 from .._ask.check import file_name, positive, shown
 from .._ask.habits import meant
 from .._motion.quantities import QUANTITIES
-from .palette import Palette
 
 _Given = ParamSpec("_Given")
 _Entry = TypeVar("_Entry")
@@ -258,11 +256,6 @@ def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
     """Return the entries that a legend has room for: all, or evenly spaced ones with both ends."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
-
-
-def quantity_handles(quantities: Sequence[tuple[str, str]], palette: Palette) -> list[Line2D]:
-    """Return entries of a legend for quantities (name, dash) of every motion."""
-    return [Line2D([], [], color=palette.grey, ls=dash, label=name) for name, dash in quantities]
 
 
 def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None) -> None:

@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from .._ask.check import shown
 from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._motion.trajectory import Trajectory
-from .axes import listed, quantity_handles, some_of
+from .axes import listed, some_of
 from .palette import Palette, palette_of
 
 _ABOUT = "method", "model"
@@ -81,7 +81,12 @@ class Comparison:
         """Return entries of a legend: the curves of one motion, else motions and quantities."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
-        return [*self.motion_handles(solid=True), *quantity_handles(quantities, self.palette)]
+        return [*self.motion_handles(solid=True), *self.quantity_handles(*quantities)]
+
+    def quantity_handles(self, *quantities: tuple[str, str]) -> list[Line2D]:
+        """Return entries of a legend for quantities (name, dash) of every motion."""
+        grey = self.palette.grey
+        return [Line2D([], [], color=grey, ls=dash, label=name) for name, dash in quantities]
 
     def motion_handles(self, *, solid: bool) -> list[Line2D]:
         """Return entries of a legend for the motions: dashes, or `solid` lines with markers."""

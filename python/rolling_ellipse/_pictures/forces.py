@@ -16,7 +16,7 @@ from matplotlib.ticker import SymmetricalLogLocator
 
 from .._core import EventKind
 from .._motion.trajectory import Trajectory
-from .axes import Artists, name_curves, panels_of, picture, quantity_handles
+from .axes import Artists, name_curves, panels_of, picture
 from .comparison import Comparison, Style
 from .palette import palette_of
 from .panels import DASHES, draw_curves, draw_line, entries_of, events_shown, finish
@@ -178,6 +178,5 @@ def _draw_needed(ax: Axes, shown: Comparison) -> tuple[_Lines, tuple[Line2D | No
     top = 1.15 * min(float(np.max(every, where=np.isfinite(every), initial=0.0)), _STEEP) or 1.0
     ax.set_ylim(-0.03 * top, top)
     ax.set_ylabel("|F|/N")
-    limits = quantity_handles([("μ", _LIMIT["ls"])], shown.palette) if any(available) else []
-    name_curves(ax, limits)
+    name_curves(ax, shown.quantity_handles(("μ", _LIMIT["ls"])) if any(available) else [])
     return tuple(needed), tuple(available)

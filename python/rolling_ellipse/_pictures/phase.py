@@ -169,7 +169,7 @@ def knows_turns(motion: Trajectory) -> bool:
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
-    """Return the different bodies that have a separatrix, with their colours."""
+    """Return the different bodies that have a separatrix, with their colours; grey for one."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
     for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
