@@ -116,10 +116,8 @@ class SceneGrid:
         self.total = int(np.prod(self.shape, dtype=object))
         if self.total == 0:
             self._require_arguments()
-        for begin, size in sizes(1):
-            if begin >= self.total:
-                break
-            self._require_valid(begin, self.table(begin, size))
+        for chunk in self.chunks(1):
+            self._require_valid(chunk)
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -144,25 +142,15 @@ class SceneGrid:
 
     def table(self, begin: int = 0, size: int | None = None) -> FloatArray:
         """Return the scenes from an index on as a table, with a row of numbers for each."""
-        size = self.total if size is None else size
-        at = np.arange(begin, min(begin + size, self.total))
-        index = np.unravel_index(at, self.shape) if self.shape else ()
-        table = np.empty((at.size, WIDTH))
+        end = self.total if size is None else min(begin + size, self.total)
+        table = np.empty((end - begin, WIDTH))
         for column, name in enumerate((*NAMES, *BLOW)):
-            values = self._arrays.get(name)
-            if values is None:
-                default = _DEFAULTS.get(name)
-                table[:, column] = np.nan if default is None else default
-            elif values.size == 1:
-                table[:, column] = values.item()
+            values = self._arrays.get(name, _DEFAULTS.get(name))
+            if np.size(values) == 1:
+                table[:, column] = values  # NaN for None
             else:
-                table[:, column] = values[self._own(values, index)]
+                table[:, column] = np.broadcast_to(values, self.shape).flat[begin:end]
         return table
-
-    def _own(self, values: FloatArray, index: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the index into `values` of the element at an index into the common shape."""
-        last = index[len(index) - values.ndim :]
-        return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
 
     def _require_arguments(self) -> None:
         """Refuse wrong arguments of no scenes: each alone, and those of the body together."""
@@ -177,18 +165,19 @@ class SceneGrid:
         size = next((body[name] for name in ("a", "b") if name in body), 1.0)
         SceneGrid({"a": size, "b": size} | body)
 
-    def _require_valid(self, begin: int, table: FloatArray) -> None:
-        refused = _core.first_refused(table, reached=False)
+    def _require_valid(self, chunk: Chunk) -> None:
+        refused = _core.first_refused(chunk.table, reached=False)
         if refused is None:
             return
         row, message = refused
-        at = np.unravel_index(begin + row, self.shape) if self.shape else ()
+        at = np.unravel_index(chunk.begin + row, self.shape)
         name, _, rest = message.partition(" ")
         values = self._arrays.get(name)
         if values is None:
             raise ValueError(f"scenes{_indexed(at)}: {message}")
-        own = () if values.size == 1 else self._own(values, at)
-        raise ValueError(f"{_entry(name, own)} {rest}")
+        last = at[len(at) - values.ndim :]
+        own = tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
+        raise ValueError(f"{_entry(name, own if values.size > 1 else ())} {rest}")
 
 
 def _entry(name: str, index: tuple[Any, ...] = ()) -> str:
