@@ -1,8 +1,9 @@
 """Workers: threads of the core, or an executor, possibly of other machines.
 
 An executor has `submit`, as those of concurrent.futures, dask's Client and mpi4py.futures have, or
-is a pool that has `map`. A task is a function of this package with bytes as its argument, which
-every transport to other processes can send.
+is a pool that has `map`. A task is a function of this package or its core with arguments; the
+number of threads, 1, is added as the last one. It is sent as bytes, for which every transport to
+other processes has a way.
 """
 
 from __future__ import annotations
@@ -11,13 +12,16 @@ import pickle
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .._ask.check import FloatArray, shown, worker_count
 
 Columns = list[FloatArray]
+Task = tuple[Any, ...]  # a function and its arguments, without the number of threads
+_Key = TypeVar("_Key")
 
 _IN_FLIGHT = 128  # largest number of tasks that are submitted and not yet yielded
 _HELD = 96 * 2**20  # most bytes of results held for yielding in order, unless one result has more
@@ -48,38 +52,35 @@ def threads_of(workers: Any) -> int | None:
 
 
 def in_order(
-    executor: Any,
-    function: Callable[[bytes], Any],
-    tasks: Iterable[bytes],
-    size: Callable[[], int] = lambda: 0,
-) -> Iterator[tuple[int, Any]]:
-    """Yield index and result of each task, in order; `Lost` if its worker died or was missing.
+    executor: Any, tasks: Iterable[tuple[_Key, Task]], size: Callable[[], int] = lambda: 0
+) -> Iterator[tuple[_Key, Any]]:
+    """Yield key and result of each task, in order; `Lost` if its worker died or was missing.
 
     Tasks are taken as results are asked for, as many as have results of `_HELD` bytes in all if
     each has `size()` bytes. An interrupt cancels tasks that have not begun; finished results are
     yielded before it is raised again.
     """
-    places = enumerate(tasks)
+    sent = ((key, pickle.dumps(task)) for key, task in tasks)
     if not _can(executor, "submit"):
-        yield from _mapped(executor, function, places, size)
+        yield from _mapped(executor, sent, size)
         return
-    waiting: deque[tuple[int, Any]] = deque()
+    waiting: deque[tuple[_Key, Any]] = deque()
     try:
         while True:
-            while taken := _next(places, len(waiting), size):
-                place, task = taken
-                waiting.append((place, _submitted(executor, function, task)))
+            while taken := _next(sent, len(waiting), size):
+                key, task = taken
+                waiting.append((key, _submitted(executor, task)))
             if not waiting:
                 return
-            place, future = waiting[0]
+            key, future = waiting[0]
             result = _result(future)
             waiting.popleft()
-            yield place, result
+            yield key, result
     except KeyboardInterrupt:
-        done = [(place, future) for place, future in waiting if _is_done(future)]
+        done = [(key, future) for key, future in waiting if _is_done(future)]
         _cancel(future for _, future in waiting)
-        for place, future in done:
-            yield place, _result(future)
+        for key, future in done:
+            yield key, _result(future)
         raise
     finally:
         _cancel(future for _, future in waiting)
@@ -96,12 +97,13 @@ def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns
         return lambda n, columns: function(n, columns, threads)
 
     def compute(n: int, columns: Columns) -> Any:
+        begins = range(0, max(1, n - _ELEMENTS + 1), _ELEMENTS)  # the last task is the longest
         tasks = (
-            pickle.dumps((function, end - begin, _rows(columns, begin, end)))
-            for begin, end in _ranges(n)
+            (begin, (function, end - begin, [v if v.size == 1 else v[begin:end] for v in columns]))
+            for begin, end in pairwise([*begins, n])
         )
         pieces = []
-        for _, result in in_order(workers, _evaluate, tasks):
+        for _, result in in_order(workers, tasks):
             if isinstance(result, Lost):
                 raise result.error
             pieces.append(result)
@@ -122,36 +124,34 @@ def _is_pool(workers: Any) -> bool:
 
 
 def _next(
-    places: Iterator[tuple[int, bytes]], waiting: int, size: Callable[[], int]
-) -> tuple[int, bytes] | None:
-    """Return place and bytes of the next task; None if there is none, or too many wait."""
+    sent: Iterator[tuple[_Key, bytes]], waiting: int, size: Callable[[], int]
+) -> tuple[_Key, bytes] | None:
+    """Return the next key and task; None if there is none, or too many wait."""
     most = min(_IN_FLIGHT, _HELD // max(1, size()))
-    return None if waiting and waiting >= most else next(places, None)
+    return None if waiting and waiting >= most else next(sent, None)
 
 
 def _mapped(
-    pool: Any,
-    function: Callable[[bytes], Any],
-    places: Iterator[tuple[int, bytes]],
-    size: Callable[[], int],
-) -> Iterator[tuple[int, Any]]:
-    """Yield place and result of each task by a pool's `map`; if one fails, its whole `map` does."""
+    pool: Any, sent: Iterator[tuple[_Key, bytes]], size: Callable[[], int]
+) -> Iterator[tuple[_Key, Any]]:
+    """Yield key and result of each task by a pool's `map`; if one fails, its whole `map` does."""
     while True:
-        part: list[tuple[int, bytes]] = []
-        while taken := _next(places, len(part), size):
-            part.append(taken)
-        if not part:
+        keys, tasks = [], []
+        while taken := _next(sent, len(keys), size):
+            keys.append(taken[0])
+            tasks.append(taken[1])
+        if not keys:
             return
         try:
-            found: list[Any] = list(pool.map(function, [task for _, task in part]))
+            results: list[Any] = list(pool.map(_evaluate, tasks))
         except Exception as error:
-            found = [Lost(error)] * len(part)
-        yield from zip((place for place, _ in part), found, strict=True)
+            results = [Lost(error)] * len(keys)
+        yield from zip(keys, results, strict=True)
 
 
-def _submitted(executor: Any, function: Callable[[bytes], Any], task: bytes) -> Any:
+def _submitted(executor: Any, task: bytes) -> Any:
     try:
-        return executor.submit(function, task)
+        return executor.submit(_evaluate, task)
     except Exception as error:
         return Lost(error, refused=True)
 
@@ -175,22 +175,9 @@ def _cancel(futures: Iterable[Any]) -> None:
             future.cancel()
 
 
-def _ranges(n: int) -> Iterator[tuple[int, int]]:
-    """Yield begin and end of each task's elements; the last task is longer, so none is small."""
-    begin = 0
-    while n - begin >= 2 * _ELEMENTS:
-        yield begin, begin + _ELEMENTS
-        begin += _ELEMENTS
-    yield begin, n
-
-
-def _rows(columns: Columns, begin: int, end: int) -> Columns:
-    return [values if values.size == 1 else values[begin:end] for values in columns]
-
-
 def _evaluate(task: bytes) -> Any:
-    function, n, columns = pickle.loads(task)
+    function, *arguments = pickle.loads(task)
     try:
-        return function(n, columns, 1)
+        return function(*arguments, 1)
     except ValueError as error:  # a wrong argument; executors would log it as a failure
         return Lost(error)

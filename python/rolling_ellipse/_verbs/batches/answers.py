@@ -6,9 +6,8 @@ answer is a trajectory, or the exception of its scene. Arrays have the axes of t
 
 from __future__ import annotations
 
-import pickle
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -28,7 +27,8 @@ from ..._motion.quantities import MODE, QUANTITIES, TIME
 from ..._motion.samples import fields_of, frozen
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
-from .asked import BLOW, NAMES, Chunk, name_of, scenes_of
+from ..workers import Task
+from .asked import BLOW, NAMES, WIDTH, Chunk, name_of, scenes_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -50,10 +50,10 @@ DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
 _STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers": DIRECT}
 _TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
-_HELD = {code for code, each in STATUSES.items() if each in AT_AN_END}
+HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
 _LOST = max(STATUSES) + 1  # the ending of a scene whose worker was lost
-_SENTENCES = {code: each.value for code, each in STATUSES.items()}
-_ENDINGS = {REFUSED: "REFUSED", **{k: each.name for k, each in STATUSES.items()}, _LOST: "LOST"}
+# In the order of the codes, from REFUSED on
+_ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
 _UNITS = SCENE_UNITS | _core.FIELDS["Impulse"]
 
 
@@ -75,17 +75,16 @@ class Request:
         """Bytes of the samples of a scene."""
         return self.samples * SAMPLE_BYTES[self.settings.model]
 
-    def solve(self, chunk: Chunk, threads: int) -> Tables:
-        return _core.simulate_table(chunk.table, self.settings.core, self.times, threads)
+    def task(self, chunk: Chunk) -> Task:
+        return solve, _core.simulate_table, chunk.table, self.settings, self.times
 
-    def task(self, chunk: Chunk) -> bytes:
-        """Return a task for `run` in another process."""
-        return pickle.dumps((chunk.table, self.settings, self.times))
 
-    @staticmethod
-    def run(task: bytes) -> Tables:
-        table, settings, times = pickle.loads(task)
-        return _core.simulate_table(table, settings.core, times, 1)
+def solve(
+    function: Callable[..., Tables], table: FloatArray, settings: Settings, times: FloatArray,
+    threads: int,
+) -> Tables:  # fmt: skip
+    """Return what a function of the core gives; settings of the core cannot be sent in a task."""
+    return function(table, settings.core, times, threads)
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
@@ -122,7 +121,7 @@ def answers(
         facts = _samples(model, tables, here, times)
         facts |= {
             "scene": scene, "model": model, "method": METHODS[method], "status": status,
-            "message": message or _SENTENCES[ending], "valid_until": valid_until, "t_end": t_end,
+            "message": message or status.value, "valid_until": valid_until, "t_end": t_end,
             "span": span, "settings": settings, "start": None,
             "stats": dict(zip(_STATS, count, strict=True)), "kept_events": None,
         }  # fmt: skip
@@ -218,8 +217,7 @@ class MotionArrays(dict[str, FloatArray]):
     def __repr__(self) -> str:
         sizes = zip((*self.axes, "t"), (*self.status.shape, self.t.size), strict=True)
         over = ", ".join(f"{axis} {size}" for axis, size in sizes)
-        counts = ", ".join(f"{n} {name}" for name, n in Counter(self.status.flat).items())
-        return f"<MotionArrays {', '.join(self)} over {over}: {counts or 'no scenes'}>"
+        return f"<MotionArrays {', '.join(self)} over {over}: {counts_of(self.status)}>"
 
     def to_xarray(self) -> Dataset:
         """Return an xarray Dataset over the axes of the scenes and t, with ``status``.
@@ -240,6 +238,18 @@ class MotionArrays(dict[str, FloatArray]):
         frame: DataFrame = found.to_dataframe()
         frame.attrs = dict(found.attrs)
         return frame
+
+
+def counts_of(status: npt.NDArray[np.str_]) -> str:
+    return ", ".join(f"{n} {name}" for name, n in Counter(status.flat).items()) or "no scenes"
+
+
+def endings_of(
+    codes: npt.NDArray[Any], failed: Mapping[int, Exception], shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return status and errors of motions of a shape by the codes of all and the exceptions."""
+    errors = {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
+    return {"status": _ENDINGS[codes - REFUSED].reshape(shape), "errors": errors}
 
 
 def dataset_of(
@@ -288,7 +298,7 @@ def gathered(
 
     A shape of None is that of a list.
     """
-    rows, endings = [np.empty((0, len(_UNITS)))], [np.empty(0)]
+    rows, endings = [np.empty((0, WIDTH))], [np.empty(0, int)]
     blocks = [np.empty((len(names), 0, request.times.size))]
     failed: dict[int, Exception] = {}
     begin = 0
@@ -306,14 +316,12 @@ def gathered(
         blocks.append(block)
         begin += n
     shape = (begin,) if shape is None else shape
-    codes = np.searchsorted(list(_ENDINGS), np.concatenate(endings))
     values = np.concatenate(blocks, 1).reshape(len(names), *shape, request.times.size)
     return MotionArrays(
         dict(zip(names, values, strict=True)),
         t=request.times,
         axes=axes,
-        status=np.array(list(_ENDINGS.values()))[codes].reshape(shape),
-        errors={tuple(map(int, np.unravel_index(i, shape))): each for i, each in failed.items()},
+        **endings_of(np.concatenate(endings), failed, shape),
         _scenes=np.concatenate(rows),
     )
 
@@ -335,7 +343,7 @@ def _fill(
     if others & _TOUCH and MODELS.index("multipliers") not in code["model"]:
         _fill_rolling({name: values[name] for name in others & _TOUCH}, table, tables)
         others -= _TOUCH
-    failed = request.raise_on_failure and not set(code["ending"]) <= _HELD
+    failed = request.raise_on_failure and not set(code["ending"]) <= set(HELD)
     if others or failed or REFUSED in code["ending"]:
         for place, answer in enumerate(answers(request, scenes_of(table), tables)):
             motion = answer.trajectory if isinstance(answer, IntegrationError) else answer

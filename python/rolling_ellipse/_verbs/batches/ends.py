@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import pickle
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -19,20 +17,18 @@ from ..._ask.progress import reporting
 from ..._ask.records import FieldsOnly
 from ..._ask.scene import STATE_UNITS, Scene
 from ..._ask.settings import DEFAULTS, Settings
-from ..._motion.status import STATUSES, IntegrationError
+from ..._motion.status import IntegrationError, WorkerError
 from ..simulate import simulate
-from ..workers import Lost
-from .answers import AT_AN_END, Tables, dataset_of
+from ..workers import Task
+from .answers import HELD, counts_of, dataset_of, endings_of, solve
 from .asked import WIDTH, Chunk, SceneGrid, asked
-from .many import solved, worker_error
+from .many import parts
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
 Codes = npt.NDArray[np.int32]
-_NAMES = {code: each.name for code, each in STATUSES.items()} | {-1: "REFUSED"}
-_FAILED = -1, *(code for code, each in STATUSES.items() if each not in AT_AN_END)
 _ENDLESS = "finite [s], since most motions go on for ever and have no last state"
 _NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((4, 0), np.int32)}
 
@@ -98,8 +94,7 @@ class Ends(FieldsOnly):
         return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {name}" for name, n in Counter(self.status.flat).items())
-        return f"<Ends of shape {self.theta.shape}: {counts or 'no scenes'}>"
+        return f"<Ends of shape {self.theta.shape}: {counts_of(self.status)}>"
 
 
 @dataclass(frozen=True)
@@ -111,22 +106,10 @@ class _Request:
     samples: int = 1
     size: int = 8 * (len(STATE_UNITS) + 2)
 
-    def _given(self, chunk: Chunk) -> tuple[FloatArray, Settings, FloatArray]:
+    def task(self, chunk: Chunk) -> Task:
         own = slice(chunk.begin, chunk.begin + len(chunk.table))
-        return chunk.table, self.settings, self.times if self.times.size == 1 else self.times[own]
-
-    def solve(self, chunk: Chunk, threads: int) -> Tables:
-        table, settings, times = self._given(chunk)
-        return _core.ends_table(table, settings.core, times, threads)
-
-    def task(self, chunk: Chunk) -> bytes:
-        """Return a task for `run` in another process."""
-        return pickle.dumps(self._given(chunk))
-
-    @staticmethod
-    def run(task: bytes) -> Tables:
-        table, settings, times = pickle.loads(task)
-        return _core.ends_table(table, settings.core, times, 1)
+        times = self.times if self.times.size == 1 else self.times[own]
+        return solve, _core.ends_table, chunk.table, self.settings, times
 
 
 @understood
@@ -177,28 +160,23 @@ def ends(
         raise ValueError(f"t must be one time, or one for each of a list, got shape {times.shape}")
     if shape is not None and times.ndim:
         times = np.broadcast_to(times, shape)
-    request, done = _Request(how, times.ravel()), 0
-    tables, errors, rows = [_NONE], {}, [np.empty((0, WIDTH))]
+    request = _Request(how, times.ravel())
+    tables, failed, rows = [_NONE], {}, [np.empty((0, WIDTH))]
     with reporting(progress, "scenes") as report:
-        for chunk, found in solved(request, wanted.chunks(1), workers):
-            if isinstance(found, Lost):
-                raise worker_error(chunk, found)
-            tables.append(found)
-            for k in np.flatnonzero(np.isin(found["codes"][-1], _FAILED)).tolist():
+        for chunk, part in parts(request, wanted, workers, report):
+            if isinstance(part, WorkerError):
+                raise part
+            tables.append(part)
+            for k in np.flatnonzero(~np.isin(part["codes"][-1], HELD)).tolist():
                 place = chunk.begin + k
-                index = (place,) if shape is None else np.unravel_index(place, shape)
-                errors[tuple(map(int, index))] = _error(chunk.scenes[k], request, place)
-            done = chunk.begin + len(chunk.table)
+                failed[place] = _error(chunk.scenes[k], request, place)
             rows += [chunk.table] if shape is None else []
-            report(done, wanted.total)
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
-    whole = (done,) if shape is None else shape
-    mode, events, first, ending = (row.reshape(whole) for row in codes)
-    names = np.array([_NAMES[code] for code in range(-1, len(STATUSES))])
-    state = dict(zip(STATE_UNITS, (row.reshape(whole) for row in states), strict=True))
+    whole = (codes.shape[1],) if shape is None else shape
+    mode, events, first, _ = (row.reshape(whole) for row in codes)
     return Ends(
-        **state, mode=mode.astype(np.int8), events=events,
-        first=first.astype(np.int8), status=names[ending + 1], errors=errors,
+        *(row.reshape(whole) for row in states), mode=mode.astype(np.int8), events=events,
+        first=first.astype(np.int8), **endings_of(codes[-1], failed, whole),
         axes=wanted.axes, t=copied(np.broadcast_to(times, whole)),
         _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),
     )  # fmt: skip

@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike
 from ... import _core
 from ..._ask.check import flag, shown
 from ..._ask.habits import understood
-from ..._ask.progress import reporting
+from ..._ask.progress import Report, reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import Options, Settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times, simulate
-from ..workers import Lost, in_order, threads_of
+from ..workers import Lost, Task, in_order, threads_of
 from .answers import Answer, MotionArrays, Request, answers, gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
@@ -118,16 +118,14 @@ def simulate_many(
     with reporting(progress, "scenes") as report:
         if out is not None:
             return _to_folder(Folder(out, request), request, wanted, workers, report)
-        parts = _parts(request, wanted, workers, report)
+        each = parts(request, wanted, workers, report)
         if names is not None:
-            found = ((chunk.table, tables) for chunk, tables in parts)
-            return gathered(names, request, found, wanted.axes, wanted.shape)
+            tables = ((chunk.table, part) for chunk, part in each)
+            return gathered(names, request, tables, wanted.axes, wanted.shape)
         listed: list[Answer] = []
-        for chunk, tables in parts:
-            lost = isinstance(tables, WorkerError)
-            listed += (
-                [tables] * len(chunk.table) if lost else answers(request, chunk.scenes, tables)
-            )
+        for chunk, part in each:
+            lost = isinstance(part, WorkerError)
+            listed += [part] * len(chunk.table) if lost else answers(request, chunk.scenes, part)
         return listed
 
 
@@ -136,45 +134,43 @@ _own, _options = ([*signature(each).parameters.values()] for each in (simulate_m
 simulate_many.__signature__ = Signature([*_own[:-2], *_options[2:]])  # type: ignore[attr-defined]
 
 
-def _parts(
-    request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
+def parts(
+    request: Any, wanted: SceneList | SceneGrid, workers: Any, report: Report
 ) -> Iterator[tuple[Chunk, Any]]:
     """Yield the chunks with their tables, or with the loss of their worker."""
-    for chunk, tables in solved(request, wanted.chunks(request.samples), workers):
-        yield chunk, worker_error(chunk, tables) if isinstance(tables, Lost) else tables
+    for chunk, part in _solved(request, wanted.chunks(request.samples), workers):
+        yield chunk, _worker_error(chunk, part) if isinstance(part, Lost) else part
         report(chunk.begin + len(chunk.table), wanted.total)
 
 
-def solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
+def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
     """Yield each chunk with the tables of its motions, or with `Lost` if its worker failed."""
     threads = threads_of(workers)
     if threads is not None:
         for chunk in chunks:
-            yield chunk, request.solve(chunk, threads)
+            function, *arguments = request.task(chunk)
+            yield chunk, function(*arguments, threads)
         return
-    held: dict[int, Chunk] = {}
     _, scenes = next(sizes(request.samples))
     each: int = request.size  # most bytes of results per scene so far; at first, of its samples
 
-    def tasks() -> Iterator[bytes]:
+    def tasks() -> Iterator[tuple[Chunk, Task]]:
         nonlocal scenes
-        for place, chunk in enumerate(chunks):
-            held[place], scenes = chunk, len(chunk.table)
-            yield request.task(chunk)
+        for chunk in chunks:
+            scenes = len(chunk.table)
+            yield chunk, request.task(chunk)
 
     def size() -> int:
         return scenes * each
 
-    for place, tables in in_order(workers, request.run, tasks(), size):
-        chunk = held.pop(place)
-        if not isinstance(tables, Lost):
-            there = sum(table.nbytes for table in tables.values())
-            each = max(each, there // len(chunk.table))
-        yield chunk, tables
+    for chunk, part in in_order(workers, tasks(), size):
+        if not isinstance(part, Lost):
+            each = max(each, sum(table.nbytes for table in part.values()) // len(chunk.table))
+        yield chunk, part
 
 
 def _to_folder(
-    folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
+    folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Report
 ) -> str:
     done, count, lost = 0, 0, []
 
@@ -187,9 +183,9 @@ def _to_folder(
             else:
                 yield chunk
 
-    for chunk, tables in solved(request, missing(), workers):
+    for chunk, tables in _solved(request, missing(), workers):
         if isinstance(tables, Lost):
-            lost.append(worker_error(chunk, tables))
+            lost.append(_worker_error(chunk, tables))
             if tables.refused:
                 break
             continue
@@ -202,7 +198,7 @@ def _to_folder(
     return str(folder.path)
 
 
-def worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
+def _worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
     last = chunk.begin + len(chunk.table) - 1
     why = f"{type(lost.error).__name__}: {lost.error}"
     error = WorkerError(f"scenes {chunk.begin} to {last} got lost with their worker, {why}")
