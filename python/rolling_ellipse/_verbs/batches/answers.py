@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
+from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ... import _core
-from ..._ask.check import FloatArray, choice, shown
+from ..._ask.check import COORDINATES, FloatArray, choice, shown
 from ..._ask.printing import required
 from ..._ask.records import trusted
 from ..._ask.scene import SCENE_UNITS, Scene
@@ -92,6 +94,10 @@ def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
     return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
 
 
+def _of_model(name: str, code: Mapping[str, npt.NDArray[Any]]) -> npt.NDArray[np.bool_]:
+    return code["model"] == MODELS.index(name)
+
+
 def answers(
     request: Request, scenes: Sequence[Scene], tables: Tables, *, keep_events: bool = False
 ) -> list[Answer]:
@@ -100,18 +106,16 @@ def answers(
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
     again when events are first asked for, as after pickling.
     """
-    times, text = frozen(np.array(request.times)), tables["text"].tobytes()
-    span, settings, table = float(times[-1]), request.settings, tables["events"]
-    taken, letters_taken, events_taken = dict.fromkeys(MODELS, 0), 0, 0
-    results: list[Answer] = []
+    times, text = frozen(np.array(request.times)), BytesIO(tables["text"].tobytes())
+    span, taken = float(times[-1]), dict.fromkeys(MODELS, 0)
+    event_rows = map(np.ndarray.tolist, tables["events"])
     known = columns("codes", tables) | columns("numbers", tables)
-    code = {name: values.tolist() for name, values in known.items()}
     names = ("ending", "model", "method", "samples", "events", "letters", "t_end", "valid_until")
-    of_each = zip(*(code[name] for name in names), strict=True)
-    counts = zip(*(code[name] for name in _STATS), strict=True)
-    for scene, each, count in zip(scenes, of_each, counts, strict=True):
-        ending, model_code, method, samples, events, letters, t_end, valid_until = each
-        message = text[letters_taken : (letters_taken := letters_taken + letters)].decode()
+    rows = zip(*(known[name].tolist() for name in (*names, *_STATS)), strict=True)
+    results: list[Answer] = []
+    for scene, row in zip(scenes, rows, strict=True):
+        ending, model_code, method, samples, events, letters, t_end, valid_until, *counts = row
+        message = text.read(letters).decode()
         if ending == REFUSED:
             results.append(ValueError(message))
             continue
@@ -122,15 +126,14 @@ def answers(
         facts |= {
             "scene": scene, "model": model, "method": METHODS[method], "status": status,
             "message": message or status.value, "valid_until": valid_until, "t_end": t_end,
-            "span": span, "settings": settings, "start": None,
-            "stats": dict(zip(_STATS, count, strict=True)), "kept_events": None,
+            "span": span, "settings": request.settings, "start": None,
+            "stats": dict(zip(_STATS, counts, strict=True)), "kept_events": None,
         }  # fmt: skip
         if keep_events:
-            rows = table[events_taken : (events_taken := events_taken + events)].tolist()
-            facts["kept_events"] = made_events(scene, rows)
-        made = trusted(Trajectory, facts)
+            facts["kept_events"] = made_events(scene, list(islice(event_rows, events)))
+        motion = trusted(Trajectory, facts)
         failed = request.raise_on_failure and status not in AT_AN_END
-        results.append(IntegrationError(made) if failed else made)
+        results.append(IntegrationError(motion) if failed else motion)
     return results
 
 
@@ -152,18 +155,14 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
     counts = tables["codes"][:, _FIRST_COUNT:]
     if counts.min(initial=0) < 0 or code["samples"].max(initial=0) > times:
         raise ValueError(f"codes must hold counts, of samples at most {times}")
-    rolling, contact, multipliers = (
-        int(code["samples"][code["model"] == MODELS.index(name)].sum())
-        for name in ("rolling", "contact", "multipliers")
-    )
+    samples = {name: int(code["samples"][_of_model(name, code)].sum()) for name in _STORED}
     shapes = {
         "text": (int(code["letters"].sum()),),
         "events": (int(code["events"].sum()), _WIDTH["events"]),
-        "rolling": (_WIDTH["rolling"], rolling),
-        "contact": (_WIDTH["contact"], contact),
-        "mode": (contact,),
-        "q": (multipliers, 5),
-        "q_dot": (multipliers, 5),
+        "rolling": (_WIDTH["rolling"], samples["rolling"]),
+        "contact": (_WIDTH["contact"], samples["contact"]),
+        "mode": (samples["contact"],),
+        **dict.fromkeys(("q", "q_dot"), (samples["multipliers"], COORDINATES)),
     }
     for name, shape in shapes.items():
         dtype = np.int8 if name in ("text", "mode") else np.float64
@@ -335,12 +334,12 @@ def _fill(
     q, q_dot = tables["q"], tables["q_dot"]
     stored: dict[str, Any] = {**tables, "multipliers": (q[:, 2], q_dot[:, 2], q[:, 0])}
     for model, names in _STORED.items():
-        here = reached & (code["model"] == MODELS.index(model))[:, None]
+        here = reached & _of_model(model, code)[:, None]
         for name, row in zip(names, stored[model], strict=True):
             if name in values:
                 values[name][here] = row
     others = values.keys() - set(DIRECT)
-    if others & _TOUCH and MODELS.index("multipliers") not in code["model"]:
+    if others & _TOUCH and not _of_model("multipliers", code).any():
         _fill_rolling({name: values[name] for name in others & _TOUCH}, table, tables)
         others -= _TOUCH
     failed = request.raise_on_failure and not set(code["ending"]) <= set(HELD)
@@ -357,7 +356,7 @@ def _fill(
 def _fill_rolling(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
     """Fill in what `Trajectory` finds at the contact of bodies that only roll."""
     code, (theta, omega, _) = columns("codes", tables), tables["rolling"]
-    samples = np.where(code["model"] == MODELS.index("rolling"), code["samples"], 0)
+    samples = np.where(_of_model("rolling", code), code["samples"], 0)
     places, begin = np.flatnonzero(samples), 0
     for place, scene in zip(places, scenes_of(table[places]), strict=True):
         part = slice(begin, begin := begin + samples[place])

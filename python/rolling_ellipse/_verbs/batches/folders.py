@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _SCHEMA = 2
-_SAME = "a folder of the same request"
+_SAME, _SAME_SCENES = "a folder of the same request", "a folder of the same scenes"
 _REQUEST, _END = "request.npz", "end.json"
 _GRID = ("axes", "shape")  # of the scenes, in `end.json`; older folders lack them
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
@@ -83,9 +83,10 @@ class Folder:
         there = self._names.get(chunk.index, [])
         if others := [each for each in there if each != name]:
             last = chunk.begin + len(chunk.table) - 1
-            self._refuse_scenes(f"whose scenes {chunk.begin} to {last} are others: {others[0]!r}")
+            why = f", whose scenes {chunk.begin} to {last} are others: {others[0]!r}"
+            self._refuse(_SAME_SCENES, why)
         if chunk.begin >= self._scenes:
-            self._refuse_scenes(f"which has {self._scenes}")
+            self._refuse(_SAME_SCENES, f", which has {self._scenes}")
         if there:
             with suppress(FileNotFoundError, ValueError):
                 _chunk(self.path, name, len(chunk.table), self._samples)
@@ -102,7 +103,7 @@ class Folder:
         """Write `end.json`, which makes the folder complete."""
         scenes, grid = math.prod(shape), {"axes": axes, "shape": shape}
         if max(self._names, default=-1) >= chunks:
-            self._refuse_scenes(f"which has more than {scenes}")
+            self._refuse(_SAME_SCENES, f", which has more than {scenes}")
         digest = _digest_of_all(self._request, scenes, self._names, grid)
         with _replacing(self.path / _END) as new:
             new.write_text(json.dumps({"scenes": scenes, "digest": digest, **grid}))
@@ -123,9 +124,6 @@ class Folder:
         if t.tobytes() != times.tobytes():
             self._refuse(_SAME, f" with other times, {t.size} from {t[0]!s} to {t[-1]!s} s")
 
-    def _refuse_scenes(self, why: str) -> NoReturn:
-        self._refuse("a folder of the same scenes", f", {why}")
-
     def _refuse(self, required: str, why: str) -> NoReturn:
         raise ValueError(f"out must be {required}, got {str(self.path)!r}{why}")
 
@@ -141,8 +139,8 @@ class StoredMotions(Sequence[results.Answer]):
     ) -> None:
         self._folder, self._request, self._names = folder, request, names
         self._axes, self._shape = tuple(end["axes"]), tuple(end["shape"])
-        begins = islice(sizes(request.times.size), len(names))
-        self._begins: list[int] = [*(begin for begin, _ in begins), end["scenes"]]
+        chunks = islice(sizes(request.times.size), len(names))
+        self._begins: list[int] = [*(begin for begin, _ in chunks), end["scenes"]]
         self._last: tuple[int, list[results.Answer]] = -1, []
 
     def __len__(self) -> int:
