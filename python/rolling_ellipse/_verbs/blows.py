@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -142,17 +143,13 @@ def required_friction(
         core = require_scene(scene).core
         return _core.friction_to_rest(core) if rests else _core.required_friction(core)
     grid = SceneGrid(scene)
-    needed = shared(workers, _frictions_to_rest if rests else _frictions_to_roll)
-    found: float | FloatArray = shaped(needed(grid.total, [grid.table()]), grid.shape)
-    return found
+    needed = shared(workers, partial(_frictions, rests))(grid.total, [grid.table()])
+    friction: float | FloatArray = shaped(needed, grid.shape)
+    return friction
 
 
-def _frictions_to_roll(_: int, columns: Columns, threads: int) -> FloatArray:
-    return _core.friction_table(columns[0], False, threads)
-
-
-def _frictions_to_rest(_: int, columns: Columns, threads: int) -> FloatArray:
-    return _core.friction_table(columns[0], True, threads)
+def _frictions(to_rest: bool, _: int, columns: Columns, threads: int) -> FloatArray:
+    return _core.friction_table(columns[0], to_rest, threads)
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from types import NoneType
 from typing import Any
 
@@ -11,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._ask.check import FloatArray, array, evaluate, shaped, uniform_disc
+from .._ask.check import FloatArray, array, evaluate, shaped
 from .._ask.scene import Scene, require_scene
 from ..geometry import support
-from .workers import shared, threads_of
+from .workers import Columns, shared, threads_of
 
 _SCALARS = (float, int, np.float64)
 
@@ -87,38 +88,26 @@ def flow(
         and workers == 1
     ):
         return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2, slope)
-    if type(slope) is not float or slope != 0:
-        on_slope: tuple[Any, Any, Any] = evaluate(
-            shared(workers, _core.slope_flow_array), t=t, a=a, b=b, theta=theta, omega=omega,
-            gravity=gravity, gyration2=gyration2, slope=slope,
-        )  # fmt: skip
-        return on_slope
-    threads = threads_of(workers)
+    threads_of(workers)  # refuses what is neither a number nor an executor
+    on_slope = {} if type(slope) is float and slope == 0 else {"slope": slope}
     one = (a, b, theta, omega, gravity)
-    if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
+    known = all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType)
+    if known and not on_slope:
         with suppress(TypeError):  # an int beyond doubles is refused by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2, 0.0)  # type: ignore[arg-type]
-            times = array("t", t)
-            if threads is None:
-                k2 = uniform_disc(a, b) if gyration2 is None else gyration2
-                columns = [times.ravel(), *(np.array([float(v)]) for v in (*one, k2))]
-                states = shared(workers, _times)(times.size, columns)
-            else:
-                states = _core.flow_times(times.ravel(), *one, gyration2, threads)
-            return shaped(states, times.shape)  # type: ignore[no-any-return]
-    states = evaluate(
-        shared(workers, _core.flow_array), t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
-        gyration2=gyration2,
+            times, of_one = array("t", t), partial(_times, (*one, gyration2))
+            return shaped(shared(workers, of_one)(times.size, [times.ravel()]), times.shape)  # type: ignore[no-any-return]
+    states: tuple[Any, Any, Any] = evaluate(
+        shared(workers, _core.slope_flow_array if on_slope else _core.flow_array), t=t, a=a, b=b,
+        theta=theta, omega=omega, gravity=gravity, gyration2=gyration2, **on_slope,
     )  # fmt: skip
-    return states  # type: ignore[no-any-return]
+    return states
 
 
-def _times(n: int, columns: list[FloatArray], threads: int) -> Any:
-    """Return the states of one motion at many times, as a task of an executor."""
-    times, *one = columns
-    a, b, theta, omega, gravity, gyration2 = (float(value[0]) for value in one)
-    return _core.flow_times(times, a, b, theta, omega, gravity, gyration2, threads)
+def _times(one: tuple[Any, ...], _: int, columns: Columns, threads: int) -> Any:
+    """Return the states of one motion at many times."""
+    return _core.flow_times(columns[0], *one, threads)
 
 
 def arguments_of(scene: Scene) -> dict[str, Any]:

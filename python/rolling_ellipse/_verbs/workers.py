@@ -38,17 +38,13 @@ class Lost:
 
 def threads_of(workers: Any) -> int | None:
     """Return a number of threads in its range, or None for an executor; TypeError for neither."""
-    if type(workers) is int:  # the fast path: most calls give a number
+    if not isinstance(workers, type) and (_can(workers, "submit") or _is_pool(workers)):
+        return None
+    try:
         return worker_count(workers)
-    if isinstance(workers, type) or not (_can(workers, "submit") or _is_pool(workers)):
-        try:
-            return worker_count(workers)
-        except TypeError:
-            raise TypeError(
-                "workers must be a whole number, or an executor with submit or map, "
-                f"got {shown(workers)}"
-            ) from None
-    return None
+    except TypeError:
+        wanted = "a whole number, or an executor with submit or map"
+        raise TypeError(f"workers must be {wanted}, got {shown(workers)}") from None
 
 
 def in_order(

@@ -18,7 +18,7 @@ from ..._ask.records import FieldsOnly
 from ..._ask.scene import STATE_UNITS, Scene
 from ..._ask.settings import DEFAULTS, Settings
 from ..._motion.status import IntegrationError, WorkerError
-from ..simulate import simulate
+from ..._motion.trajectory import Trajectory
 from ..workers import Task
 from .answers import HELD, counts_of, dataset_of, endings_of, solve
 from .asked import WIDTH, Chunk, SceneGrid, asked
@@ -186,10 +186,6 @@ def _error(scene: Scene, request: _Request, place: int) -> Exception:
     """Return the exception that `simulate` raises for a scene."""
     t = request.times[0 if request.times.size == 1 else place]
     try:
-        motion = simulate(
-            scene, [t], max_events=request.settings.max_events,
-            rest_speed=request.settings.rest_speed, raise_on_failure=False,
-        )  # fmt: skip
+        return IntegrationError(Trajectory.computed(scene, request.settings, np.array([t])))
     except ValueError as error:  # a time beyond what a double resolves
         return error
-    return IntegrationError(motion)
