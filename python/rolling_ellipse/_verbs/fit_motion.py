@@ -18,7 +18,7 @@ from .._motion.trajectory import Trajectory
 from .films.conventions import fitting, free_fall, other_units, readings
 from .films.errors import near_guess, standard_errors
 from .films.film import Film, Unknowns, film_of, sigma_of, sizes_of
-from .films.judgement import TRACKER, counted, estimated, judged, widened
+from .films.judgement import TRACKER, counted, judged, settled, widened
 from .films.search import Search, cost
 from .simulate import sample_times, simulate
 
@@ -176,23 +176,17 @@ def fit_motion(
     if count <= len(unknowns.names):
         raise ValueError(f"free must be fewer names than data, got {len(unknowns.names)}, {count}")
     given = sigma_of(sigma, scene)
+    first = np.where(np.isnan(given), TRACKER * sizes_of(scene), given)
     fall = free_fall(film, unknowns)
     if units := other_units(film, fall, unknowns):
         words = fitting(units, unknowns, given, loss)
         if words or (fall is not None and not 1 / _FOREIGN < fall < _FOREIGN):
-            return _not_fitted(film, unknowns, _first_sigma(given, scene), fall, words)
-    search = Search(film, unknowns, _first_sigma(given, scene), loss)
+            return _not_fitted(film, unknowns, first, fall, words)
+    search = Search(film, unknowns, first, loss)
     minima = search.minima()
-    best = search.best(minima)
-    for _ in range(_ROUNDS if np.isnan(given).any() else 0):
-        search.sigma = estimated(search, best, given)
-        best = search.best([search.solve(best.x)])
-    search.sigma = estimated(search, best, given)
+    rounds = _ROUNDS if np.isnan(given).any() else 0
+    best = settled(search, search.best(minima), given, rounds)
     return _fit(search, search.solve(best.x, exact=True), minima, given)
-
-
-def _first_sigma(given: FloatArray, scene: Scene) -> FloatArray:
-    return np.where(np.isnan(given), TRACKER * sizes_of(scene), given)
 
 
 def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit:
@@ -212,14 +206,14 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
     wider = widened(verdict) * unknowns.sizes
     by_name = dict(zip(unknowns.names, (errors * wider).tolist(), strict=True))
     lost = ", ".join(name for name, error in by_name.items() if math.isinf(error))
-    said = [counted(search, residuals, given)]
-    said += [f"the film cannot tell {lost}"] if lost else []
-    said += verdict.words
+    sentences = [counted(search, residuals, given)]
+    sentences += [f"the film cannot tell {lost}"] if lost else []
+    sentences += verdict.words
     if verdict.doubtful and (words := fitting(readings(film), unknowns, given, search.loss)):
-        said += [f"it fits with {words}"]
+        sentences += [f"it fits with {words}"]
     return Fit(
         motion.scene, by_name, covariance * np.outer(wider, wider), float(np.sum(residuals**2)),
-        film.off(motion), search.sigma, motion, f"{'; '.join(said)}.",
+        film.off(motion), search.sigma, motion, f"{'; '.join(sentences)}.",
     )  # fmt: skip
 
 
@@ -231,12 +225,13 @@ def _not_fitted(
     if motion is None:
         raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")
     off, infinite = film.off(motion), np.full(len(unknowns.names), math.inf)
-    said = [f"{film.known.sum()} data, not fitted", "the frames are too far apart"]
+    why = "the frames are too far apart"
     if fall is not None:
-        said[1] = f"the body falls with {fall:.3g} of gravity, as if t or z had other units"
-    said += ["the scene does not fit the film", *([f"it fits with {words}"] if words else [])]
+        why = f"the body falls with {fall:.3g} of gravity, as if t or z had other units"
+    sentences = [f"{film.known.sum()} data, not fitted", why, "the scene does not fit the film"]
+    sentences += [f"it fits with {words}"] if words else []
     return Fit(
         motion.scene, dict(zip(unknowns.names, infinite.tolist(), strict=True)),
         np.diag(infinite), float(np.nansum((off / sigma) ** 2)), off, sigma, motion,
-        f"{'; '.join(said)}.",
+        f"{'; '.join(sentences)}.",
     )  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._ask.check import FloatArray
 from .film import TRACKS, Film, Unknowns, sizes_of
-from .judgement import NORMAL, TRACKER, estimated, judged
+from .judgement import NORMAL, TRACKER, estimated, judged, settled
 from .search import Search
 
 X, Z, THETA = range(3)
@@ -127,11 +127,7 @@ def fitting(tries: list[Convention], unknowns: Unknowns, given: FloatArray, loss
             size = float(np.log(search.sigma / sizes)[search.track].sum())
             ranked.append((size, place, search))
     for _, place, search in sorted(ranked, key=lambda one: one[:2])[:_RUN]:
-        best = search.best(search.minima())
-        for _ in range(2):
-            search.sigma = estimated(search, best, given)
-            best = search.best([search.solve(best.x)])
-        search.sigma = estimated(search, best, given)
+        best = settled(search, search.best(search.minima()), given, 2)
         if not judged(search, best, given).doubtful:
             return tries[place].words.format(**_origins(search, best))
     return ""

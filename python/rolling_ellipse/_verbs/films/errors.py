@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..._ask.check import FloatArray
-from .search import LEAST, Search
+from .search import LEAST, Search, decomposed
 
 _FAINT = 25.0  # rise of chi2 from which on a rival does not count
 _APART = 9.0  # rise of chi2 from which on a rival far away does not make a parameter unknown
@@ -29,12 +29,11 @@ def standard_errors(
     minima.
     """
     unknowns, rivals = search.unknowns, list(rivals)
-    _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
-    told = singular > LEAST * singular[0]
-    inverse = np.divide(1.0, singular**2, out=np.zeros(len(told)), where=told)
+    _, singular, axes, known = decomposed(best)
+    inverse = np.divide(1.0, singular**2, out=np.zeros(singular.size), where=known)
     covariance = (axes.T * inverse) @ axes
     errors = np.sqrt(np.diag(covariance))
-    errors[(np.abs(axes[~told]) > 1e-3).any(axis=0)] = math.inf
+    errors[(np.abs(axes[~known]) > 1e-3).any(axis=0)] = math.inf
     for k, error in enumerate(errors.tolist()):
         if _UNEVEN * (unknowns.high[k] - unknowns.low[k]) < error < math.inf:
             errors[k] = _steps_down(search, best, k)
@@ -79,8 +78,8 @@ def near_guess(search: Search, best: Any, errors: FloatArray) -> Any:
         return best
     held, own = tuple(np.flatnonzero(lost).tolist()), search.unknowns.own
     away = best.x - own
-    _, singular, axes = np.linalg.svd(best.jac, full_matrices=False)
-    null = axes[singular <= LEAST * singular[0]]
+    _, _, axes, known = decomposed(best)
+    null = axes[~known]
     for share, way in itertools.product(_AWAY, (np.where(lost, away, 0.0), null.T @ (null @ away))):
         one = search.solve(best.x - (1 - share) * way, exact=True, held=held)
         if one.cost < best.cost + _SAME:

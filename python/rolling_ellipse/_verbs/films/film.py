@@ -69,11 +69,11 @@ def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
         given |= {name: positive("sigma", value) for name, value in sigma.items()}
     elif sigma is not None:
         given = dict.fromkeys(TRACKS, positive("sigma", sigma))
-    found, sizes = np.array(list(given.values())), sizes_of(scene)
-    if np.any(found < _FINEST * sizes) or np.any(found > _COARSEST * sizes):
+    sigmas, sizes = np.array(list(given.values())), sizes_of(scene)
+    if np.any(sigmas < _FINEST * sizes) or np.any(sigmas > _COARSEST * sizes):
         within = f"{_FINEST:g} to {_COARSEST:g} times max(a, b) or 1 rad"
         raise ValueError(f"sigma must be {within}, got {sigma!r}")
-    return found
+    return sigmas
 
 
 class Unknowns:
@@ -104,8 +104,7 @@ class Unknowns:
     def with_values(self, values: Mapping[str, float]) -> FloatArray:
         """Return the unknowns of the scene with other values of those named."""
         pairs = zip(self.names, self.own * self.sizes, strict=True)
-        found: FloatArray = np.array([values.get(name, own) for name, own in pairs]) / self.sizes
-        return found
+        return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
 
     def turned(self, u: FloatArray) -> FloatArray:
         """Return changes of the unknowns, that of theta without half turns."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._ask.check import FloatArray
 from .film import TRACKS, sizes_of
-from .search import LEAST, Search
+from .search import LEAST, Search, decomposed
 
 NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
 TRACKER = 0.02  # deviation over the size of the body, or in rad, of a poor tracker
@@ -51,17 +51,23 @@ def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
     are outliers, the median residual counts.
     """
     residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
-    directions, singular, _ = np.linalg.svd(best.jac, full_matrices=False)
-    taken = (directions[:, singular > LEAST * singular[0]] ** 2).sum(axis=1)
+    directions, _, _, known = decomposed(best)
+    taken = (directions[:, known] ** 2).sum(axis=1)
     sigma, spread = search.sigma.copy(), _spread(search.loss, residuals, taken)
     for k in np.flatnonzero(np.isnan(given)):
-        of_track = search.track == k
-        if of_track.sum() - taken[of_track].sum() >= 1:
-            own = _spread(search.loss, residuals[of_track], taken[of_track])
-            sigma[k] *= own
-        else:
-            sigma[k] *= spread
+        own = search.track == k
+        enough = own.sum() - taken[own].sum() >= 1
+        sigma[k] *= _spread(search.loss, residuals[own], taken[own]) if enough else spread
     return np.where(np.isnan(given), np.maximum(sigma, LEAST * sizes), given)
+
+
+def settled(search: Search, best: Any, given: FloatArray, rounds: int) -> Any:
+    """Return the best solution after rounds in which sigma and the unknowns are fitted in turns."""
+    for _ in range(rounds):
+        search.sigma = estimated(search, best, given)
+        best = search.best([search.solve(best.x)])
+    search.sigma = estimated(search, best, given)
+    return best
 
 
 def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
@@ -140,17 +146,17 @@ def counted(search: Search, residuals: FloatArray, given: FloatArray) -> str:
     """Return the number of data, with chi2 of given deviations or the estimated ones."""
     film, chi2 = search.film, float(np.sum(residuals**2))
     dof = residuals.size - len(search.unknowns.names)
-    said = f"{residuals.size} data"
+    words = [f"{residuals.size} data"]
     names = [n for k, n in enumerate(TRACKS) if np.isnan(given[k]) and film.known[:, k].any()]
     if names:
         each = ", ".join(f"{n} {_printed(n, search.sigma[TRACKS.index(n)])}" for n in names)
-        said += f", sigma estimated: {each}"
+        words.append(f"sigma estimated: {each}")
     else:
-        said += f", chi2 / {dof} = {chi2 / dof:.3g}"
+        words.append(f"chi2 / {dof} = {chi2 / dof:.3g}")
     tame = np.abs(residuals) <= _WILD
     wild = int(np.sum(~tame))
     if wild and search.loss != "linear":
-        said += f", {wild} of them beyond {_WILD:g} sigma"
+        words.append(f"{wild} of them beyond {_WILD:g} sigma")
         rest = float(np.sum(residuals[tame] ** 2)) / max(dof - wild, 1)
-        said += "" if names else f", without which it is {rest:.3g}"
-    return said
+        words += [] if names else [f"without which it is {rest:.3g}"]
+    return ", ".join(words)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..._ask.check import FloatArray
 from ..._ask.printing import required
 from .film import Film, Unknowns
-from .starts import Start, cell, starts
+from .starts import Box, cell, starts
 
 LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
 _SHARES = 0.3, 0.6, 1.0  # of the film that are fitted in turn
@@ -17,13 +19,8 @@ _TRIED = 30  # starts that are fitted
 _HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
 _WORSE = 1.1, 50.0  # ratio and rise of the cost up to which the search goes on in a cell
 _IMPOSSIBLE = 1e3  # residual of a scene that cannot be, over the largest one of a body at rest
-_EXACT: dict[str, Any] = {
-    "xtol": 1e-10,
-    "ftol": 1e-10,
-    "gtol": 1e-10,
-    "max_nfev": 100,
-    "jac": "3-point",
-}
+_EXACT: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-10)
+_EXACT |= {"max_nfev": 100, "jac": "3-point"}
 _ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
 
 
@@ -41,8 +38,8 @@ class Search:
         motion = self.unknowns.motion(u, self.film.t)
         if motion is None:
             return np.full(self.track.size, self.impossible)
-        found: FloatArray = (self.film.off(motion) / self.sigma)[self.film.known]
-        return found
+        off: FloatArray = (self.film.off(motion) / self.sigma)[self.film.known]
+        return off
 
     def solve(
         self,
@@ -51,7 +48,7 @@ class Search:
         exact: bool = False,
         share: float = 1.0,
         held: tuple[int, ...] = (),
-        within: tuple[FloatArray, FloatArray] | None = None,
+        within: Box | None = None,
     ) -> Any:
         """Return SciPy's solution for a share of the film, with some unknowns held or in a box."""
         low, high = within or (self.unknowns.low, self.unknowns.high)
@@ -70,21 +67,20 @@ class Search:
 
     def minima(self, tried: int = _TRIED) -> list[Any]:
         """Return the best solution of each cell of friction, the best one first."""
-        nearest: list[tuple[float, int, Start]] = []
-        for several in starts(self.film, self.unknowns):
-            distances = [self._distance(self.residuals(start.u)) for start in several]
+        nearest: list[tuple[float, FloatArray, Box]] = []
+        for several, box in starts(self.film, self.unknowns):
+            distances = [self._distance(self.residuals(u)) for u in several]
             k = int(np.argmin(distances))
-            nearest.append((distances[k], len(nearest), several[k]))
-        nearest.sort(key=lambda one: one[:2])
+            nearest.append((distances[k], several[k], box))
+        nearest.sort(key=itemgetter(0))
         if nearest[0][0] >= self._distance(np.full(self.track.size, self.impossible)):
             raise ValueError("scene must move until the last time t, got one that does not")
         best: dict[tuple[float, ...], Any] = {}
-        for _, _, start in nearest[:tried]:
-            u = start.u
+        for _, u, box in nearest[:tried]:
             for share in _SHARES:
-                one = self.solve(u, share=share, within=(start.low, start.high))
+                one = self.solve(u, share=share, within=box)
                 u = one.x
-            key = (*start.low, *start.high)
+            key = (*box[0], *box[1])
             best[key] = min(best.get(key, one), one, key=cost)
         return sorted(best.values(), key=cost)
 
@@ -104,11 +100,10 @@ class Search:
         motion = self.unknowns.motion(start.x, self.film.t)
         if motion is None or not motion.events:
             return start
-        _, singular, axes = np.linalg.svd(start.jac, full_matrices=False)
-        told = singular > LEAST * singular[0]
-        errors = np.divide(1.0, singular, out=np.zeros(len(told)), where=told)
+        _, singular, axes, known = decomposed(start)
+        errors = np.divide(1.0, singular, out=np.zeros(singular.size), where=known)
         best, within = start, cell(self.unknowns, start.x)
-        for normal in random.normal(size=(_HOPS, len(told))):
+        for normal in random.normal(size=(_HOPS, singular.size)):
             u = best.x + _REACH * axes.T @ (np.minimum(errors, 1.0) * normal)
             best = min(best, self.solve(u, within=within), key=cost)
         return best
@@ -116,6 +111,16 @@ class Search:
     def _distance(self, residuals: FloatArray) -> float:
         """Return the sum of orders of magnitude, to which a wild frame adds little."""
         return float(np.log1p(residuals**2).sum())
+
+
+def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Return the singular values of the residuals' Jacobian, and which of them the data tell.
+
+    They stand between their vectors in the space of the data, as columns, and of the unknowns, as
+    rows.
+    """
+    data, singular, axes = np.linalg.svd(one.jac, full_matrices=False)
+    return data, singular, axes, singular > LEAST * singular[0]
 
 
 def cost(one: Any) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ..._core import Mode
 from .film import TRACKS as PLACES
 from .film import Film, Unknowns
 
+Box = tuple[FloatArray, FloatArray]  # least and largest unknowns
 _GRID = {
     "friction": tuple(0.03 * 1.4**k for k in range(11)),
     "restitution": (0.2, 0.5, 0.8),
@@ -26,36 +26,26 @@ _WEIGHINGS = 20  # rounds of reweighting, in each of which wild frames lose weig
 _SPINS = 4000  # most angular velocities of a periodogram
 
 
-@dataclass(frozen=True)
-class Start:
-    """Unknowns from which a fit starts, and the box in which it stays."""
+def starts(film: Film, unknowns: Unknowns) -> Iterator[tuple[FloatArray, Box]]:
+    """Yield starts with equal coefficients, (n, k), and the box in which a fit from them stays.
 
-    u: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-
-def starts(film: Film, unknowns: Unknowns) -> Iterator[list[Start]]:
-    """Yield starts with equal coefficients: the scene's own, and pre-fits of more and more frames.
-
-    Friction stays in a cell of its grid: where it is large enough for the body to stick, no film
-    tells how large it is, and a step that overshoots would not come back.
+    They are the scene's own, and pre-fits of more and more frames. Friction stays in a cell of its
+    grid: where it is large enough for the body to stick, no film tells how large it is, and a step
+    that overshoots would not come back.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):
         counts.append(math.ceil(_MORE * counts[-1]))
     flights = [unknowns.own, *(unknowns.with_values(flight(film, unknowns, n)) for n in counts)]
-    flights = [np.clip(u, unknowns.low, unknowns.high) for u in flights]
-    grid = {k: [None, *values] for k, values in _grid(film, unknowns).items()}
-    for choice in itertools.product(*grid.values()):
-        chosen = {k: value for k, value in zip(grid, choice, strict=True) if value is not None}
-        several = [u.copy() for u in flights]
-        for u in several:
-            u[list(chosen)] = list(chosen.values())
-        yield [Start(u, *cell(unknowns, u)) for u in several]
+    own = np.clip(flights, unknowns.low, unknowns.high)
+    grid = {k: [own[0, k], *values] for k, values in _grid(film, unknowns).items()}
+    for coefficients in itertools.product(*grid.values()):
+        several = own.copy()
+        several[:, list(grid)] = coefficients
+        yield several, cell(unknowns, several[0])
 
 
-def cell(unknowns: Unknowns, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+def cell(unknowns: Unknowns, u: FloatArray) -> Box:
     """Return the bounds of the unknowns, with friction in a cell around its value."""
     low, high = unknowns.low.copy(), unknowns.high.copy()
     if "friction" in unknowns.names:
@@ -92,21 +82,19 @@ def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
         values = film.data[:count, k][rows]
         if scene.initial_state.mode is Mode.FLIGHT:
             values, powers = values - pulls[k] / 2 * powers[2], powers[:2]
-        start |= _line(values, powers, dict(zip(pair, _known(unknowns, pair), strict=True)))
+        start |= _line(values, powers, _known(unknowns, *pair))
     rows = film.known[:count, 2]
     if rows.sum() > 2:
         start |= _spin(t[rows], film.data[:count, 2][rows], unknowns)
     return start if scene.impulse is None else {n: start[n] for n in PLACES if n in start}
 
 
-def _known(unknowns: Unknowns, names: tuple[str, ...]) -> list[float | None]:
+def _known(unknowns: Unknowns, *names: str) -> dict[str, float | None]:
     """Return values of the scene, None for those to be determined."""
     scene = unknowns.scene
-    known: list[float | None] = []
-    for name in names:
-        free = name in unknowns.names or not (name in PLACES or scene.impulse is None)
-        known.append(None if free else getattr(scene.initial_state, name))
-    return known
+    kept = names if scene.impulse is None else PLACES
+    known = {*kept} - {*unknowns.names}
+    return {n: getattr(scene.initial_state, n) if n in known else None for n in names}
 
 
 def _line(
@@ -117,8 +105,8 @@ def _line(
     The sum of absolute residuals is least, so that a wild frame decides nothing.
     """
     free = [name for name, value in known.items() if value is None]
-    asked = [k for k, value in enumerate(known.values()) if value is None]
-    matrix = powers[[*asked, *range(len(known), len(powers))]].T
+    of_free = [k for k, value in enumerate(known.values()) if value is None]
+    matrix = powers[[*of_free, *range(len(known), len(powers))]].T
     if not free or len(values) < matrix.shape[1]:
         return {}
     for power, value in zip(powers, known.values(), strict=False):
@@ -137,7 +125,7 @@ def _spin(t: FloatArray, theta: FloatArray, unknowns: Unknowns) -> dict[str, flo
 
     A frame that is off by a quarter turn takes 2 from the height n of the peak, no more.
     """
-    known = dict(zip(("theta", "omega"), _known(unknowns, ("theta", "omega")), strict=True))
+    known = _known(unknowns, "theta", "omega")
     angle, omega = known.values()
     spins = np.array([omega or 0.0])
     if omega is None:
