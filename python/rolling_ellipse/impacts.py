@@ -105,12 +105,11 @@ def collide(
     S. D. Poisson, Traité de mécanique, 1833.
     """
     meaning = _core.Restitution[choice("law", law, LAWS).upper()]
-    found = evaluate(
-        _core.collide_arrays, meaning, theta=theta, x_dot=x_dot,
-        z_dot=z_dot, omega=omega, a=a, b=b, gyration2=gyration2, friction=friction,
-        restitution=restitution,
+    after: tuple[Any, Any, Any] = evaluate(
+        _core.collide_arrays, meaning, theta=theta, x_dot=x_dot, z_dot=z_dot, omega=omega, a=a, b=b,
+        gyration2=gyration2, friction=friction, restitution=restitution,
     )  # fmt: skip
-    return found  # type: ignore[no-any-return]
+    return after
 
 
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
@@ -286,8 +285,8 @@ def fit(
     def measures(points: FloatArray) -> FloatArray:
         """Return the measure of all impacts, then that of each half, at some points."""
         restitution, friction = points[0, :, None], _friction(points[1])[:, None]
-        found = collide(*start, **law_of, restitution=restitution, friction=friction)
-        off = errors(found, end[:, None])
+        velocities = collide(*start, **law_of, restitution=restitution, friction=friction)
+        off = errors(velocities, end[:, None])
         return np.stack([measure(off[:, chosen]) for chosen in (order, *halves)])
 
     points, table = _search(measures, max(1, _BLOCK // order.size))
@@ -325,8 +324,8 @@ def _search(
     tried, table = fresh[:0], np.empty((0, 0))
     while True:
         blocks = [fresh[k : k + block] for k in range(0, fresh.size, block)]
-        found = [measures(_points(each)) for each in blocks]
-        table = np.concatenate([table, *found] if table.size else found, axis=1)
+        rows = [measures(_points(each)) for each in blocks]
+        table = np.concatenate([table, *rows] if table.size else rows, axis=1)
         tried = np.concatenate([tried, fresh])
         if step == 1:
             return _points(tried), table
@@ -349,10 +348,10 @@ def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, floa
     own = points[:, np.argmin(table[1:], axis=1)]
     alike = points[:, whole <= whole.min() * (1 + 1e-9)]
     step = np.array([1.0, math.pi / 2]) / _STEPS
-    found = np.maximum(own.std(axis=1, ddof=1), (np.ptp(alike, axis=1) + step) / 12**0.5)
-    if alike[1].max() == math.pi / 2:
-        return float(found[0]), math.inf
-    return float(found[0]), float(found[1] * (1 + math.tan(best[1]) ** 2))
+    deviations = np.maximum(own.std(axis=1, ddof=1), (np.ptp(alike, axis=1) + step) / 12**0.5)
+    stretch = 1 + math.tan(best[1]) ** 2  # of friction over its angle
+    endless = alike[1].max() == math.pi / 2
+    return float(deviations[0]), math.inf if endless else float(deviations[1] * stretch)
 
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:

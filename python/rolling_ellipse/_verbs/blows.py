@@ -16,7 +16,7 @@ from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
 from .._core import Mode, Outcome
 from ..geometry import support
-from .batches.asked import SceneGrid
+from .batches.asked import BLOW, SceneGrid
 from .certify import certify
 from .workers import Columns, shared
 
@@ -75,15 +75,12 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
         raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
     if impulse.shape == ():
         return _core.outcome(scene.replace(impulse=impulse).core)
-    names = ("jx", "jz", "dx", "dz")
-    shape, columns = broadcast(**{name: getattr(impulse, name) for name in names})
+    shape, columns = broadcast(**{name: getattr(impulse, name) for name in BLOW})
     if scene.slope == 0:
         return _core.outcome_array(scene.core, math.prod(shape), columns).reshape(shape)
-    rows = np.broadcast_arrays(*columns)
-    codes = [
-        _core.outcome(scene.replace(impulse=Impulse(jx=jx, jz=jz, dx=dx, dz=dz)).core)
-        for jx, jz, dx, dz in zip(*rows, strict=True)
-    ]
+    rows = zip(*np.broadcast_arrays(*columns), strict=True)
+    blows = (Impulse(**dict(zip(BLOW, row, strict=True))) for row in rows)
+    codes = [_core.outcome(scene.replace(impulse=blow).core) for blow in blows]
     return np.array(codes, dtype=np.int8).reshape(shape)
 
 

@@ -86,8 +86,7 @@ class Thresholds(FieldsOnly, Listed):
 
     @cached_property
     def _lift_off(self) -> tuple[float, tuple[tuple[float, float], ...]]:
-        known = *self.__dict__["_body"], self.slip_speed, self.painleve_friction
-        return _core.lift_off(*known)
+        return _core.lift_off(*vars(self)["_body"], self.slip_speed, self.painleve_friction)
 
     def __repr__(self) -> str:
         speeds = ", ".join(
@@ -99,8 +98,8 @@ class Thresholds(FieldsOnly, Listed):
 
 find_late(
     Thresholds,
-    lift_off_speed=lambda found: found._lift_off[0],
-    jam_speeds=lambda found: found._lift_off[1],
+    lift_off_speed=lambda of: of._lift_off[0],
+    jam_speeds=lambda of: of._lift_off[1],
 )
 
 
@@ -168,11 +167,11 @@ def classify(
         If a number is out of its range (of an array it is named with its place in the common
         shape, ``a[3]``) or shapes do not broadcast.
     """
-    found = evaluate(
+    codes = evaluate(
         shared(workers, _core.classify_array), a=a, b=b, omega=omega, theta=theta,
         friction=friction, gravity=gravity, gyration2=gyration2,
     )  # fmt: skip
-    return Outcome(int(found)) if isinstance(found, float) else found
+    return Outcome(int(codes)) if isinstance(codes, float) else codes
 
 
 @understood

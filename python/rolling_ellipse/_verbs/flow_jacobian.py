@@ -13,8 +13,6 @@ from .._motion.differences import RULES, STEPS, WORST, Best, differenced, size
 from .._motion.inputs import distinct
 from .flow import flow
 
-_FREE = ("t", "a", "b", "theta", "omega", "gravity", "slope", "gyration2")
-
 
 def flow_jacobian(
     t: ArrayLike,
@@ -54,10 +52,9 @@ def flow_jacobian(
         As of `flow`; or if a name is unknown or repeated, or no steps agree to a thousandth, as
         where a body has almost stopped on its tip.
     """
-    names = distinct("wrt", wrt, _FREE if gyration2 is not None else _FREE[:-1])
     given = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
-    given |= {"slope": slope}
-    given |= {} if gyration2 is None else {"gyration2": gyration2}
+    given |= {"slope": slope} if gyration2 is None else {"slope": slope, "gyration2": gyration2}
+    names = distinct("wrt", wrt, tuple(given))
     known = {name: array(name, value) for name, value in given.items()}
     shape = common_shape(known, slice(None))
     flow(**given)  # refuses by name what is out of range
@@ -74,8 +71,8 @@ def flow_jacobian(
         for share in STEPS[::2]:
             step = np.broadcast_to(share / least, shape)
             places = known[name] + np.multiply.outer(RULES[0][0], step)
-            found = [flow(**known | {name: at}, workers=workers) for at in places]
-            values = np.array(found) / units
+            states = [flow(**known | {name: at}, workers=workers) for at in places]
+            values = np.array(states) / units
             best.take(*differenced(values, places - known[name]), share)
         error = best.error / np.maximum(size(best.value), least)
         if not (error < WORST).all():

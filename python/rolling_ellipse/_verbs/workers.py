@@ -95,7 +95,7 @@ def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns
     def compute(n: int, columns: Columns) -> Any:
         begins = range(0, max(1, n - _ELEMENTS + 1), _ELEMENTS)  # the last task is the longest
         tasks = (
-            (begin, (function, end - begin, [v if v.size == 1 else v[begin:end] for v in columns]))
+            (begin, (function, end - begin, _rows(columns, begin, end)))
             for begin, end in pairwise([*begins, n])
         )
         pieces = []
@@ -169,6 +169,10 @@ def _cancel(futures: Iterable[Any]) -> None:
     for future in futures:
         if _can(future, "cancel"):
             future.cancel()
+
+
+def _rows(columns: Columns, begin: int, end: int) -> Columns:
+    return [values if values.size == 1 else values[begin:end] for values in columns]
 
 
 def _evaluate(task: bytes) -> Any:

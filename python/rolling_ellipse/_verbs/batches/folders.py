@@ -267,14 +267,13 @@ def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
 
 
 def _about(request: results.Request) -> dict[str, Any]:
-    about = {
+    gains = list(request.settings.baumgarte)  # JSON has no tuples
+    return {
         "schema": _SCHEMA,
         "version": version("rolling-ellipse"),
-        "settings": asdict(request.settings),
+        "settings": asdict(request.settings) | {"baumgarte": gains},
         "raise_on_failure": request.raise_on_failure,
     }
-    found: dict[str, Any] = json.loads(json.dumps(about))  # JSON makes the pair of gains a list
-    return found
 
 
 def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
@@ -292,11 +291,11 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
 
 
 def _of_end(content: bytes) -> dict[str, Any]:
-    found: dict[str, Any] = strict.parsed("end", content.decode())
-    strict.require_names("end", found, ("scenes", "digest", *(set(_GRID) & set(found))))
-    if type(count := found["scenes"]) is not int or count < 0:
+    end: dict[str, Any] = strict.parsed("end", content.decode())
+    strict.require_names("end", end, ("scenes", "digest", *(set(_GRID) & set(end))))
+    if type(count := end["scenes"]) is not int or count < 0:
         raise ValueError(f"scenes must be a count, got {shown(count)}")
-    return found
+    return end
 
 
 def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
@@ -318,10 +317,10 @@ def _replacing(path: Path) -> AbstractContextManager[Path]:
 
 
 def _chunks(folder: Path) -> _Names:
-    found: _Names = {}
+    names: _Names = {}
     for name in sorted(filter(_CHUNK.fullmatch, os.listdir(folder))):
-        found.setdefault(int(name[:8]), []).append(name)
-    return found
+        names.setdefault(int(name[:8]), []).append(name)
+    return names
 
 
 def _name(index: int, request: str, scenes: FloatArray) -> str:
@@ -330,8 +329,8 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
     """Return the hash of all that the bits of a motion depend on, except for its scene."""
-    said = {name: about[name] for name in ("schema", "version", "settings")}
-    return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
+    decisive = {name: about[name] for name in ("schema", "version", "settings")}
+    return _digest(json.dumps(decisive, sort_keys=True).encode() + times.tobytes())
 
 
 def _digest(content: bytes) -> str:
