@@ -86,7 +86,8 @@ class Thresholds(FieldsOnly, Listed):
 
     @cached_property
     def _lift_off(self) -> tuple[float, tuple[tuple[float, float], ...]]:
-        return _core.lift_off(*vars(self)["_body"], self.slip_speed, self.painleve_friction)
+        known = *vars(self)["_body"], self.slip_speed, self.painleve_friction
+        return _core.lift_off(*known)
 
     def __repr__(self) -> str:
         speeds = ", ".join(

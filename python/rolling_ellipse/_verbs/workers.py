@@ -132,17 +132,16 @@ def _mapped(
 ) -> Iterator[tuple[_Key, Any]]:
     """Yield key and result of each task by a pool's `map`; if one fails, its whole `map` does."""
     while True:
-        keys, tasks = [], []
-        while taken := _next(sent, len(keys), size):
-            keys.append(taken[0])
-            tasks.append(taken[1])
-        if not keys:
+        part: list[tuple[_Key, bytes]] = []
+        while taken := _next(sent, len(part), size):
+            part.append(taken)
+        if not part:
             return
         try:
-            results: list[Any] = list(pool.map(_evaluate, tasks))
+            results: list[Any] = list(pool.map(_evaluate, [task for _, task in part]))
         except Exception as error:
-            results = [Lost(error)] * len(keys)
-        yield from zip(keys, results, strict=True)
+            results = [Lost(error)] * len(part)
+        yield from zip((key for key, _ in part), results, strict=True)
 
 
 def _submitted(executor: Any, task: bytes) -> Any:

@@ -95,7 +95,8 @@ def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
 
 
 def _of_model(name: str, code: Mapping[str, npt.NDArray[Any]]) -> npt.NDArray[np.bool_]:
-    return code["model"] == MODELS.index(name)
+    is_model: npt.NDArray[np.bool_] = code["model"] == MODELS.index(name)
+    return is_model
 
 
 def answers(

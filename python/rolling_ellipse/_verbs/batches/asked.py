@@ -40,12 +40,16 @@ _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene
 
 @dataclass(frozen=True)
 class Chunk:
-    """Scenes that are computed together; `begin` is the index of the first among all."""
+    """Scenes that are computed together, from the index `begin` among all up to `end`."""
 
     index: int
     begin: int
     table: FloatArray
     given: list[Scene] | None = None
+
+    @property
+    def end(self) -> int:
+        return self.begin + len(self.table)
 
     @property
     def scenes(self) -> list[Scene]:
@@ -145,7 +149,7 @@ class SceneGrid:
         end = self.total if size is None else min(begin + size, self.total)
         table = np.empty((end - begin, WIDTH))
         for column, name in enumerate((*NAMES, *BLOW)):
-            values = self._arrays.get(name, _DEFAULTS.get(name))
+            values: Any = self._arrays.get(name, _DEFAULTS.get(name))
             if np.size(values) == 1:
                 table[:, column] = values  # NaN for None
             else:

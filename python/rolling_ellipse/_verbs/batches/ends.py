@@ -107,8 +107,7 @@ class _Request:
     size: int = 8 * (len(STATE_UNITS) + 2)
 
     def task(self, chunk: Chunk) -> Task:
-        own = slice(chunk.begin, chunk.begin + len(chunk.table))
-        times = self.times if self.times.size == 1 else self.times[own]
+        times = self.times if self.times.size == 1 else self.times[chunk.begin : chunk.end]
         return solve, _core.ends_table, chunk.table, self.settings, times
 
 
@@ -174,8 +173,9 @@ def ends(
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (codes.shape[1],) if shape is None else shape
     mode, events, first, _ = (row.reshape(whole) for row in codes)
+    state = dict(zip(STATE_UNITS, (row.reshape(whole) for row in states), strict=True))
     return Ends(
-        *(row.reshape(whole) for row in states), mode=mode.astype(np.int8), events=events,
+        **state, mode=mode.astype(np.int8), events=events,
         first=first.astype(np.int8), **endings_of(codes[-1], failed, whole),
         axes=wanted.axes, t=copied(np.broadcast_to(times, whole)),
         _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),

@@ -13,7 +13,7 @@ import math
 import os
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from functools import partial
@@ -56,6 +56,7 @@ class Folder:
 
     def __init__(self, path: Any, request: results.Request) -> None:
         self.path = Path(file_name("out", path))
+        self.done = self._chunks = 0  # scenes in files, and chunks looked at
         about = _about(request)
         self._request, self._samples = _digest_of(about, request.times), request.times.size
         is_new = not (self.path / _REQUEST).exists()
@@ -77,14 +78,21 @@ class Folder:
             end = _end_of(self.path, self._request, self._names, self._samples)
             self._scenes = end["scenes"]
 
-    def has(self, chunk: Chunk) -> bool:
-        """Whether the file of a chunk is there and whole; a file of other scenes is refused."""
+    def missing(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
+        """Yield chunks without a whole file; a file of other scenes is refused."""
+        for chunk in chunks:
+            self._chunks += 1
+            if self._has(chunk):
+                self.done += len(chunk.table)
+            else:
+                yield chunk
+
+    def _has(self, chunk: Chunk) -> bool:
         name = _name(chunk.index, self._request, chunk.table)
         there = self._names.get(chunk.index, [])
         if others := [each for each in there if each != name]:
-            last = chunk.begin + len(chunk.table) - 1
-            why = f", whose scenes {chunk.begin} to {last} are others: {others[0]!r}"
-            self._refuse(_SAME_SCENES, why)
+            which = f"scenes {chunk.begin} to {chunk.end - 1}"
+            self._refuse(_SAME_SCENES, f", whose {which} are others: {others[0]!r}")
         if chunk.begin >= self._scenes:
             self._refuse(_SAME_SCENES, f", which has {self._scenes}")
         if there:
@@ -98,15 +106,16 @@ class Folder:
         with _replacing(self.path / name) as new, open(new, "wb") as file:
             np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
         self._names[chunk.index] = [name]
+        self.done += len(chunk.table)
 
-    def end(self, chunks: int, axes: tuple[str, ...], shape: tuple[int, ...]) -> None:
+    def end(self, axes: tuple[str, ...], shape: tuple[int, ...] | None) -> None:
         """Write `end.json`, which makes the folder complete."""
-        scenes, grid = math.prod(shape), {"axes": axes, "shape": shape}
-        if max(self._names, default=-1) >= chunks:
-            self._refuse(_SAME_SCENES, f", which has more than {scenes}")
-        digest = _digest_of_all(self._request, scenes, self._names, grid)
+        grid = {"axes": axes, "shape": (self.done,) if shape is None else shape}
+        if max(self._names, default=-1) >= self._chunks:
+            self._refuse(_SAME_SCENES, f", which has more than {self.done}")
+        digest = _digest_of_all(self._request, self.done, self._names, grid)
         with _replacing(self.path / _END) as new:
-            new.write_text(json.dumps({"scenes": scenes, "digest": digest, **grid}))
+            new.write_text(json.dumps({"scenes": self.done, "digest": digest, **grid}))
 
     def _require_new(self) -> None:
         """Raise ValueError for a name that is not of simulate_many, in a folder without request."""

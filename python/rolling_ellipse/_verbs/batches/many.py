@@ -140,7 +140,7 @@ def parts(
     """Yield the chunks with their tables, or with the loss of their worker."""
     for chunk, part in _solved(request, wanted.chunks(request.samples), workers):
         yield chunk, _worker_error(chunk, part) if isinstance(part, Lost) else part
-        report(chunk.begin + len(chunk.table), wanted.total)
+        report(chunk.end, wanted.total)
 
 
 def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
@@ -172,35 +172,24 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
 def _to_folder(
     folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Report
 ) -> str:
-    done, count, lost = 0, 0, []
-
-    def missing() -> Iterator[Chunk]:
-        nonlocal done, count
-        for chunk in wanted.chunks(request.samples):
-            count += 1
-            if folder.has(chunk):
-                done += len(chunk.table)
-            else:
-                yield chunk
-
-    for chunk, tables in _solved(request, missing(), workers):
-        if isinstance(tables, Lost):
-            lost.append(_worker_error(chunk, tables))
-            if tables.refused:
-                break
+    lost = []
+    missing = folder.missing(wanted.chunks(request.samples))
+    for chunk, part in _solved(request, missing, workers):
+        if not isinstance(part, Lost):
+            folder.store(chunk, part)
+            report(folder.done, wanted.total)
             continue
-        folder.store(chunk, tables)
-        done += len(chunk.table)
-        report(done, wanted.total)
+        lost.append(_worker_error(chunk, part))
+        if part.refused:
+            break
     if lost:
         raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
-    folder.end(count, wanted.axes, (done,) if wanted.shape is None else wanted.shape)
+    folder.end(wanted.axes, wanted.shape)
     return str(folder.path)
 
 
 def _worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
-    last = chunk.begin + len(chunk.table) - 1
-    why = f"{type(lost.error).__name__}: {lost.error}"
-    error = WorkerError(f"scenes {chunk.begin} to {last} got lost with their worker, {why}")
+    which, why = f"{chunk.begin} to {chunk.end - 1}", f"{type(lost.error).__name__}: {lost.error}"
+    error = WorkerError(f"scenes {which} got lost with their worker, {why}")
     error.__cause__ = lost.error
     return error

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -117,7 +118,7 @@ def fitting(tries: list[Convention], unknowns: Unknowns, given: FloatArray, loss
     Tries are ranked by the likelihood of their residuals, with deviations of their own.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
-    for place, convention in enumerate(tries):
+    for convention in tries:
         search = Search(convention.film, unknowns, TRACKER * sizes, loss)
         with suppress(ValueError):  # nothing moves until the last time
             best = search.minima(_QUICK)[0]
@@ -125,11 +126,11 @@ def fitting(tries: list[Convention], unknowns: Unknowns, given: FloatArray, loss
                 search.sigma = estimated(search, best, unknown)
                 best = search.solve(best.x)
             size = float(np.log(search.sigma / sizes)[search.track].sum())
-            ranked.append((size, place, search))
-    for _, place, search in sorted(ranked, key=lambda one: one[:2])[:_RUN]:
+            ranked.append((size, convention, search))
+    for _, convention, search in sorted(ranked, key=itemgetter(0))[:_RUN]:
         best = settled(search, search.best(search.minima()), given, 2)
         if not judged(search, best, given).doubtful:
-            return tries[place].words.format(**_origins(search, best))
+            return convention.words.format(**_origins(search, best))
     return ""
 
 

@@ -104,7 +104,8 @@ class Unknowns:
     def with_values(self, values: Mapping[str, float]) -> FloatArray:
         """Return the unknowns of the scene with other values of those named."""
         pairs = zip(self.names, self.own * self.sizes, strict=True)
-        return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
+        u: FloatArray = np.array([values.get(name, own) for name, own in pairs]) / self.sizes
+        return u
 
     def turned(self, u: FloatArray) -> FloatArray:
         """Return changes of the unknowns, that of theta without half turns."""

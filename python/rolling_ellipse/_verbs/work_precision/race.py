@@ -110,7 +110,7 @@ def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
     """Return the contenders that `methods` names, or by default those that suit the scene."""
     if methods is None:
         methods = _suitable(scene, rolls)
-    if isinstance(methods, str):
+    elif isinstance(methods, str):
         methods = (methods,)
     if not isinstance(methods, Sequence):
         raise TypeError(f"methods must be a sequence of names or mappings, got {shown(methods)}")
@@ -120,29 +120,27 @@ def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
 def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
-    if scene.slope or rolls:
-        first = ("contact", "flow") if scene.slope else ("flow",)
-        return (*first, "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
-    return ("contact", "exact")  # "exact" shows that a model without slip has no answer
+    if not (scene.slope or rolls):
+        return ("contact", "exact")  # "exact" shows that a model without slip has no answer
+    first = ("contact", "flow") if scene.slope else ("flow",)
+    return (*first, "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
 
 
 def _own(spec: Any) -> Contender:
     """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
+    if isinstance(spec, str) and (name := spec.casefold()) == "flow":
+        run = Run(name, "rolling", "exact", "", tags=("own", "exact"))
+        return Contender(run, None, _prepared_flow)
     if isinstance(spec, str):
-        name, arguments = spec.casefold(), _named(spec.casefold())
+        arguments = _named(name)
     elif isinstance(spec, Mapping) and all(isinstance(key, str) for key in spec):
         arguments = dict(spec)
         name = arguments.pop("name", "/".join(map(str, arguments.values())))
     else:
-        raise TypeError(
-            f"methods must be names, or mappings of arguments of simulate, got {shown(spec)} "
-            "among them"
-        )
+        wanted = "names, or mappings of arguments of simulate"
+        raise TypeError(f"methods must be {wanted}, got {shown(spec)} among them")
     if not isinstance(name, str):
         raise TypeError(f"name of a method must be a string, got {shown(name)}")
-    if arguments is None:
-        run = Run(name, "rolling", "exact", "", tags=("own", "exact"))
-        return Contender(run, None, _prepared_flow)
     for argument in arguments:
         choice("arguments of methods", argument, tuple(_ARGUMENTS))
     model = choice("model", arguments.get("model", "rolling"), MODELS)
@@ -156,14 +154,11 @@ def _own(spec: Any) -> Contender:
     return Contender(run, ladder, partial(_Simulation, {"model": model, **arguments}, ladder))
 
 
-def _named(name: str) -> dict[str, Any] | None:
-    """Return the arguments of `simulate` that a name stands for, None for "flow"."""
-    if name == "flow":
-        return None
+def _named(name: str) -> dict[str, Any]:
+    """Return the arguments of `simulate` that a name stands for."""
     parts = ["rolling", name] if name in METHODS[1:] else name.split("/")
-    if len(parts) <= 3 and all(
-        map(tuple.__contains__, (MODELS[1:], METHODS, STABILIZATIONS), parts)
-    ):
+    valid = zip(parts, (MODELS[1:], METHODS, STABILIZATIONS), strict=False)
+    if len(parts) <= 3 and all(part in names for part, names in valid):
         return dict(zip(("model", "method", "stabilization"), parts, strict=False))
     listed = ", ".join(repr(name) for name in ("flow", *METHODS[1:], *MODELS[1:]))
     raise ValueError(
@@ -274,10 +269,9 @@ def work_precision(
     judges = [Judge(scene, end, samples, reference) for end in ends]
     ladders = []
     for judge in judges:
-        settings = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
+        rungs = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
         for contender in contenders:
-            rungs = settings[contender.ladder] if contender.ladder else [math.nan]
-            coarse_first = sorted(set(rungs), reverse=True)
+            coarse_first = sorted(set(rungs.get(contender.ladder, [math.nan])), reverse=True)
             ladders.append([_Attempt(contender, judge, setting) for setting in coarse_first])
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:
@@ -302,10 +296,10 @@ def work_precision(
 
 
 def _numbers(name: str, values: Any, what: str = "a sequence of positive numbers") -> list[float]:
-    found = np.atleast_1d(array(name, values))
-    if found.ndim != 1 or found.size == 0:
+    numbers = np.atleast_1d(array(name, values))
+    if numbers.ndim != 1 or numbers.size == 0:
         raise ValueError(f"{name} must be {what}, got {shown(values)}")
-    return [positive(name, value) for value in found.tolist()]
+    return [positive(name, value) for value in numbers.tolist()]
 
 
 class _Attempt:
@@ -323,7 +317,7 @@ class _Attempt:
 
     def judge_once(self) -> None:
         """Set it up, run it and judge it; a failure is kept as its status."""
-        begin = time.perf_counter()
+        start = time.perf_counter()
         try:
             self._judge()
         except IntegrationError as stopped:
@@ -332,12 +326,12 @@ class _Attempt:
             self.note("REFUSED", str(refusal))
         except Exception as failure:  # a peer may raise anything
             self.note("FAILED", f"{type(failure).__name__}: {failure}")
-        self.spent = time.perf_counter() - begin - self.setup
+        self.spent = time.perf_counter() - start - self.setup
 
     def _judge(self) -> None:
-        begin = time.perf_counter()
+        start = time.perf_counter()
         call = self.contender.prepare(self.judge.scene, self.judge.t_end, self.run.setting)
-        self.setup = time.perf_counter() - begin
+        self.setup = time.perf_counter() - start
         self.once, end = self._twice(call)
         counts = dict(getattr(call, "counts", None) or {})
         figures = {name: int(counts.get(name, 0)) for name in ("steps", "rejected", "evaluations")}
@@ -345,23 +339,23 @@ class _Attempt:
         state = tuple(float(value) for value in end)
         if len(state) != 3 or not all(map(math.isfinite, state)):
             raise ArithmeticError(f"it returned theta, omega, x = {state}")
-        motion = None
+        sampled = None
         if hasattr(call, "sample"):
-            seconds, motion = self._twice(lambda: call.sample(self.judge.times))
+            seconds, sampled = self._twice(lambda: call.sample(self.judge.times))
             self.note(COMPLETED, "", samples_time=seconds)
-        errors = self.judge.errors(motion, state)
+        errors = self.judge.errors(sampled, state)
         self.note(COMPLETED, getattr(call, "advice", ""), errors=errors)
         self.call, self.repeats = call, 1 + int(_SHORTEST / self.once)  # calls in one timing
 
     def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
         """Return the time of a second call and its answer; a longer first call is set-up."""
-        begin = time.perf_counter()
+        start = time.perf_counter()
         call()
         middle = time.perf_counter()
-        found = call()
+        answer = call()
         second = time.perf_counter() - middle
-        self.setup += max(0.0, middle - begin - second)
-        return second, found
+        self.setup += max(0.0, middle - start - second)
+        return second, answer
 
     def expected(self, setting: float) -> float:
         """Return how long being judged at a finer setting may take, without set-up [s]."""
@@ -369,10 +363,10 @@ class _Attempt:
         return self.spent * math.pow(self.run.setting / setting, power)
 
     def time_once(self) -> None:
-        begin = time.perf_counter()
+        start = time.perf_counter()
         for _ in range(self.repeats):
             self.call()
-        self.times.append((time.perf_counter() - begin) / self.repeats)
+        self.times.append((time.perf_counter() - start) / self.repeats)
 
     def timed(self) -> Run:
         if not self.times:

@@ -16,7 +16,7 @@ from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, in_lines, parsed, restored
-from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, made, plain
+from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -333,7 +333,7 @@ class WorkPrecision:
         about = parsed("the file", content.decode("utf-8"))
         if (schema := about.get("schema")) != _SCHEMA:
             raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
-        race = made(cls, {name: about[name] for name in about.keys() - {"schema"}})
+        race = read(cls, {name: about[name] for name in about.keys() - {"schema"}})
         ends = {each.t_end for each in race.references}
         if not ends or ends != {run.t_end for run in race.runs}:
             raise ValueError("runs must be there, and end where the references do")

@@ -98,10 +98,10 @@ class Reference:
 
 def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
     """Return the runs of each contender, in their order."""
-    found: dict[str, list[Run]] = {}
+    contenders: dict[str, list[Run]] = {}
     for run in runs:
-        found.setdefault(run.name, []).append(run)
-    return found
+        contenders.setdefault(run.name, []).append(run)
+    return contenders
 
 
 def plain(value: Any) -> Any:
@@ -115,10 +115,10 @@ def plain(value: Any) -> Any:
     return value
 
 
-def made(kind: type[_Record], found: Any) -> _Record:
+def read(kind: type[_Record], values: Any) -> _Record:
     """Return a dataclass of this kind out of what `plain` makes of it."""
-    require_names(f"a {kind.__name__}", found, field_names(kind))
-    return kind(**{each.name: _value(str(each.type), found[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
+    require_names(f"a {kind.__name__}", values, field_names(kind))
+    return kind(**{each.name: _value(str(each.type), values[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
 
 
 ERRORS = ("largest", *field_names(Errors))
@@ -130,7 +130,7 @@ _RECORDS: dict[str, Any] = {kind.__name__: kind for kind in (Errors, Run, Refere
 def _value(kind: str, value: Any) -> Any:
     """Return the value of a field of this type."""
     if kind in _RECORDS:
-        return made(_RECORDS[kind], value)
+        return read(_RECORDS[kind], value)
     if kind == "Scene":
         return scene_of({name: _unbounded(each) for name, each in value.items()})
     if kind.startswith("dict"):

@@ -143,10 +143,10 @@ def _rolling(scene: Scene, times: FloatArray) -> Columns:
 
 
 def _contact(scene: Scene, times: FloatArray) -> Columns:
-    found = simulate(scene, times, model="contact", raise_on_failure=False)
-    if found.t.size < times.size:
-        raise ValueError(f"it ends at {found.t_end!r} s, as {found.message}")
-    return found.theta, found.omega, found.x
+    motion = simulate(scene, times, model="contact", raise_on_failure=False)
+    if motion.t.size < times.size:
+        raise ValueError(f"it ends at {motion.t_end!r} s, as {motion.message}")
+    return motion.theta, motion.omega, motion.x
 
 
 def rolls_for_certain(scene: Scene) -> bool:
