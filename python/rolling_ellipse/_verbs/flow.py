@@ -107,7 +107,7 @@ def flow(
 
 def _times(one: tuple[Any, ...], _: int, columns: Columns, threads: int) -> Any:
     """Return the states of one motion at many times."""
-    return _core.flow_times(columns[0], *one, workers=threads)
+    return _core.flow_times(*(columns[0], *one, threads))
 
 
 def arguments_of(scene: Scene) -> dict[str, Any]:

@@ -288,12 +288,9 @@ def names_in(returns: Any) -> tuple[str, ...]:
 
 
 def gathered(
-    names: tuple[str, ...],
-    request: Request,
-    parts: Iterable[tuple[FloatArray, Tables | Exception]],
-    axes: tuple[str, ...],
-    shape: tuple[int, ...] | None,
-) -> MotionArrays:
+    names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Tables | Exception]],
+    axes: tuple[str, ...], shape: tuple[int, ...] | None,
+) -> MotionArrays:  # fmt: skip
     """Return quantities of tables of scenes, each with its answers or the loss of its worker.
 
     A shape of None is that of a list.

@@ -58,7 +58,7 @@ class Folder:
         self.path = Path(file_name("out", path))
         self.done = self._chunks = 0  # scenes in files, and chunks looked at
         about = _about(request)
-        self._request, self._samples = _digest_of(about, request.times), request.times.size
+        self._request, self._samples = _digest_of(about, request.times), request.samples
         is_new = not (self.path / _REQUEST).exists()
         if is_new:
             self.path.mkdir(exist_ok=True)
@@ -70,8 +70,8 @@ class Folder:
             if name.split("-")[1] != self._request:
                 self._refuse(_SAME, f" with {name!r} of another one")
         if is_new:
-            with _replacing(self.path / _REQUEST) as new, open(new, "wb") as file:
-                np.savez(file, about=np.array(json.dumps(about)), t=request.times)
+            with _replacing(self.path / _REQUEST) as new:
+                np.savez(new, about=np.array(json.dumps(about)), t=request.times)
         remove_unfinished(self.path)
         self._scenes: float = math.inf
         with suppress(FileNotFoundError, ValueError):  # a damaged `end.json` is written again
@@ -103,8 +103,8 @@ class Folder:
 
     def store(self, chunk: Chunk, tables: results.Tables) -> None:
         name = _name(chunk.index, self._request, chunk.table)
-        with _replacing(self.path / name) as new, open(new, "wb") as file:
-            np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
+        with _replacing(self.path / name) as new:
+            np.savez(new, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
         self._names[chunk.index] = [name]
         self.done += len(chunk.table)
 
@@ -126,11 +126,11 @@ class Folder:
                 )
 
     def _require_same(self, about: dict[str, Any], times: FloatArray) -> None:
-        there, t = _request_in(self.path)
+        there, request = _request_in(self.path)
         for name, value in about.items():
             if there[name] != value:
                 self._refuse(_SAME, f" with the {name} {there[name]!r}, not {value!r}")
-        if t.tobytes() != times.tobytes():
+        if (t := request.times).tobytes() != times.tobytes():
             self._refuse(_SAME, f" with other times, {t.size} from {t[0]!s} to {t[-1]!s} s")
 
     def _refuse(self, required: str, why: str) -> NoReturn:
@@ -148,7 +148,7 @@ class StoredMotions(Sequence[results.Answer]):
     ) -> None:
         self._folder, self._request, self._names = folder, request, names
         self._axes, self._shape = tuple(end["axes"]), tuple(end["shape"])
-        chunks = islice(sizes(request.times.size), len(names))
+        chunks = islice(sizes(request.samples), len(names))
         self._begins: list[int] = [*(begin for begin, _ in chunks), end["scenes"]]
         self._last: tuple[int, list[results.Answer]] = -1, []
 
@@ -177,7 +177,7 @@ class StoredMotions(Sequence[results.Answer]):
 
     def _tables(self, index: int) -> results.Tables:
         begin, end = self._begins[index : index + 2]
-        return _chunk(self._folder, self._names[index], end - begin, self._request.times.size)
+        return _chunk(self._folder, self._names[index], end - begin, self._request.samples)
 
     def arrays(self, returns: Any = results.DIRECT) -> results.MotionArrays:
         """Return quantities of all motions, as `simulate_many` does for ``returns``."""
@@ -223,7 +223,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     if not (folder / _REQUEST).exists():
         os.listdir(folder)  # raises OSError if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
-    about, times = _request_in(folder)
+    about, request = _request_in(folder)
     if about["schema"] != _SCHEMA:
         raise ValueError(
             f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {about['schema']!r}"
@@ -233,8 +233,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
             f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
         )
     names = _chunks(folder)
-    end = _end_of(folder, _digest_of(about, times), names, times.size)
-    request = results.Request(Settings(**about["settings"]), times, about["raise_on_failure"])
+    end = _end_of(folder, _digest_of(about, request.times), names, request.samples)
     return StoredMotions(folder, request, list(chain.from_iterable(names.values())), end)
 
 
@@ -285,7 +284,7 @@ def _about(request: results.Request) -> dict[str, Any]:
     }
 
 
-def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
+def _of_request(content: bytes) -> tuple[dict[str, Any], results.Request]:
     arrays = strict.npz_arrays(content, {"about", "t"})
     about = strict.parsed("about", str(arrays["about"]))
     strict.require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
@@ -294,9 +293,8 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
     strict.require_array("t", t, np.float64, (t.size,))
     if not t.size or np.any(np.diff(t, prepend=0.0) < 0):
         raise ValueError("t must hold times that do not fall")
-    Settings(**about["settings"])
-    flag("raise_on_failure", about["raise_on_failure"])
-    return about, t
+    raises = flag("raise_on_failure", about["raise_on_failure"])
+    return about, results.Request(Settings(**about["settings"]), t, raises)
 
 
 def _of_end(content: bytes) -> dict[str, Any]:
@@ -307,7 +305,7 @@ def _of_end(content: bytes) -> dict[str, Any]:
     return end
 
 
-def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
+def _request_in(folder: Path) -> tuple[dict[str, Any], results.Request]:
     cure = f": delete it, and call {_AGAIN}"
     return strict.restored(folder / _REQUEST, _of_request, strict.ARCHIVE, "simulate_many", cure)
 

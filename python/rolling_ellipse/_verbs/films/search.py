@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..._ask.printing import required
 from .film import Film, Unknowns
 from .starts import Box, cell, starts
 
+cost = attrgetter("cost")  # by which SciPy's solutions are compared
 LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
 _SHARES = 0.3, 0.6, 1.0  # of the film that are fitted in turn
 _TRIED = 30  # starts that are fitted
@@ -42,14 +43,9 @@ class Search:
         return off
 
     def solve(
-        self,
-        u: FloatArray,
-        *,
-        exact: bool = False,
-        share: float = 1.0,
-        held: tuple[int, ...] = (),
-        within: Box | None = None,
-    ) -> Any:
+        self, u: FloatArray, *, exact: bool = False, share: float = 1.0,
+        held: tuple[int, ...] = (), within: Box | None = None,
+    ) -> Any:  # fmt: skip
         """Return SciPy's solution for a share of the film, with some unknowns held or in a box."""
         low, high = within or (self.unknowns.low, self.unknowns.high)
         low, high, k = low.copy(), high.copy(), list(held)
@@ -121,7 +117,3 @@ def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArra
     """
     data, singular, axes = np.linalg.svd(one.jac, full_matrices=False)
     return data, singular, axes, singular > LEAST * singular[0]
-
-
-def cost(one: Any) -> float:
-    return float(one.cost)

@@ -28,11 +28,11 @@ from ..._ask.settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS, settings
 from ..._motion.stability import advice
 from ..._motion.status import IntegrationError, Status
 from ..._motion.trajectory import Trajectory
-from ..flow import arguments_of, flow, period
+from ..flow import period
 from ..simulate import sample_times
 from .results import WorkPrecision
 from .run import COMPLETED, NOT_RUN, Run
-from .truth import Judge, Truth, rolls_for_certain
+from .truth import Judge, Truth, exact_rolling, rolls_for_certain
 
 TOLERANCES, STEPS = "tolerances", "steps"
 
@@ -62,15 +62,9 @@ class Contender:
 
 
 def _prepared_flow(scene: Scene, t_end: float, _: float) -> Any:
-    start = scene.initial_state
-    if start.mode.name not in _HELD:
+    if scene.initial_state.mode.name not in _HELD:
         raise ValueError("flow must be given a scene that rolls")
-    arguments = arguments_of(scene)
-
-    def sample(times: Any) -> tuple[Any, Any, Any]:
-        theta, omega, x = flow(times, **arguments)
-        return theta, omega, start.x + x
-
+    sample = exact_rolling(scene)
     call: Any = partial(sample, t_end)
     call.sample = sample
     return call
@@ -269,9 +263,10 @@ def work_precision(
     judges = [Judge(scene, end, samples, reference) for end in ends]
     ladders = []
     for judge in judges:
-        rungs = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
+        fixed = lengths or default_steps(scene, judge.t_end)
+        rungs = {None: [math.nan], TOLERANCES: rtols, STEPS: fixed}
         for contender in contenders:
-            coarse_first = sorted(set(rungs.get(contender.ladder, [math.nan])), reverse=True)
+            coarse_first = sorted(set(rungs[contender.ladder]), reverse=True)
             ladders.append([_Attempt(contender, judge, setting) for setting in coarse_first])
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:

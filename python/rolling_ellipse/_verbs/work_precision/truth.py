@@ -136,10 +136,20 @@ class Judge:
         return largest
 
 
-def _rolling(scene: Scene, times: FloatArray) -> Columns:
+def exact_rolling(scene: Scene) -> Callable[[Any], Columns]:
+    """Return theta, omega and x as a function of times, or of one."""
     start, arguments = scene.initial_state.x, arguments_of(scene)
-    theta, omega, x = np.array([flow(t, **arguments) for t in times.tolist()]).T
-    return theta, omega, start + x
+
+    def sample(times: Any) -> Columns:
+        theta, omega, x = flow(times, **arguments)
+        return theta, omega, start + x
+
+    return sample
+
+
+def _rolling(scene: Scene, times: FloatArray) -> Columns:
+    theta, omega, x = np.array([*map(exact_rolling(scene), times.tolist())]).T
+    return theta, omega, x
 
 
 def _contact(scene: Scene, times: FloatArray) -> Columns:
