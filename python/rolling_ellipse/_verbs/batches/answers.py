@@ -288,7 +288,7 @@ def names_in(returns: Any) -> tuple[str, ...]:
 
 
 def gathered(
-    names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Tables | Exception]],
+    names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Any]],
     axes: tuple[str, ...], shape: tuple[int, ...] | None,
 ) -> MotionArrays:  # fmt: skip
     """Return quantities of tables of scenes, each with its answers or the loss of its worker.

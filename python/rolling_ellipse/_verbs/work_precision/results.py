@@ -180,26 +180,25 @@ class WorkPrecision:
                 continue
             first, *others = sorted(least, key=least.__getitem__)
             rival = next((name for name in others if method[name] != method[first]), "")
-            factor = least.get(rival, math.nan) / least[first]
             is_open = self.not_run(decade, t_end=t_end) != ()  # others might still be faster
-            ranked.append((decade, (first, is_open), rival, least[first], factor))
+            ranked.append((decade, (first, is_open), rival, least))
         for (name, is_open), rows in groupby(ranked, itemgetter(1)):
             held = list(rows)
-            decades, _, _, times, _ = zip(*held, strict=True)
             rank = "the fastest that was run" if is_open else "unbeaten"
             # the longest set-up: some contenders compile once, at their first setting
             setup = max(run.setup for run in contenders[name] if run.completed)
-            cost = f"{_brief(times[-1])}, set-up {_brief(setup)}"
-            lines.append(f"{name} is {rank} {_span(decades)} ({cost});")
+            cost = f"{_brief(held[-1][3][name])}, set-up {_brief(setup)}"
+            lines.append(f"{name} is {rank} {_span([decade for decade, *_ in held])} ({cost});")
             for rival, same in groupby(held, itemgetter(2)):
-                decades, _, _, _, factors = zip(*same, strict=True)
+                least_at = {decade: least for decade, _, _, least in same}
                 if rival:
-                    parts = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True))
-                    equal = " (as good as equal)" if max(factors) <= EQUAL else ""
+                    factors = {d: least[rival] / least[name] for d, least in least_at.items()}
+                    parts = (f"{f:.3g} × at {d:.0e}" for d, f in factors.items())
+                    equal = " (as good as equal)" if max(factors.values()) <= EQUAL else ""
                     lines.append(f"    {rival} takes {', '.join(parts)}{equal}")
                 else:
                     seen = "was seen" if is_open else "gets"
-                    lines.append(f"    no other {seen} there {_span(decades)}")
+                    lines.append(f"    no other {seen} there {_span([*least_at])}")
         if none:
             why = ", which the reference could not tell" if none[0] < floor else ""
             lines.append(f"nobody has reached an error {_span(none)}{why}")
