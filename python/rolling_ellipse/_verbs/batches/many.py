@@ -19,7 +19,7 @@ from ..._motion.status import WorkerError
 from ..simulate import sample_times, simulate
 from ..workers import Lost, Task, in_order, threads_of
 from .answers import Answer, MotionArrays, Request, answers, gathered, names_in
-from .asked import Chunk, SceneGrid, SceneList, asked, sizes
+from .asked import Chunk, SceneGrid, SceneList, asked
 from .folders import Folder
 
 _Scenes: TypeAlias = Iterable[Scene] | Mapping[str, Any]
@@ -151,7 +151,7 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
             function, *arguments = request.task(chunk)
             yield chunk, function(*arguments, threads)
         return
-    _, scenes = next(sizes(request.samples))
+    scenes = 0  # of the last task
     each: int = request.size  # most bytes of results per scene so far; at first, of its samples
 
     def tasks() -> Iterator[tuple[Chunk, Task]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import itemgetter
 from typing import Any
 
@@ -27,14 +27,6 @@ _WRONG = 3.0  # ratio of the film's free fall to gravity, or inverse, that is no
 _NEAR = 1.2  # ratio of a unit to the one that free fall shows
 _ALIASED = 10.0  # time between frames in which a body that rocks slowly has turned round
 _QUICK, _RUN = 6, 2  # starts of a try, and tries that are run to the end
-
-
-@dataclass(frozen=True)
-class Convention:
-    """Another reading of a film, in the words of the arguments of `fit_motion`."""
-
-    words: str
-    film: Film
 
 
 def free_fall(film: Film, unknowns: Unknowns) -> float | None:
@@ -69,7 +61,7 @@ def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float 
     return -2 * float(solution[2]) / half**2 if bent and not swayed and smooth and high else None
 
 
-def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Convention]:
+def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
     """Return readings in other units of time or length; none where those of the film may be right.
 
     Without a flight, frames may be too far apart to tell anything.
@@ -81,56 +73,56 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Conv
         return [_timed(film, 1 / rate) for rate in (_RATES if far else ())]
     if "gravity" in unknowns.names or 1 / _WRONG < fall < _WRONG:
         return []
-    upright, size = Convention("", film) if fall > 0 else _flipped(film), abs(fall)
+    upright, size = film if fall > 0 else _flipped(film), abs(fall)
     others = []
     if fall < 0 and 1 / _WRONG < size < _WRONG:
-        others += [upright, *(_then(upright, one) for one in _turned(upright.film)[:1])]
+        others += [upright, *_turned(upright)[:1]]
     units = [unit for unit in _UNITS if 1 / _NEAR < unit / math.sqrt(size) < _NEAR]
-    others += [_then(upright, _timed(upright.film, unit)) for unit in units or [math.sqrt(size)]]
+    others += [_timed(upright, unit) for unit in units or [math.sqrt(size)]]
     lengths = [unit for unit in _LENGTHS if 1 / _NEAR < unit / size < _NEAR]
-    return others + [_then(upright, _scaled(upright.film, unit)) for unit in lengths]
+    return others + [_scaled(upright, unit) for unit in lengths]
 
 
-def readings(film: Film) -> list[Convention]:
+def readings(film: Film) -> list[Film]:
     """Return readings of angles and places by other conventions, in the same unit of time.
 
     Of a film that starts later than it lasts, only its clock is doubted.
     """
     x, z, theta = film.known.any(axis=0)
-    clock = Convention("t = t - t[0]", replace(film, t=film.t - film.t[0]))
+    clock = _read(film, "t = t - t[0]", t=film.t - film.t[0])
     if film.t[0] > np.ptp(film.t):
         return [clock]
     others = _turned(film) if theta else []
     if z:
         flipped = _flipped(film)
-        others += [Convention("z = z {z:+.3g}", replace(film, adrift=(Z,))), flipped]
-        others += [_then(flipped, one) for one in _turned(flipped.film)[:1] if theta]
+        others += [_read(film, "z = z {z:+.3g}", adrift=(Z,)), flipped]
+        others += _turned(flipped)[:1] if theta else []
     if x:
-        others += [Convention("x = x {x:+.3g}", replace(film, adrift=(X,)))]
+        others += [_read(film, "x = x {x:+.3g}", adrift=(X,))]
     if x or z:
         others += [_scaled(film, unit) for unit in _LENGTHS]
     return [*others, clock] if film.t[0] > 0 else others
 
 
-def fitting(tries: list[Convention], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
+def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
     """Return the words of the reading that fits best, none if no reading does.
 
     Tries are ranked by the likelihood of their residuals, with deviations of their own.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
-    for convention in tries:
-        search = Search(convention.film, unknowns, TRACKER * sizes, loss)
+    for film in tries:
+        search = Search(film, unknowns, TRACKER * sizes, loss)
         with suppress(ValueError):  # nothing moves until the last time
             best = search.minima(_QUICK)[0]
             for _ in range(2):
                 search.sigma = estimated(search, best, unknown)
                 best = search.solve(best.x)
             size = float(np.log(search.sigma / sizes)[search.track].sum())
-            ranked.append((size, convention, search))
-    for _, convention, search in sorted(ranked, key=itemgetter(0))[:_RUN]:
+            ranked.append((size, search))
+    for _, search in sorted(ranked, key=itemgetter(0))[:_RUN]:
         best = settled(search, search.best(search.minima()), given, 2)
         if not judged(search, best, given).doubtful:
-            return convention.words.format(**_origins(search, best))
+            return " and ".join(search.film.reading).format(**_origins(search, best))
     return ""
 
 
@@ -141,12 +133,11 @@ def _origins(search: Search, best: Any) -> dict[str, float]:
     return {TRACKS[k]: -float(np.nanmean(off[:, k])) for k in search.film.adrift}
 
 
-def _then(first: Convention, second: Convention) -> Convention:
-    words = [one.words for one in (first, second) if one.words]
-    return Convention(" and ".join(words), second.film)
+def _read(film: Film, words: str, **changes: Any) -> Film:
+    return replace(film, reading=(*film.reading, words), **changes)
 
 
-def _turned(film: Film) -> list[Convention]:
+def _turned(film: Film) -> list[Film]:
     degree, quarter = math.pi / 180, math.pi / 2
     return [
         _angled(film, "-theta", -1.0, 0.0),
@@ -157,21 +148,21 @@ def _turned(film: Film) -> list[Convention]:
     ]
 
 
-def _angled(film: Film, words: str, factor: float, added: float) -> Convention:
+def _angled(film: Film, words: str, factor: float, added: float) -> Film:
     data = film.data.copy()
     data[:, THETA] = factor * data[:, THETA] + added
-    return Convention(f"theta = {words}", replace(film, data=data))
+    return _read(film, f"theta = {words}", data=data)
 
 
-def _flipped(film: Film) -> Convention:
-    return Convention("z = {z:.3g} - z", replace(film, data=film.data * (1, -1, 1), adrift=(Z,)))
+def _flipped(film: Film) -> Film:
+    return _read(film, "z = {z:.3g} - z", data=film.data * (1, -1, 1), adrift=(Z,))
 
 
-def _scaled(film: Film, unit: float) -> Convention:
-    data = film.data / (unit, unit, 1)
-    return Convention(f"x = x / {unit:g} and z = z / {unit:g}", replace(film, data=data))
+def _scaled(film: Film, unit: float) -> Film:
+    words = f"x = x / {unit:g} and z = z / {unit:g}"
+    return _read(film, words, data=film.data / (unit, unit, 1))
 
 
-def _timed(film: Film, unit: float) -> Convention:
+def _timed(film: Film, unit: float) -> Film:
     words = f"t = t / {1 / unit:.4g}" if unit < 1 else f"t = {unit:.4g} * t"
-    return Convention(words, replace(film, t=unit * film.t))
+    return _read(film, words, t=unit * film.t)

@@ -31,6 +31,7 @@ class Film:
     t: FloatArray
     data: FloatArray
     adrift: tuple[int, ...] = ()  # tracks whose origin is unknown
+    reading: tuple[str, ...] = ()  # what was changed, in words of the arguments of `fit_motion`
 
     @cached_property
     def known(self) -> Any:
