@@ -109,6 +109,13 @@ def test_a_singular_sample_takes_nothing_from_those_before() -> None:
     assert motion.t[-1] >= 0.25
 
 
+def test_ten_steps_of_a_tenth_reach_the_end() -> None:
+    """The sum of ten steps of 0.1 is an ulp less than 1."""
+    q, q_dot = start(0.2, 2.0)
+    motion = run(q, q_dot, [1.0], printed=(), method="rk4", step=0.1)
+    assert motion.t.tolist() == [1.0] and motion.message == ""
+
+
 def test_max_steps() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 1.0], printed=(), max_steps=3)

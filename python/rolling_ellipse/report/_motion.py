@@ -184,7 +184,8 @@ def _integrated(
     for _ in range(how.max_steps):
         if len(samples) == t.size:
             break
-        h = min(h, end - now)
+        left = end - now
+        h = left if h > left - 10 * math.ulp(end) else h  # roundings of `now` are no step
         if not h >= 10 * math.ulp(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
         for i in range(1, stages + 1):
@@ -201,7 +202,7 @@ def _integrated(
                 continue
         if not np.all(np.isfinite(after)):
             return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
-        last = end if h == end - now else now + h
+        last = end if h == left else now + h
         extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # dense output beyond a cubic
         first, change = h * slopes[0], after - y
         bend = 2 * change - first - h * slopes[-1]
