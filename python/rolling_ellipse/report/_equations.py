@@ -27,10 +27,19 @@ _CASES = ("as_it_is", "1", "2")
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
     """Return theta, psi, r, sin(psi - theta), cos(psi - theta) of q; other arguments must fit q."""
-    found = coordinates("q", q)
-    require_together(q=found, **others)
-    theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
+    place = coordinates("q", q)
+    require_together(q=place, **others)
+    theta, psi, r = place[..., 2], place[..., 3], place[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
+
+
+def _at(
+    q: Any, q_ddot: Any, a: float, b: float, mass: float, gravity: float, **others: Any
+) -> tuple[Scene, tuple[FloatArray, ...], FloatArray]:
+    """Return the body, its `state`, and its accelerations along the first axis."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    place = state(q, q_ddot=q_ddot, **others)
+    return body, place, np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
 
 
 def _last(*columns: Any) -> FloatArray:
@@ -100,17 +109,17 @@ def eqs_33_to_37(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
     """Return the residuals of eqs 33, 34, 35, 37, 36 as printed, for x, z, theta, psi, r."""
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
-    inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, coordinates("q_ddot", q_ddot)
+    body, place, (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity, multipliers=multipliers)
+    theta, psi, r, sine, cosine = place
+    inertia = body.mass * (body.a**2 + body.b**2) / 4
     one, two, three, four = np.moveaxis(_multipliers(multipliers), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent2 = np.square(np.tan(theta))
     lever = one * r * cosine - two * r * sine
     return _last(
-        body.mass * ddot[..., 0] - one,
-        body.mass * ddot[..., 1] - two + body.mass * body.gravity,
-        inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent2),
+        body.mass * x - one,
+        body.mass * z - two + body.mass * body.gravity,
+        inertia * spin + lever - four * body.a**2 * (1 + tangent2),
         lever + three * squeeze + four * (body.a**4 * tangent2 / body.b**2 + body.b**2),
         one * sine - two * cosine + 2 * three * polar_cube(psi, body.a, body.b),
     )
@@ -130,10 +139,10 @@ def equations_of_motion(
 
 
 def _multipliers(values: Any) -> FloatArray:
-    found = finite("multipliers", values)
-    if found.ndim == 0 or found.shape[-1] != 4:
-        raise ValueError(f"multipliers must have 4 entries last, got shape {found.shape}")
-    return found
+    four = finite("multipliers", values)
+    if four.ndim == 0 or four.shape[-1] != 4:
+        raise ValueError(f"multipliers must have 4 entries last, got shape {four.shape}")
+    return four
 
 
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
@@ -165,26 +174,18 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 
     lambda3 is infinite where eq 39 divides by zero: at every quarter turn, and for a circle.
     """
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    _, psi, _, _, _ = state(q, q_ddot=q_ddot)
-    ddot = coordinates("q_ddot", q_ddot)
+    body, (_, psi, _, _, _), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     third = _squeezed(eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity), psi, body)
     fourth = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    return _last(
-        body.mass * ddot[..., 0],
-        body.mass * (ddot[..., 1] - body.gravity),
-        third,
-        fourth / (4 * body.a**2 * body.b**2),
-    )
+    first, second = body.mass * x, body.mass * (z - body.gravity)
+    return _last(first, second, third, fourth / (4 * body.a**2 * body.b**2))
 
 
 def lambda4_numerator(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
     """Return the numerator of lambda4 in eq 39; eqs 32 and 35 give it the divisor 4 a^2."""
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
+    body, (theta, _, r, sine, cosine), (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
     return -body.mass * np.square(np.cos(theta)) * (turning + levers)
@@ -208,9 +209,14 @@ def multipliers(
     return _last(friction, normal, third, fourth)
 
 
+def divisor(psi: Any, a: float, b: float) -> Any:
+    """Return 4 a^3 b^3 sin(2 psi) (a^2 - b^2), by which eqs 39 and 41 divide [m^8]."""
+    return 4 * (a * b) ** 3 * np.sin(2 * psi) * (a**2 - b**2)
+
+
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
-    """Return values over 4 a^3 b^3 sin(2 psi) (a^2 - b^2), as in eqs 39 and 41; 0/0 is inf."""
-    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
+    """Return values over the `divisor`; 0/0 is inf."""
+    squeeze = divisor(psi, body.a, body.b)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         return np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
 
@@ -220,9 +226,7 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 
     `complete_f` has the terms that it lost; with right equations F is 4 a^2 b^2 h' N.
     """
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
+    body, (theta, psi, r, sine, cosine), (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
     c2, t2 = np.square(np.cos(theta)), np.square(np.tan(theta))
     return (
@@ -246,9 +250,7 @@ def complete_f(
     These have the signs of eq 39, so that the difference from `eq_40` is the lost terms. It is not
     the right F.
     """
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
+    body, (theta, _, r, sine, cosine), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
     numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     turned = body.a**4 * np.square(np.tan(theta)) + body.b**4
@@ -263,15 +265,13 @@ def eq_41(
     Complete, it is eq 36 times -1 with the multipliers put in. It divides by zero where eq 39 does,
     and is infinite there.
     """
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    complete = flag("complete", complete)
-    _, psi, _, _, _ = state(q)
-    arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
-    if complete:
+    body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
+    psi, arguments = place[1], {"a": a, "b": b, "mass": mass, "gravity": gravity}
+    if flag("complete", complete):
         spread = 2 * polar_cube(psi, body.a, body.b) * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
-    return _head(q, q_ddot, body) - _squeezed(spread, psi, body)
+    return _head(body, place, ddot) - _squeezed(spread, psi, body)
 
 
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -281,16 +281,16 @@ def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     F, which eq 42 has completely (`complete_f`). The factor has lost its power 3/2 and the square
     of sin psi.
     """
-    body = Scene(a, b, mass=mass, gravity=gravity)
-    _, psi, _, _, _ = state(q)
+    body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
+    psi = place[1]
     factor = 2 * body.a**2 * np.square(np.cos(psi)) + 2 * body.b**2 * np.sin(psi)
     terms = complete_f(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
-    return _head(q, q_ddot, body) - factor * terms
+    return _head(body, place, ddot) - factor * terms
 
 
-def _head(q: Any, q_ddot: Any, body: Scene) -> FloatArray:
-    _, _, _, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
+def _head(body: Scene, place: tuple[FloatArray, ...], ddot: FloatArray) -> FloatArray:
+    """Return the first terms of eqs 41 and 42 [N]."""
+    (_, _, _, sine, cosine), (x, z, _, _, _) = place, ddot
     return body.mass * (cosine * (z - body.gravity) - x * sine)
 
 

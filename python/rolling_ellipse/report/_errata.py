@@ -24,7 +24,8 @@ from ._rows import CODE, EQ_32, MATRIX, consistent_rates, constraint_matrix, pol
 from ._simulate import simulate as follow
 
 _STATE = ("q", "q_ddot", "a", "b", "mass", "gravity")  # arguments of the equations of motion
-_BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
+_AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
+_BODY = _AXES | {"mass": 10.0, "gravity": 9.81}
 
 
 class Comparison(NamedTuple):
@@ -74,23 +75,24 @@ def _rolling(theta: float, **other: float) -> dict[str, Any]:
     return {"theta": theta, "impulse": 48.0, "d": 1.5, **body, **state}
 
 
-def _compared(
+def _both(
     printed: Callable[..., Any], right: Callable[..., Any], entry: Any = (), theta: float = 0.7,
     **other: float,
-) -> Comparison:  # fmt: skip
+) -> Callable[[], Comparison]:  # fmt: skip
     """Compare an entry of what two functions return; they get the arguments that they take.
 
     A function of any arguments gets those of the equations of motion.
     """
-    known = _rolling(theta, **other)
-    values = []
-    for function in (printed, right):
-        names = signature(function).parameters.keys() & known.keys() or _STATE
-        values.append(float(np.asarray(function(**{name: known[name] for name in names}))[entry]))
-    return Comparison(*values)
 
+    def compared() -> Comparison:
+        known, values = _rolling(theta, **other), []
+        for function in (printed, right):
+            names = signature(function).parameters.keys() & known.keys() or _STATE
+            result = function(**{name: known[name] for name in names})
+            values.append(float(np.asarray(result)[entry]))
+        return Comparison(*values)
 
-_both = partial(partial, _compared)  # a comparison to be made later
+    return compared
 
 
 def _rate(row: int, q: Any, q_dot: Any, a: float, b: float, printed: Any = ("tan",)) -> Any:
@@ -113,15 +115,10 @@ def _pull(equation: Callable[..., Any], **state: Any) -> Any:
     return equation(**state)[1] * np.cos(q[3] - q[2])
 
 
-def _divisor(q: Any, a: float, b: float) -> Any:
-    """Return 4 a^3 b^3 sin(2 psi) (a^2 - b^2), by which eqs 39 and 41 divide [m^8]."""
-    return 4 * (a * b) ** 3 * np.sin(2 * q[3]) * (a**2 - b**2)
-
-
 def _f(**state: Any) -> Any:
     """Return the F that makes lambda3 = F/(4 a^3 b^3 sin(2 psi) (a^2 - b^2)) [N m^5]."""
     third = equations.multipliers(**state)[2]
-    return third * _divisor(state["q"], state["a"], state["b"])
+    return third * equations.divisor(state["q"][3], state["a"], state["b"])
 
 
 def _f1(**state: Any) -> Any:
@@ -141,7 +138,7 @@ def _eq_37(**state: Any) -> Any:
     """Return eq 37 with the multipliers of eq 39, the divisor of lambda4 and all terms of F."""
     q, a, b = (state[name] for name in ("q", "a", "b"))
     first, second, _, _ = equations.eq_39(**state)
-    third = equations.complete_f(**state) / _divisor(q, a, b)
+    third = equations.complete_f(**state) / equations.divisor(q[3], a, b)
     fourth = equations.lambda4_numerator(**state) / (4 * a**2)
     return equations.eqs_33_to_37(multipliers=[first, second, third, fourth], **state)[3]
 
@@ -151,53 +148,34 @@ def _first_terms(**state: Any) -> Any:
     q, a, b = (state[name] for name in ("q", "a", "b"))
     one, two, _, _ = equations.eq_39(**state)
     lean = q[3] - q[2]
-    return (one * np.sin(lean) - two * np.cos(lean)) / _divisor(q, a, b)
-
-
-def _reach(q: Any, a: float, b: float) -> Any:
-    """Return |r_OC| [m]: C is on the ground, as O is."""
-    return abs(equations.contact_x(q, a=a, b=b))
-
-
-def _to_the_right(theta: float, a: float, b: float) -> Any:
-    return abs(support_slope(theta, a=a, b=b))
-
-
-def _to_the_origin(q: Any) -> Any:
-    return -q[0]
-
-
-def _no_part(q: Any) -> float:
-    return 0.0
+    return (one * np.sin(lean) - two * np.cos(lean)) / equations.divisor(q[3], a, b)
 
 
 def _even_turning() -> Comparison:
     """Compare f2 and f3 with the rates by the matrix as printed, where theta = t."""
-    axes = {"a": _BODY["a"], "b": _BODY["b"]}
-    q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **axes)
-    held = np.stack([equations.f2(q), equations.f3(q, **axes)])
-    rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **axes), q_dot)
+    q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **_AXES)
+    held = np.stack([equations.f2(q), equations.f3(q, **_AXES)])
+    rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **_AXES), q_dot)
     return Comparison(float(np.max(np.abs(held))), float(np.max(np.abs(rates))))
 
 
 def _back_substitution() -> Comparison:
     """Compare residuals of the code's equations with the gap, after 0.25 s of their motion."""
-    axes = {"a": _BODY["a"], "b": _BODY["b"]}
-    q, _ = kinematics(0.2, 2.0, **axes)
+    q, _ = kinematics(0.2, 2.0, **_AXES)
     how: dict[str, Any] = {"equations": "printed", "rtol": 1e-12, "atol": 1e-14}
-    motion: Any = follow(q, consistent_rates(q, 2.0, **axes), [0.25], **_BODY, **how)
+    motion: Any = follow(q, consistent_rates(q, 2.0, **_AXES), [0.25], **_BODY, **how)
     return Comparison(*(float(np.max(np.abs(v))) for v in (motion.back_substitution(), motion.gap)))
-
-
-def _roll_over() -> Comparison:
-    return Comparison(1.0, thresholds(_BODY["a"], _BODY["b"]).roll_over_speed)
 
 
 #: The comparison of each row of errata.json, by its place in the report.
 _COMPARISONS: dict[str, Callable[[], Comparison]] = {
-    "section 2.2, before eq 6": _both(contact_distance, _reach),
+    "section 2.2, before eq 6": _both(
+        contact_distance, lambda q: abs(equations.contact_x(q, **_AXES))
+    ),
     "section 2.2, cases 1 and 2": _both(equations.case_lead, support_slope, theta=4.0),
-    "section 2.2, case 2 and Figure 8": _both(_to_the_right, support_slope, theta=5.5),
+    "section 2.2, case 2 and Figure 8": _both(
+        lambda theta: abs(support_slope(theta, **_AXES)), support_slope, theta=5.5
+    ),
     "eqs 9, 10, f1": _both(equations.f1, partial(_rate, 0)),
     "eq 32, df2, row 2": _row(1, ("df2", "tan")),
     "eq 32, df3": _row(2, EQ_32),
@@ -216,14 +194,14 @@ _COMPARISONS: dict[str, Callable[[], Comparison]] = {
     ),
     "eqs 40, 42": _both(equations.eq_40, _f),
     "eq 41": _both(_eq_37, partial(equations.eq_41, complete=True)),
-    "eq 42, first terms": _both(_first_terms, _no_part),
+    "eq 42, first terms": _both(_first_terms, lambda q: 0.0),
     "eq 42, factor": _both(equations.eq_42, _f1),
-    "section 3.4, point O": _both(_to_the_origin, support_slope),
+    "section 3.4, point O": _both(lambda q: -q[0], support_slope),
     "eqs 45–48": _both(equations.eq_48, equations.struck_speed),
     "section 4.2.2, Figure 11": _back_substitution,
     "section 4.2.2, θ = t": _even_turning,
     "section 4.2.2, Figure 12": _both(equations.eq_5, contact_angle, theta=2.0),
-    "Figure 13": _roll_over,
+    "Figure 13": lambda: Comparison(1.0, thresholds(**_AXES).roll_over_speed),
     "appendix B": _both(equations.appendix_b_radius, contact_distance),
 }
 _ERRATA = tuple(
@@ -245,7 +223,7 @@ def errata_table() -> str:
     ]
     for erratum in _ERRATA:
         cells = erratum.where, erratum.printed, erratum.finding, erratum.quantity
-        found = erratum.evaluate()
-        right = found.right if abs(found.right) > 1e-12 else 0.0  # a rounding error of 0
-        lines.append(f"| {' | '.join(cells)} | {found.printed:.4g} | {right:.4g} |")
+        printed, right = erratum.evaluate()
+        right = right if abs(right) > 1e-12 else 0.0  # a rounding error of 0
+        lines.append(f"| {' | '.join(cells)} | {printed:.4g} | {right:.4g} |")
     return "\n".join(lines)
