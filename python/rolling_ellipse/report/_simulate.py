@@ -147,16 +147,10 @@ def simulate(
     if not corrected:
         method = choice("method", method, _EXPLICIT)
     settings = replace(
-        DEFAULTS,
-        model="multipliers",
-        method=method,
-        rtol=rtol,
-        atol=atol,
-        step=step,
-        max_steps=max_steps,
-        max_events=1,  # the least allowed: "multipliers" has no events
+        DEFAULTS, model="multipliers", method=method, rtol=rtol, atol=atol, step=step,
+        max_steps=max_steps, max_events=1,  # the least allowed: "multipliers" has no events
         **{name: value for name, value in how.items() if value is not None},
-    )
+    )  # fmt: skip
     _core.validate_settings(settings.core, float(times[-1]))
     names = () if corrected else misprints(CODE if printed is None else printed)
     start = _checked_start(*state, body, names, consistent)
@@ -176,9 +170,9 @@ def _checked_start(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...], consistent: str
 ) -> Start:
     violated = _violations(q, q_dot, body, printed)
-    begun = q, q_dot
+    state = q, q_dot
     if violated and consistent == "project":
-        begun = _project(q, q_dot, body, printed)
+        state = _project(q, q_dot, body, printed)
     elif violated:
         got = "; ".join(violated)
         if consistent == "refuse":
@@ -186,16 +180,16 @@ def _checked_start(
         warnings.warn(
             f"the start violates constraints: {got}", InconsistentStartWarning, stacklevel=3
         )
-    return Start(*begun, begun[0] - q, begun[1] - q_dot, violated)
+    return Start(*state, state[0] - q, state[1] - q_dot, violated)
 
 
 def _vector(name: str, value: Any) -> FloatArray:
-    found = finite(name, value)
-    if found.shape != (COORDINATES,):
+    vector = finite(name, value)
+    if vector.shape != (COORDINATES,):
         raise ValueError(
-            f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
+            f"{name} must have 5 entries (x, z, theta, psi, r), got shape {vector.shape}"
         )
-    return found
+    return vector
 
 
 def _violations(
