@@ -18,12 +18,27 @@ from ._results import KINDS, Result
 SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}
 
 
-class _Table(NamedTuple):
-    """Names of the columns of a file, and its rows with their places in it, from 1."""
+class _Row(NamedTuple):
+    """The entries of a row by column; its problem and its place, for messages."""
 
-    file: str
-    names: list[str]
-    rows: list[tuple[int, list[str]]]
+    problem: str
+    place: str
+    entries: dict[str, str]
+
+    def number(self, name: str) -> float:
+        """Return a number; an empty entry is one of a force only, and NaN."""
+        text = self.entries.get(name, "")
+        if not text and name in COLUMNS[7:]:
+            return math.nan
+        try:
+            value = float(text)
+        except ValueError:
+            raise ValueError(
+                f"{name} of {self.problem} must be a number, got {text!r} in {self.place}"
+            ) from None
+        if name == "t" and not math.isfinite(value):
+            raise ValueError(f"t of {self.problem} must be finite, got {value} in {self.place}")
+        return value
 
 
 def read_folder(results: Any) -> dict[str, Result]:
@@ -58,7 +73,7 @@ def read(problem: Problem, path: Path) -> Result:
 
     Rows without a time or without a state are left out. Two rows at one time are the sides of a
     jump: the second is kept. Columns beyond those known are left out, too. An empty file has no
-    rows. Events are in `<id>.events.csv` with the columns kind, t, where there is such a file.
+    rows. Events are in `<id>.events.csv` with the columns kind, t, where it is there and not empty.
 
     Raises
     ------
@@ -66,40 +81,25 @@ def read(problem: Problem, path: Path) -> Result:
         If a file is no table of UTF-8 text, a column is missing, or an entry is no number; the
         message names problem, column and row.
     """
-    table, events = _table(path), _read_events(problem, path.with_name(f"{problem.id}.events.csv"))
-    if not table.names:
-        return Result(np.empty((0, len(STATE))), events=events)
-    places = {name: _place(problem, table, name) for name in COLUMNS[:7]}
-    places |= {name: table.names.index(name) for name in COLUMNS[7:] if name in table.names}
     kept: list[list[float]] = []
-    for row, entries in table.rows:
-        if _text(entries, places["t"]) and any(_text(entries, places[name]) for name in STATE):
-            numbers = {
-                name: _entry(problem, table, row, name, _text(entries, place))
-                for name, place in places.items()
-            }
-            t = _finite(problem, table, row, numbers["t"])
-            del kept[len(kept) - bool(kept and kept[-1][0] == t) :]
-            kept.append(list(numbers.values()))
-    rows = np.array(kept).reshape(-1, len(places))
-    forces: dict[str, Any] = {name: rows[:, k] for k, name in enumerate(places) if k >= 7}
-    return Result(rows[:, 1:7], rows[:, 0], events, **forces)
+    for row in _rows(problem, path, COLUMNS[:7]) or []:
+        if row.entries["t"] and any(row.entries[name] for name in STATE):
+            numbers = [row.number(name) for name in COLUMNS]
+            if kept and kept[-1][0] == numbers[0]:
+                kept.pop()
+            kept.append(numbers)
+    columns = np.array(kept).reshape(-1, len(COLUMNS)).T
+    listed, kind = path.with_name(f"{problem.id}.events.csv"), f"kind of {problem.id}"
+    rows = _rows(problem, listed, ("kind", "t")) if listed.exists() else None
+    events = rows and [(choice(kind, row.entries["kind"], KINDS), row.number("t")) for row in rows]
+    return Result(columns[1:7].T, columns[0], events, *columns[7:])
 
 
-def _read_events(problem: Problem, path: Path) -> list[tuple[str, float]] | None:
-    if not path.exists():
-        return None
-    table = _table(path)
-    kind, t = (_place(problem, table, name) for name in ("kind", "t"))
-    found = []
-    for row, entries in table.rows:
-        then = _finite(problem, table, row, _entry(problem, table, row, "t", _text(entries, t)))
-        found.append((choice(f"kind of {problem.id}", _text(entries, kind), KINDS), then))
-    return found
+def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
+    """Return the rows of a table that are not blank; None for a file without any.
 
-
-def _table(path: Path) -> _Table:
-    """Return the table in a file, without its empty rows; a pipe would be waited for."""
+    A pipe is refused, which would be waited for. Of two columns with one name the first counts.
+    """
     if not path.is_file():
         raise ValueError(f"results must be files, got {path.name!r}, which is none")
     try:
@@ -110,35 +110,15 @@ def _table(path: Path) -> _Table:
         raise ValueError(
             f"results must be tables of UTF-8 text with commas, got {path.name!r}: {error}"
         ) from None
-    head = rows[0][1] if rows else []
-    return _Table(path.name, [SYNONYMS.get(one.strip(), one.strip()) for one in head], rows[1:])
-
-
-def _place(problem: Problem, table: _Table, name: str) -> int:
-    if name not in table.names:
-        raise ValueError(
-            f"{name} of {problem.id} must be a column of {table.file}, got {table.names}"
-        )
-    return table.names.index(name)
-
-
-def _text(entries: list[str], place: int) -> str:
-    return entries[place].strip() if place < len(entries) else ""
-
-
-def _entry(problem: Problem, table: _Table, row: int, name: str, text: str) -> float:
-    """Return a number; an empty entry is one of a force only, and NaN."""
-    if not text and name in COLUMNS[7:]:
-        return math.nan
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(
-            f"{name} of {problem.id} must be a number, got {text!r} in row {row} of {table.file}"
-        ) from None
-
-
-def _finite(problem: Problem, table: _Table, row: int, t: float) -> float:
-    if not math.isfinite(t):
-        raise ValueError(f"t of {problem.id} must be finite, got {t} in row {row} of {table.file}")
-    return t
+    if not rows:
+        return None
+    names = [SYNONYMS.get(one.strip(), one.strip()) for one in rows[0][1]]
+    for name in columns:
+        if name not in names:
+            raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")
+    found = []
+    for line, row in rows[1:]:
+        texts = [*map(str.strip, row), *[""] * len(names)]  # a row may be shorter than the first
+        entries = {name: texts[names.index(name)] for name in names}
+        found.append(_Row(problem.id, f"row {line} of {path.name}", entries))
+    return found
