@@ -72,12 +72,11 @@ def _named(one: Problem, mine: Rows, known: _Known) -> Iterator[str]:
     if errors.max() > _LEAST_SHIFT and (order := _other_times(mine, known)):
         yield order
         return
+    height = support(known.states[:, 2], a=one.scene.a, b=one.scene.b)
+    values = mine.states[known.places]
     for k, name in enumerate(STATE):
         if errors[k] > _LEAST:
-            values = mine.states[known.places, k]
-            words = _unlike(name, values, known.states[:, k], known.units[:, k])
-            if name == "z" and not words:
-                words = _other_height(one, values, known)
+            words = _unlike(name, values[:, k], known.states[:, k], known.units[:, k], height)
             yield from [f"{name} looks {words}"] if words else []
 
 
@@ -103,8 +102,13 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
     return bool(there.sum() > 1 and now > _LEAST_SHIFT and then < _LEFT * now)
 
 
-def _unlike(name: str, values: FloatArray, right: FloatArray, units: FloatArray) -> str:
-    """Say as what the values of a variable look; one that is zero looks the same in any unit."""
+def _unlike(
+    name: str, values: FloatArray, right: FloatArray, units: FloatArray, height: FloatArray
+) -> str:
+    """Say as what the values of a variable look; one that is zero looks the same in any unit.
+
+    `height` is that of the centre of a body on the ground.
+    """
     error, size = _largest((values - right) / units), _largest(right / units)
 
     def fits(changed: Any, most: float = min(error, size)) -> bool:
@@ -123,19 +127,10 @@ def _unlike(name: str, values: FloatArray, right: FloatArray, units: FloatArray)
                 return f"like {unit}{'' if name in ('x', 'z') else ' a second'}"
         if fits(-values):
             return "counted the other way"
-    off = float(np.mean(values - right))
-    if name in ("x", "theta") and fits(values - off, error):
-        return f"off by {off:.4g} at all times"
-    return ""
-
-
-def _other_height(one: Problem, values: FloatArray, known: _Known) -> str:
-    right, units = known.states[:, 1], known.units[:, 1]
-    most = _LEFT * _largest((values - right) / units)
-    height = support(known.states[:, 2], a=one.scene.a, b=one.scene.b)
-    if _largest((values + height - right) / units) < most:
+    if name == "z" and fits(values + height, error):
         return "like the gap to the ground: it is the height of the centre"
     off = float(np.mean(values - right))
-    if _largest((values - off - right) / units) < most:
-        return f"off by {off:.4g} at all times: it is the height of the centre above the ground"
+    if name in ("x", "z", "theta") and fits(values - off, error):
+        meaning = ": it is the height of the centre above the ground" if name == "z" else ""
+        return f"off by {off:.4g} at all times{meaning}"
     return ""
