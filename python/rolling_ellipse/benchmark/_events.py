@@ -32,7 +32,8 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
     scene, length, speed = problem.scene, float(problem.scales[0]), float(problem.scales[3])
     gap, slip = gap_and_slip(problem, states)
     least_gap, least_slip = _LEAST_GAP * length, _LEAST_SLIP * speed
-    kinds = _kinds(gap - least_gap, slip, least_slip)
+    slips = np.where(np.abs(slip) > least_slip, np.sign(slip), _ROLLS)
+    kinds = np.where(gap > least_gap, _FLIES, slips).astype(int)
     starts = _starts(problem, t, states, kinds)
     shortest = _SHORTEST * math.sqrt(length / scene.gravity)
     events: list[tuple[str, float]] = []
@@ -57,12 +58,6 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
                 events.append(("STICK" if kind == _ROLLS else "SLIP", passed))
         before, rebounds = kind, False
     return events
-
-
-def _kinds(above: FloatArray, slip: FloatArray, least_slip: float) -> Any:
-    """Return the codes of rows, by the height above the least gap, and the slip."""
-    slips = np.where(np.abs(slip) > least_slip, np.sign(slip), _ROLLS)
-    return np.where(above > 0, _FLIES, slips).astype(int)
 
 
 def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> list[int]:

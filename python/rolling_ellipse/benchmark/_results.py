@@ -75,7 +75,10 @@ def checked(problem: Problem, mine: Any, times: FloatArray) -> Rows:
     states = _states(problem, result.states)
     t = _times(problem, result.t, times, len(states))
     columns = dict(zip(STATE, states.T, strict=True))
-    forces = {name: _force(problem, name, getattr(result, name), len(t)) for name in COLUMNS[7:]}
+    forces = {
+        name: _column(f"{name} of {problem.id}", getattr(result, name), len(t))
+        for name in COLUMNS[7:]
+    }
     endless = {name: np.where(np.isinf(values), values, 0.0) for name, values in forces.items()}
     within = (t >= 0) & (t <= problem.t_end)
     usable = np.isfinite(states).all(axis=1) & within
@@ -117,13 +120,9 @@ def _times(problem: Problem, given: Any, asked: FloatArray, count: int) -> Float
     return t
 
 
-def _force(problem: Problem, name: str, given: Any, count: int) -> FloatArray:
-    values = np.full(count, np.nan) if given is None else given
-    return _column(f"{name} of {problem.id}", values, count)
-
-
 def _column(name: str, values: Any, count: int) -> FloatArray:
-    column = array(name, values)
+    """Return numbers, one for each row; NaN without any."""
+    column = np.full(count, np.nan) if values is None else array(name, values)
     if column.shape != (count,):
         raise ValueError(
             f"{name} must have one number for each of {count} rows of states, "
@@ -152,13 +151,14 @@ def _events(problem: Problem, events: Any) -> tuple[tuple[str, float], ...] | No
         raise TypeError(f"{name} must be pairs of kind and time, got {shown(events)}")
     pairs = []
     for row, event in enumerate(events):
-        pair = list(event) if isinstance(event, Iterable) and not isinstance(event, str) else []
-        if len(pair) != 2:
+        try:
+            kind, time = event
+        except (TypeError, ValueError):
             raise ValueError(
                 f"{name} must be pairs of kind and time, got {shown(event)} in row {row}"
-            )
-        kind = choice(name, getattr(pair[0], "name", pair[0]), KINDS)
-        t = number(f"t of {name}", pair[1])
+            ) from None
+        kind = choice(name, getattr(kind, "name", kind), KINDS)
+        t = number(f"t of {name}", time)
         if not math.isfinite(t):
             raise ValueError(f"t of {name} must be finite, got {t} in row {row} ({kind})")
         pairs.append((kind, t))

@@ -83,18 +83,16 @@ def run(
 
 def require_simulator(name: str, mine: Any) -> None:
     """Raise TypeError if an object cannot be called with a problem, times and a setting."""
+    given = shown(mine)
     if callable(mine):
         try:
             signature(mine).bind(None, None, None)
+            return
         except ValueError:  # of a function without a signature
             return
         except TypeError:
-            said = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
-        else:
-            return
-    else:
-        said = shown(mine)
-    raise TypeError(f"{name} must be a function of (problem, times, setting), got {said}")
+            given = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
+    raise TypeError(f"{name} must be a function of (problem, times, setting), got {given}")
 
 
 def score(
