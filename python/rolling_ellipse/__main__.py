@@ -64,7 +64,7 @@ def main(arguments: list[str] | None = None) -> int:
             warnings.simplefilter("ignore")  # the summary says until when the model is valid
             warnings.simplefilter("always", StabilityWarning)
             code, message = action(options)
-    except (ValueError, OSError, ImportError, RuntimeError) as error:
+    except (ValueError, TypeError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
     print(printable(message))
@@ -88,8 +88,8 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
     if options.save is not None:
         animate(trajectory, options.save)
         files.append(options.save)
-    found = summary(trajectory, files)
-    text = json.dumps(found, indent=2) if options.json else "\n".join(lines(found, trajectory))
+    facts = summary(trajectory, files)
+    text = json.dumps(facts, indent=2) if options.json else "\n".join(lines(facts, trajectory))
     return 0 if trajectory.status in _FOLLOWED else 1, text
 
 

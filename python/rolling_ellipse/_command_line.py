@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
+from functools import wraps
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -27,7 +28,6 @@ from ._core import Mode, Validity
 from ._motion.trajectory import Trajectory
 from ._verbs.certify import certify
 from ._verbs.flow import period
-from .benchmark._run import require_simulator
 from .benchmark.adapters import ENGINES
 
 SCENE_OPTIONS = {
@@ -41,14 +41,6 @@ SCENE_OPTIONS = {
     "slope": "angle of the ground [rad]",
     "gravity": "acceleration of gravity [m/s^2]",
     "inertia": "moment of inertia about the centre [kg m^2] (default: a uniform disc)",
-}
-# Fields of a Scene without an option of their own, and the reasons.
-NOT_TYPED = {
-    "x": "a motion is the same from every place",
-    "z": "the body starts on the ground, where a blow can press it down",
-    "x_dot": "as z: it starts rolling",
-    "z_dot": "as z: it starts rolling",
-    "impulse": "--press",
 }
 _BASE = (
     "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
@@ -126,9 +118,9 @@ def explore_parser() -> OneLineParser:
 def examples_parser() -> OneLineParser:
     """Return the parser of `examples`."""
     about = "Write the notebooks, without outputs, and the tables of reference states."
-    found = OneLineParser(prog=f"{PROGRAM} examples", description=about)
-    found.add_argument("folder", metavar="DIR", help="made if it does not exist")
-    return found
+    parser = OneLineParser(prog=f"{PROGRAM} examples", description=about)
+    parser.add_argument("folder", metavar="DIR", help="made if it does not exist")
+    return parser
 
 
 def require_file(option: str, path: str) -> None:
@@ -211,6 +203,7 @@ def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
     """Run an engine or a function; what goes wrong in it is a sentence with its place."""
     mine = _function(name)
 
+    @wraps(mine)
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
         try:
             return mine(problem, times, setting)
@@ -220,10 +213,7 @@ def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
             hint = "" if setting is not None else ": without --ladder the setting is None"
             raise _failed(f"{name} on {problem.id}", error, hint) from error
 
-    try:
-        return benchmark.run(placed, **chosen)
-    except TypeError as error:
-        raise ValueError(str(error)) from error
+    return benchmark.run(placed, **chosen)
 
 
 def _function(name: str) -> Any:
@@ -245,10 +235,6 @@ def _function(name: str) -> Any:
         raise _failed(module, error) from error
     if not callable(simulator):
         raise ValueError(f"run must name a function of {module}, got {function!r}")
-    try:
-        require_simulator("run", simulator)
-    except TypeError as error:
-        raise ValueError(str(error)) from error
     return simulator
 
 

@@ -24,12 +24,7 @@ from oracles.units import (
 )
 from rolling_ellipse import Impulse, Scene, _core
 from rolling_ellipse._ask.settings import DEFAULTS, Settings
-from rolling_ellipse._command_line import (
-    NOT_TYPED,
-    SCENE_OPTIONS,
-    chosen_scene,
-    motion_parser,
-)
+from rolling_ellipse._command_line import SCENE_OPTIONS, chosen_scene, motion_parser
 from rolling_ellipse._motion.export.files import event_row, event_values
 from rolling_ellipse._motion.export.strict import scene_of
 
@@ -41,6 +36,14 @@ GIVEN = {
     "friction": 0.3, "restitution": 0.6, "theta": 0.5, "omega": 1.5, "x": 0.7, "z": 2.5,
     "x_dot": 0.4, "z_dot": -0.3,
 }  # fmt: skip
+# Fields of a Scene without an option of the command line, and the reasons.
+NOT_TYPED = {
+    "x": "a motion is the same from every place",
+    "z": "the body starts on the ground, where a blow can press it down",
+    "x_dot": "as z: it starts rolling",
+    "z_dot": "as z: it starts rolling",
+    "impulse": "--press",
+}
 START = Scene(**{name: GIVEN.get(name, 2**-6) for name in FIELDS}, impulse=BLOW)
 TIMES = np.linspace(0.0, 2.0, 21)
 

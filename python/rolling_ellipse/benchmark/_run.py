@@ -61,7 +61,7 @@ def run(
     >>> from rolling_ellipse import benchmark
     >>> benchmark.run(lambda problem, times, step: problem.exact(times), problems="rest.lie")
     """
-    require_simulator("mine", mine)
+    _require_simulator(mine)
     tolerance, settings = positive("tolerance", tolerance), list(ladder)
     able = {one.id for one in able_to(tags)}
     scores = []
@@ -81,7 +81,7 @@ def run(
     return Scores(scores)
 
 
-def require_simulator(name: str, mine: Any) -> None:
+def _require_simulator(mine: Any) -> None:
     """Raise TypeError if an object cannot be called with a problem, times and a setting."""
     given = shown(mine)
     if callable(mine):
@@ -92,7 +92,7 @@ def require_simulator(name: str, mine: Any) -> None:
             return
         except TypeError:
             given = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
-    raise TypeError(f"{name} must be a function of (problem, times, setting), got {given}")
+    raise TypeError(f"mine must be a function of (problem, times, setting), got {given}")
 
 
 def score(
