@@ -15,14 +15,17 @@ _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Columns = list[FloatArray]  # of arguments, as `broadcast` returns them
 _Found = tuple[list[FloatArray], list[str]]  # times of each value, and why some are missing
 
-class Mode(enum.IntEnum):
+class _Named:
+    """Members equal their names, too (`equal_to_names` of `_ask.printing`)."""
+
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+
+class Mode(_Named, enum.IntEnum):
     ROLLING = 0
     SLIDING = 1
     FLIGHT = 2
     REST = 3
-
-    def __eq__(self, other: object) -> bool: ...
-    def __hash__(self) -> int: ...
 
 class Restitution(enum.Enum):
     STRONGE = 0
@@ -34,16 +37,13 @@ class Painleve(enum.Enum):
     NO_MOTION = 1
     TWO_MOTIONS = 2
 
-class Validity(enum.Enum):
+class Validity(_Named, enum.Enum):
     VALID = 0
     INVALID = 1
     EDGE = 2
     NO_PROOF = 3
 
-    def __eq__(self, other: object) -> bool: ...
-    def __hash__(self) -> int: ...
-
-class Outcome(enum.IntEnum):
+class Outcome(_Named, enum.IntEnum):
     RESTS = 0
     ROCKS = 1
     ROLLS_OVER = 2
@@ -52,10 +52,7 @@ class Outcome(enum.IntEnum):
     JAMS = 5
     EDGE = 6
 
-    def __eq__(self, other: object) -> bool: ...
-    def __hash__(self) -> int: ...
-
-class EventKind(enum.Enum):
+class EventKind(_Named, enum.Enum):
     SLIP = 0
     STICK = 1
     REVERSE = 2
@@ -63,9 +60,6 @@ class EventKind(enum.Enum):
     IMPACT = 4
     REST = 5
     JAM = 6
-
-    def __eq__(self, other: object) -> bool: ...
-    def __hash__(self) -> int: ...
 
 class Ending(enum.Enum):
     COMPLETED = 0
@@ -142,14 +136,9 @@ def thresholds(
     a: float, b: float, gravity: float, gyration2: float | None, friction: float
 ) -> dict[str, Any]: ...
 def lift_off(
-    a: float,
-    b: float,
-    gravity: float,
-    gyration2: float | None,
-    friction: float,
-    slip_speed: float,
-    painleve_friction: float,
-) -> tuple[float, tuple[tuple[float, float], ...]]: ...
+    a: float, b: float, gravity: float, gyration2: float | None, friction: float,
+    slip_speed: float, painleve_friction: float,
+) -> tuple[float, tuple[tuple[float, float], ...]]: ...  # fmt: skip
 def are_sample_times(t: FloatArray) -> bool: ...
 def simulate(
     scene: Scene, settings: Settings, t: FloatArray, start: _Two | None
@@ -171,25 +160,13 @@ def project(scene: Scene, q: FloatArray, q_dot: FloatArray) -> _Two: ...
 def constraint_system(q: FloatArray, q_dot: FloatArray, a: float, b: float) -> _Two: ...
 def period(scene: Scene) -> float: ...
 def flow_scalar(
-    t: float,
-    a: float,
-    b: float,
-    theta: float,
-    omega: float,
-    gravity: float,
-    gyration2: float | None,
-    slope: float,
-) -> tuple[float, float, float]: ...
+    t: float, a: float, b: float, theta: float, omega: float, gravity: float,
+    gyration2: float | None, slope: float,
+) -> tuple[float, float, float]: ...  # fmt: skip
 def flow_times(
-    t: FloatArray,
-    a: float,
-    b: float,
-    theta: float,
-    omega: float,
-    gravity: float,
-    gyration2: float | None,
-    workers: int,
-) -> _Three: ...
+    t: FloatArray, a: float, b: float, theta: float, omega: float, gravity: float,
+    gyration2: float | None, workers: int,
+) -> _Three: ...  # fmt: skip
 def flow_array(n: int, arguments: _Columns, workers: int, level: str = "best") -> _Three: ...
 def slope_flow_array(n: int, arguments: _Columns, workers: int) -> _Three: ...
 def flow_levels() -> list[str]: ...

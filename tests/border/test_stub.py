@@ -13,7 +13,11 @@ from rolling_ellipse import _core
 
 STUB = ast.parse((Path(rolling_ellipse.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
 FUNCTIONS = {each.name: each for each in STUB.body if isinstance(each, ast.FunctionDef)}
-CLASSES = {each.name: each for each in STUB.body if isinstance(each, ast.ClassDef)}
+CLASSES = {
+    each.name: each
+    for each in STUB.body
+    if isinstance(each, ast.ClassDef) and not each.name.startswith("_")
+}
 CONSTANTS = {ast.unparse(each.target) for each in STUB.body if isinstance(each, ast.AnnAssign)}
 
 
