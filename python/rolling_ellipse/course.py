@@ -24,6 +24,7 @@ import numpy as np
 
 from . import _core, geometry, impacts
 from ._ask.check import FloatArray, finite, number, shown
+from ._ask.habits import meant
 from ._ask.impulse import Impulse
 from ._ask.scene import SCENE_UNITS, Scene
 from ._ask.settings import Settings
@@ -121,26 +122,23 @@ def mark(task: str, answer: float) -> Mark:
         If SciPy is not installed (sheet 10).
     """
     if not (isinstance(task, str) and task in _TASKS):
-        from difflib import get_close_matches  # for mistakes only: it takes a millisecond
-
-        near = ", ".join(map(repr, get_close_matches(shown(task).strip("'"), _TASKS, 3, 0.5)))
-        meant = f"; near it: {near}" if near else ""
-        raise ValueError(f"task must be one of '1.1' to '10.4', got {shown(task)}{meant}")
+        hint = meant(task, _TASKS) if isinstance(task, str) else ""
+        raise ValueError(f"task must be one of '1.1' to '10.4', got {shown(task)}{hint}")
     if isinstance(answer, (bool, np.bool_)):
         raise TypeError(f"answer must be a number, got {answer}")
     given, of = float(finite("answer", number("answer", answer))), _TASKS[task]
     share, known = _known(of.number, os.environ.get(_FILE) if task[0] == "8" else None)
     right, says = known[0][1], _DATA["marks"]
     allowed = _allowed(right, share)
-    made = [names for names, v in known if abs(given - v) <= _allowed(v, share)]
-    made = [names for names in made if not any({*fewer} < {*names} for fewer in made)]
-    if () in made:
-        made = [("none",)]
+    ways = [names for names, v in known if abs(given - v) <= _allowed(v, share)]
+    ways = [names for names in ways if not any({*fewer} < {*names} for fewer in ways)]
+    if () in ways:
+        ways = [("none",)]
     elif abs(given - right) <= allowed + _MOST * abs(right):
-        made.append(("per mille",))
-    made = list(dict.fromkeys(made)) or [("other",)]
-    mistake = " or ".join(" and ".join(names) for names in made)
-    words = [[says.get(n, f"This is the answer to {n}.") for n in names] for names in made]
+        ways.append(("per mille",))
+    ways = list(dict.fromkeys(ways)) or [("other",)]
+    mistake = " or ".join(" and ".join(names) for names in ways)
+    words = [[says.get(n, f"This is the answer to {n}.") for n in names] for names in ways]
     sentence = " Or: ".join(map(" ".join, words)).format(within=1e2 * allowed / abs(right))
     if task[0] == "8":
         sentence += f" ({'Measured' if _FILE in os.environ else 'Made'} impacts.)"
@@ -279,15 +277,12 @@ def _torque(s: Scene, d: dict[str, float], name: str) -> float:
     low = _thresholds(s)["roll_over_speed"]
     if name == "friction_to_roll_over":
         return _friction_by_torque(s, low)
-    speeds = np.linspace(low, 3 * low, 81)  # the last at which friction holds, then bisection
-    holds = [speed for speed in speeds if _friction_by_torque(s, speed) <= s.friction]
-    low = max(holds, default=math.nan)
-    high = low + speeds[1] - speeds[0]
-    for _ in range(40):
-        middle = (low + high) / 2
-        low, high = (
-            (middle, high) if _friction_by_torque(s, middle) <= s.friction else (low, middle)
-        )
+    high = 3 * low
+    for _ in range(5):  # the last speed at which friction holds, on finer and finer grids
+        speeds, spacing = np.linspace(low, high, 81, retstep=True)
+        holds = [speed for speed in speeds if _friction_by_torque(s, speed) <= s.friction]
+        low = max(holds, default=math.nan)
+        high = low + spacing
     return float(low)
 
 
