@@ -12,12 +12,11 @@ in the order x, z, theta, x_dot, z_dot, omega.
 
 from ._catalogue import Gradient, gradients, problem, problems
 from ._equations import Dae, Ode
-from ._export import export
+from ._files import export
 from ._problem import KnownEvent, Problem
 from ._results import Result
 from ._run import run, score
-from ._score import Score
-from ._scores import Scores
+from ._scores import Score, Scores
 
 __all__ = [
     "Dae", "Gradient", "KnownEvent", "Ode", "Problem", "Result", "Score", "Scores", "export",

@@ -1,21 +1,63 @@
-"""Results in files that any program can write."""
+"""Files for programs in any language: problems to be read, and results that they write."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._ask.check import choice, file_name
-from ._catalogue import scored_ones
+from .._motion.export.new_files import write_new
+from ._catalogue import FOLDER, problems, scored_ones
 from ._problem import COLUMNS, STATE, Problem
 from ._results import KINDS, Result
 
 SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}
+
+
+def export(folder: Any) -> list[Path]:
+    """Write the scored problems, their scenes and empty tables of results into a folder.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist. A table of results that is there already stays as it is, and so
+        do files that equal those to be written.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    ValueError
+        If the folder has another file of one of the names, or a link; nothing is written then.
+    OSError
+        If a file cannot be written. Each file is there whole or not at all.
+    """
+    place = Path(file_name("folder", folder))
+    files = {"README.txt": FOLDER.with_name("export.txt").read_bytes()}
+    for one in problems():
+        files[f"{one.id}.json"] = (FOLDER / f"{one.id}.json").read_bytes()
+        for suffix, text in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
+            with suppress(ValueError):  # coefficients of restitution that MJCF has not
+                files[one.id + suffix] = text().encode()
+        if not (place / f"{one.id}.csv").is_file():
+            files[f"{one.id}.csv"] = _empty_table(one).encode()
+    return write_new(place, files)
+
+
+def _empty_table(one: Problem) -> str:
+    """Return a table with the times and no states."""
+    empty = "," * (len(COLUMNS) - 1)
+    rows = [",".join(COLUMNS), *(f"{t!r}{empty}" for t in one.output_times.tolist())]
+    return "\n".join(rows) + "\n"
 
 
 class _Row(NamedTuple):
@@ -90,8 +132,9 @@ def read(problem: Problem, path: Path) -> Result:
             kept.append(numbers)
     columns = np.array(kept).reshape(-1, len(COLUMNS)).T
     listed, kind = path.with_name(f"{problem.id}.events.csv"), f"kind of {problem.id}"
-    rows = _rows(problem, listed, ("kind", "t")) if listed.exists() else None
-    events = rows and [(choice(kind, row.entries["kind"], KINDS), row.number("t")) for row in rows]
+    events = None
+    if listed.exists() and (rows := _rows(problem, listed, ("kind", "t"))) is not None:
+        events = [(choice(kind, row.entries["kind"], KINDS), row.number("t")) for row in rows]
     return Result(columns[1:7].T, columns[0], events, *columns[7:])
 
 

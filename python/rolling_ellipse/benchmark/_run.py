@@ -14,8 +14,7 @@ from ._catalogue import scored_ones
 from ._files import read_folder
 from ._problem import Problem
 from ._results import checked
-from ._score import TOLERANCE, UNSUPPORTED, Score, scored
-from ._scores import Scores
+from ._scores import TOLERANCE, UNSUPPORTED, Score, Scores, scored
 
 
 def run(

@@ -1,23 +1,105 @@
-"""Scores of a simulator, and their table."""
+"""Scores of a simulator: of each problem its answer, errors and lost energy; and their table."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._ask.check import FloatArray
 from .._ask.printing import html_table, required, text_table
+from .._core import Mode
+from .._motion.events import energies
+from .._motion.trajectory import Trajectory
+from ._answers import answered
 from ._catalogue import scored_ones
+from ._events import gap_and_slip
 from ._problem import STATE, Problem
-from ._score import FAILED, RIGHT, UNSUPPORTED, WRONG, Score
+from ._results import Rows
 
 if TYPE_CHECKING:
     from .._pictures.benchmark import ScoresChart
 
+TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
 _HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
+RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """The score of one problem at one setting.
+
+    Attributes
+    ----------
+    problem : str
+        Id.
+    setting : float or None
+        Setting of the ladder.
+    answer : str
+        "right", "wrong", "not supported", or "failed": no rows, none at the end or at the given
+        times, or rows that are not finite.
+    passed : bool
+        Whether the answer is right, no given time is missing and `over_condition` is at most the
+        tolerance.
+    reason : str
+        Why an answer is not right, or rows are missing.
+    errors : ndarray, shape (6,)
+        Largest error of each variable over its scale, at the given times before the horizon.
+    error, over_condition : float
+        Largest error, and largest error over condition number.
+    events : dict
+        ``"missed"`` and ``"invented"`` count events by kind; ``"times"`` has the largest error of
+        time by kind [s].
+    energy_gained, energy_lost : float
+        Largest excess and lack of energy against the exact motion, over m g L.
+    penetration, hop, slip : float
+        Deepest overlap with the ground; largest distance from it while the exact body touches it;
+        both over L. Largest slip while the exact body rolls, over sqrt(g L).
+    cone_excess, normal_force_error, friction_force_error : float
+        Of forces in the result, over m g: largest excess of abs(F) over friction times N and of
+        -N over 0, in all rows (with infinite friction that of -N); largest errors at the given
+        times before the horizon. NaN without forces.
+    tolerance : float
+        Largest `over_condition` that passes.
+    """
+
+    problem: str
+    setting: float | None
+    answer: str
+    passed: bool = False
+    reason: str = ""
+    errors: FloatArray = field(default_factory=lambda: np.full(6, math.nan))
+    over_condition: float = math.nan
+    events: dict[str, dict[str, Any]] = field(default_factory=dict)
+    energy_gained: float = math.nan
+    energy_lost: float = math.nan
+    penetration: float = math.nan
+    hop: float = math.nan
+    slip: float = math.nan
+    cone_excess: float = math.nan
+    normal_force_error: float = math.nan
+    friction_force_error: float = math.nan
+    tolerance: float = TOLERANCE
+
+    @property
+    def error(self) -> float:
+        return float(np.max(self.errors))
+
+    @property
+    def digits(self) -> float:
+        """Decimal digits that agree, 16 at most."""
+        return float(np.minimum(16.0, -math.log10(self.error))) if self.error else 16.0
+
+    def _row(self) -> tuple[str, ...]:
+        numbers = (f"{self.error:.1e}", f"{self.digits:.1f}", f"{self.over_condition:.1e}")
+        known = numbers if math.isfinite(self.error) else ("", "", "")
+        setting = "" if self.setting is None else f"{self.setting:g}"
+        passed = "yes" if self.passed else "no"
+        return (self.problem, setting, self.answer, *known, passed, self.reason)
 
 
 class Scores(tuple[Score, ...]):
@@ -109,3 +191,58 @@ class Scores(tuple[Score, ...]):
 
     def _repr_html_(self) -> str:
         return html_table(self.verdict(), [score._row() for score in self], _HEAD)
+
+
+def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) -> Score:
+    """Return the score of a result."""
+    if not mine.t.size:
+        why = "; ".join(["no row is finite and within its time", *filter(None, [mine.not_finite])])
+        return Score(one.id, setting, FAILED, reason=why, tolerance=tolerance)
+    rows, places = np.nonzero(one.times[:, None].round(9) == mine.t.round(9))
+    early = (one.times[rows] < one.horizon) | (one.horizon == one.t_end)
+    rows, places = rows[early], places[early]
+    answer = answered(one, mine, rows, places)
+    errors = answer.errors.max(axis=0) if rows.size else np.full(6, math.nan)
+    over = (answer.errors.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
+    ends = f"ends at {mine.t[-1]:.6g} s" if mine.t[-1] < (1 - 1e-9) * one.t_end else ""
+    failed = bool(ends or mine.not_finite or not rows.size)
+    said = [ends, mine.not_finite, *answer.reasons, mine.missing, mine.note]
+    return Score(
+        one.id, setting, FAILED if failed else RIGHT if answer.right else WRONG,
+        not failed and answer.right and not mine.missing and bool(over <= tolerance),
+        "; ".join(text for text in said if text), errors, float(over), answer.events,
+        **_losses(one, mine.states, one.trajectory.sol(mine.t)),
+        **_forces(one, mine, rows, places), tolerance=tolerance,
+    )  # fmt: skip
+
+
+def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, float]:
+    """Return energies gained and lost, penetration, hop and slip of rows, and exact samples."""
+    scene, length = one.scene, float(one.scales[0])
+    mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
+    change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / (
+        scene.mass * scene.gravity * length
+    )
+    gap, slip = gap_and_slip(one, states)
+    gap, slip = gap / length, np.abs(slip)
+    touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING
+    return {
+        "energy_gained": float(max(0.0, change.max())),
+        "energy_lost": float(max(0.0, -change.min())),
+        "penetration": float(max(0.0, -gap.min())),
+        "hop": float(max(gap[touching].max(initial=0.0), 0.0)),
+        "slip": float(slip[rolling].max(initial=0.0) / one.scales[3]),
+    }
+
+
+def _forces(one: Problem, mine: Rows, rows: Any, places: Any) -> dict[str, float]:
+    """Return the excess over the cone of friction and the errors of N and F, over m g."""
+    outside, weight = -mine.normal_force, one.scene.mass * one.scene.gravity
+    if math.isfinite(one.scene.friction):
+        limit = one.scene.friction * mine.normal_force
+        outside = np.fmax(outside, np.abs(mine.friction_force) - limit)
+    largest = {"cone_excess": np.maximum(0.0, np.fmax.reduce(outside, initial=math.nan))}
+    for name in ("normal_force", "friction_force"):
+        error = np.abs(getattr(mine, name)[places] - getattr(one, name)[rows])
+        largest[f"{name}_error"] = np.fmax.reduce(error, initial=math.nan)
+    return {name: float(value / weight) for name, value in largest.items()}
