@@ -53,10 +53,10 @@ def number(name: str, value: Any) -> float:
     if type(value) in _PLAIN:
         with suppress(OverflowError):  # an int beyond doubles, refused below
             return float(value)
-    found = _doubles(name, value)
-    if found is None or found.ndim:
+    double = _doubles(name, value)
+    if double is None or double.ndim:
         raise TypeError(f"{name} must be a number, got {shown(value)}")
-    return float(found)
+    return float(double)
 
 
 def optional_number(name: str, value: Any) -> float | None:
@@ -76,18 +76,18 @@ def whole(name: str, value: Any) -> int:
 
 def positive(name: str, value: Any) -> float:
     """Return ``value`` as a positive finite float, or raise an error naming the argument."""
-    found = number(name, value)
-    if not 0 < found < math.inf:
-        raise ValueError(f"{name} must be positive and finite, got {found!r}")
-    return found
+    size = number(name, value)
+    if not 0 < size < math.inf:
+        raise ValueError(f"{name} must be positive and finite, got {size!r}")
+    return size
 
 
 def whole_within(name: str, value: Any, most: int) -> int:
     """Return ``value`` as an int from 1 to ``most``, or raise an error naming the argument."""
-    found = whole(name, value)
-    if not 1 <= found <= most:
+    count = whole(name, value)
+    if not 1 <= count <= most:
         raise ValueError(f"{name} must be from 1 to {most}, got {shown(value)}")
-    return found
+    return count
 
 
 def worker_count(workers: int) -> int:
@@ -104,9 +104,7 @@ def worker_count(workers: int) -> int:
 
 def flag(name: str, value: Any) -> bool:
     """Return ``value`` if it is True or False, or raise TypeError naming the argument."""
-    if value is True or value is False:
-        return value
-    if isinstance(value, np.bool_):
+    if isinstance(value, (bool, np.bool_)):
         return bool(value)
     raise TypeError(f"{name} must be True or False, got {shown(value)}")
 
@@ -116,11 +114,11 @@ def array(name: str, value: Any) -> FloatArray:
 
     NumPy's functions may differ in the last bits for another layout.
     """
-    found = _doubles(name, value)
-    if found is None:
+    doubles = _doubles(name, value)
+    if doubles is None:
         raise TypeError(f"{name} must be a number or an array of numbers, got {shown(value)}")
-    layout = found.flags
-    return found if layout.c_contiguous and layout.aligned else copied(found)
+    layout = doubles.flags
+    return doubles if layout.c_contiguous and layout.aligned else copied(doubles)
 
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
@@ -128,15 +126,11 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
     kind = type(value)
     if kind is float or (kind is list and len(value) <= _FEW and {*map(type, value)} == _FLOATS):
         return np.array(value)
-    if type(value) is np.ndarray and value.dtype is _DOUBLE:
-        doubles = value
-    else:
+    doubles: FloatArray | None = value
+    if kind is not np.ndarray or value.dtype is not _DOUBLE:
         _require_plain(name, value)
-        converted = _converted(name, value)
-        if converted is None:
-            return None
-        doubles = converted
-    if doubles.ndim > _MOST_AXES:
+        doubles = _converted(name, value)
+    if doubles is not None and doubles.ndim > _MOST_AXES:
         raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {doubles.ndim}")
     return doubles
 
@@ -185,16 +179,16 @@ def _size(value: Any) -> int:
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
     """Yield the pieces of an array in C order: index of the first number, and the numbers."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
-    for begin in range(0, values.size, _PIECE):
-        yield begin, flat[begin : begin + _PIECE]
+    for first in range(0, values.size, _PIECE):
+        yield first, flat[first : first + _PIECE]
 
 
 def copied(values: npt.NDArray[Any]) -> FloatArray:
     """Return a float64 copy of an array, in C order."""
-    found = np.empty(values.size)
-    for begin, piece in pieces(values):
-        found[begin : begin + piece.size] = piece
-    return found.reshape(values.shape)
+    copy = np.empty(values.size)
+    for first, piece in pieces(values):
+        copy[first : first + piece.size] = piece
+    return copy.reshape(values.shape)
 
 
 def _require_plain(name: str, value: Any, axes: int = 0) -> None:
@@ -209,8 +203,8 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
             nested = [entry for entry in piece if type(entry) in _SLICED]
             if nested:  # in one call for all: there may be a million pairs
                 if axes == _MOST_AXES:
-                    found = shown(nested[0])
-                    raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found}")
+                    deep = shown(nested[0])
+                    raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {deep}")
                 _require_plain(name, chain.from_iterable(nested), axes + 1)
             if len(nested) < len(piece):
                 for entry in piece:
@@ -257,9 +251,9 @@ def require(name: str, requirement: str, values: Any, holds: Any) -> None:
 
 def finite(name: str, value: Any) -> FloatArray:
     """Return ``value`` as an array of finite numbers, or raise an error naming the argument."""
-    found = array(name, value)
-    require(name, "finite", found, np.isfinite(found))
-    return found
+    values = array(name, value)
+    require(name, "finite", values, np.isfinite(values))
+    return values
 
 
 def coordinates(name: str, value: Any) -> FloatArray:
@@ -297,11 +291,11 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
     ]
 
 
-def shaped(found: Any, shape: tuple[int, ...]) -> Any:
+def shaped(flat: Any, shape: tuple[int, ...]) -> Any:
     """Return a 1-D array, or each array of a tuple, in the given shape; if that is (), a float."""
-    if isinstance(found, tuple):
-        return tuple([shaped(values, shape) for values in found])
-    return float(found[0]) if shape == () else found.reshape(shape)
+    if isinstance(flat, tuple):
+        return tuple([shaped(values, shape) for values in flat])
+    return float(flat[0]) if shape == () else flat.reshape(shape)
 
 
 def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> Any:
@@ -315,16 +309,15 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
     given = {k: value for k, value in arguments.items() if k != "gyration2" or value is not None}
     shape, columns = broadcast(**given)
     known = dict(zip(given, columns, strict=True))
-    if "gyration2" not in known:
+    if len(known) < len(arguments):
         known["gyration2"] = uniform_disc(known["a"], known["b"])
     columns, size = [known[name] for name in arguments], math.prod(shape)
     try:
         if size == 0:
             function(1, [_number_of(name, known) for name in arguments], *settings)
-        found = function(size, columns, *settings)
+        return shaped(function(size, columns, *settings), shape)
     except ValueError as error:
         raise ValueError(_with_indices(str(error), shape)) from None
-    return shaped(found, shape)
 
 
 def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
@@ -370,11 +363,10 @@ def file_name(name: str, value: Any) -> str:
     path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
     if not isinstance(path, str):
         raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
-    try:
-        named = bool(os.fsencode(path)) and "\0" not in path
-    except UnicodeEncodeError:  # a lone surrogate, which no file name can have
-        named = False
-    if not named:
+    encoded = b""
+    with suppress(UnicodeEncodeError):  # a lone surrogate, which no file name can have
+        encoded = os.fsencode(path)
+    if not encoded or 0 in encoded:
         raise ValueError(f"{name} must name a file, got {path!r}")
     return path
 

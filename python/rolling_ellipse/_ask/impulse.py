@@ -85,9 +85,8 @@ class Impulse:
             Arrays that broadcast make many blows.
         """
         force, distance = array("F", F), array("d", d)
-        push = copied(force)
         try:
-            blow = cls(jz=np.negative(push, out=push), dx=distance)
+            blow = cls(jz=-force, dx=distance)
         except ValueError:
             _let_the_core_refuse("jz", force, "F")
             _let_the_core_refuse("dx", distance, "d")
@@ -140,10 +139,10 @@ Impulse.__init__ = _by_name(Impulse.__init__)  # type: ignore[method-assign]
 
 def numbers(name: str, value: Any) -> Any:
     """Return a number as a float, and an array of numbers as a read-only copy."""
-    found = array(name, value)
-    if found.ndim == 0:
-        return float(found)
-    kept = copied(found)
+    values = array(name, value)
+    if values.ndim == 0:
+        return float(values)
+    kept = copied(values)
     kept.flags.writeable = False
     return kept
 
@@ -158,7 +157,7 @@ def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
     if not values.size:
         return
     # Flat index of the worst value of each piece
-    worst = [begin + _largest(piece) for begin, piece in pieces(values)]
+    worst = [first + _largest(piece) for first, piece in pieces(values)]
     index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
     try:
         _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
