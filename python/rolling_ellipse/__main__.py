@@ -16,19 +16,8 @@ from pathlib import Path
 from matplotlib import rcParams
 
 from . import StabilityWarning, Status, Trajectory, examples, simulate
+from . import _command_line as shell
 from ._ask.printing import printable
-from ._command_line import (
-    PROGRAM,
-    act,
-    benchmark_parser,
-    chosen_scene,
-    examples_parser,
-    explore_parser,
-    lines,
-    motion_parser,
-    require_file,
-    summary,
-)
 from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
 from ._player import animate, explore
@@ -52,12 +41,12 @@ def main(arguments: list[str] | None = None) -> int:
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {
-        "explore": (explore_parser, _page),
-        "benchmark": (benchmark_parser, act),
-        "examples": (examples_parser, _examples),
+        "explore": (shell.explore_parser, _page),
+        "benchmark": (shell.benchmark_parser, shell.act),
+        "examples": (shell.examples_parser, _examples),
     }
     command = typed[0] if typed and typed[0] in commands else ""
-    parser, action = commands.get(command, (motion_parser, _motion))
+    parser, action = commands.get(command, (shell.motion_parser, _motion))
     options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
@@ -77,19 +66,19 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
     """Simulate, write the files, and return the exit code and the summary."""
     for name in ("save", "plot"):
         if (path := getattr(options, name)) is not None:
-            require_file(f"--{name}", path)
+            shell.require_file(f"--{name}", path)
     if options.save is not None:
         film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
     how = {name: getattr(options, name) for name in ("model", "method", "step")}
-    trajectory = simulate(chosen_scene(options), options.time, **how, raise_on_failure=False)
+    trajectory = simulate(shell.chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
     if options.plot is not None:
         files.append(_write_figure(trajectory, options.plot))
     if options.save is not None:
         animate(trajectory, options.save)
         files.append(options.save)
-    facts = summary(trajectory, files)
-    text = json.dumps(facts, indent=2) if options.json else "\n".join(lines(facts, trajectory))
+    facts = shell.summary(trajectory, files)
+    text = json.dumps(facts, indent=2) if options.json else shell.as_text(facts, trajectory)
     return 0 if trajectory.status in _FOLLOWED else 1, text
 
 
@@ -104,12 +93,12 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
 
 def _page(options: argparse.Namespace) -> tuple[int, str]:
     """Write the page of `explore`, open it unless `--no-open` is given, and return 0 and a text."""
-    explorer = explore(chosen_scene(options), t_end=options.time, language=options.language)
+    explorer = explore(shell.chosen_scene(options), t_end=options.time, language=options.language)
     path = options.save
     if path is None:
         handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
         os.close(handle)
-    require_file("--save", path)
+    shell.require_file("--save", path)
     explorer.save(path)
     message = f"written           {path}"
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
@@ -125,7 +114,7 @@ def _examples(options: argparse.Namespace) -> tuple[int, str]:
 def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
         argument, *said = printable(str(error)).split() or [""]
-        print(f"{PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
+        print(f"{shell.PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
 
 
 def run() -> int:

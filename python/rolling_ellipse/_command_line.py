@@ -301,8 +301,8 @@ def _finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def lines(facts: dict[str, Any], trajectory: Trajectory) -> list[str]:
-    """Return the result of `summary` as lines of text."""
+def as_text(facts: dict[str, Any], trajectory: Trajectory) -> str:
+    """Return the result of `summary` as text, a line for each fact."""
     scene = {name: value for name, value in trajectory.scene._rows()}
     start, blow = scene.pop("start"), scene.pop("impulse", "none")
     rows = [
@@ -315,7 +315,7 @@ def lines(facts: dict[str, Any], trajectory: Trajectory) -> list[str]:
     if "distance" in facts:
         rows += _motion_rows(facts, trajectory)
     rows += [("written", name) for name in facts["files"]]
-    return [f"{name:<17} {value}" for name, value in rows]
+    return "\n".join(f"{name:<17} {value}" for name, value in rows)
 
 
 def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[str, str]]:
