@@ -174,11 +174,11 @@ def _known(task: str, path: str | None) -> tuple[float, list[tuple[tuple[str, ..
         raise ValueError(f"{_FILE} must name a table of {wanted}, got {path!r}")
     known: list[tuple[tuple[str, ...], float]] = [((), right)]
     usual = _usual(of)
-    for made in (*combinations(usual, 1), *combinations(usual, 2)):
-        data = {key: value for mistake in made for key, value in mistake.data.items()}
-        source = max(mistake.source for mistake in made)
-        value = math.prod(mistake.factor for mistake in made) * _answer(of, data, source)
-        known.append((tuple(dict.fromkeys(mistake.name for mistake in made)), value))
+    for mistakes in (*combinations(usual, 1), *combinations(usual, 2)):
+        data = {key: value for mistake in mistakes for key, value in mistake.data.items()}
+        source = max(mistake.source for mistake in mistakes)
+        value = math.prod(mistake.factor for mistake in mistakes) * _answer(of, data, source)
+        known.append((tuple(dict.fromkeys(mistake.name for mistake in mistakes)), value))
     for other in _TASKS.values():
         if other.number[:-1] == task[:-1] and other.unit == of.unit and other is not of:
             known.append(((f"task {other.number}",), _answer(other)))
@@ -203,7 +203,7 @@ def _usual(of: Task) -> list[_Mistake]:
         (number in _BLOWS, _Mistake("friction", {"friction": 0.0})),
         ("theta" in data and number not in _RESTS, _Mistake("angle", {"theta": 0.0})),
     ]
-    return [mistake for made, mistake in usual if made] + _WRONG.get(number, [])
+    return [mistake for possible, mistake in usual if possible] + _WRONG.get(number, [])
 
 
 def _allowed(value: float, share: float) -> float:
@@ -247,12 +247,15 @@ def _misfit(s: Scene) -> dict[str, float]:
     return dict(zip(free, best.x.tolist(), strict=True))
 
 
+def _shape(s: Scene, theta: Any) -> Any:
+    """Return the support function h and its derivatives h', h''."""
+    functions = geometry.support, geometry.support_slope, geometry.support_curvature
+    return [function(theta, a=s.a, b=s.b) for function in functions]
+
+
 def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]:
     """Return what M_C = I_C omega_dot leads to for rolling: omega_dot, F and N."""
-    h, lead, bend = (
-        f(theta, a=s.a, b=s.b)
-        for f in (geometry.support, geometry.support_slope, geometry.support_curvature)
-    )
+    h, lead, bend = _shape(s, theta)
     down, along = s.gravity * math.cos(s.slope), s.gravity * math.sin(s.slope)
     spin = (along * h - down * lead) / (s.gyration2 + h**2 + lead**2)
     force = s.mass * (h * spin + lead * omega_squared - along)
@@ -262,7 +265,7 @@ def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]
 def _friction_by_torque(s: Scene, flat: float) -> float:
     """Return the largest |F|/N on level ground from the flat position to the tip, or inf."""
     theta = np.linspace(0.0, math.pi / 2, 1001)
-    h, lead = (f(theta, a=s.a, b=s.b) for f in (geometry.support, geometry.support_slope))
+    h, lead, _ = _shape(s, theta)
     start = (s.gyration2 + s.b**2) * flat**2 + 2 * s.gravity * (s.b - h)
     _, force, normal = _by_torque(s, theta, start / (s.gyration2 + h**2 + lead**2))
     return float(np.max(np.abs(force) / normal)) if normal.min() > 0 else math.inf
@@ -312,7 +315,7 @@ def _steps(s: Scene, end: float, step: float) -> float:
 
 def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
     (theta, *before), after = measured_impacts()
-    h, lead = (f(theta, a=s.a, b=s.b) for f in (geometry.support, geometry.support_slope))
+    h, lead, _ = _shape(s, theta)
     x, z, turn = after - before
     law: dict[str, Any] = {"a": s.a, "b": s.b, "gyration2": s.gyration2, "friction": s.friction}
     off = -after + impacts.collide(theta, *before, **law, restitution=s.restitution)
@@ -345,8 +348,7 @@ _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "small": lambda s, d, name: 2 * math.pi / _thresholds(s)["rocking_rate"],
     "torque": _torque,
     "after": lambda s, d, name: getattr(simulate(s, 5.0).events[0].state_after, name),
-    "leave": lambda s, d, name: max(
-        0.0, -s.gravity / geometry.support_curvature(s.theta, a=s.a, b=s.b)) ** 0.5,
+    "leave": lambda s, d, name: max(0.0, -s.gravity / _shape(s, s.theta)[2]) ** 0.5,
     "impacts": _impact,
     "runs": lambda s, d, name: _runs(
         name, lambda parts: _steps(s, d["T"], d["step"] / parts)),
