@@ -93,8 +93,8 @@ class Impulse:
             raise
         pull = float(np.min(force, initial=0.0))
         if pull < 0:
-            said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
-            warnings.warn(said, ValidityWarning, stacklevel=2)
+            message = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
+            warnings.warn(message, ValidityWarning, stacklevel=2)
         return blow
 
     def _values(self) -> tuple[Any, ...]:
@@ -124,11 +124,11 @@ def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
     @wraps(make)
     def init(*given: _Given.args, **named: _Given.kwargs) -> None:
         if len(given) > 1:  # the first is the impulse itself
-            said = (
+            message = (
                 f"Impulse({', '.join(map(shown, given[1:]))}) has the components jx, jz [N s]: "
                 "write their names, or Impulse.press(F, d) for a press F at the distance d"
             )
-            warnings.warn(said, DeprecationWarning, stacklevel=2)
+            warnings.warn(message, DeprecationWarning, stacklevel=2)
         make(*given, **named)
 
     return init

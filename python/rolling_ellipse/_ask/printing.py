@@ -40,10 +40,10 @@ def equal_to_names(kind: _Enum) -> _Enum:
     def unequal(member: Any, other: object) -> bool:
         return member._name_ != other if isinstance(other, str) else differs(member, other)
 
-    said = "A member equals its name, a str"
+    about = "A member equals its name, a str"
     if issubclass(kind, int):
-        said += ", and its code, which is its hash: dicts and arrays of codes know no names"
-    faces = {"__eq__": equal, "__ne__": unequal, "__doc__": f"{kind.__doc__}\n\n{said}."}
+        about += ", and its code, which is its hash: dicts and arrays of codes know no names"
+    faces = {"__eq__": equal, "__ne__": unequal, "__doc__": f"{kind.__doc__}\n\n{about}."}
     for name, face in faces.items():
         setattr(kind, name, face)
     return kind
@@ -141,8 +141,8 @@ class Listed:
     _units: ClassVar[dict[str, str]] = {}
 
     def _rows(self) -> list[Row]:
-        found = ((field.name, getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
-        return [(name, with_unit(value, self._units.get(name, ""))) for name, value in found]
+        values = ((field.name, getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
+        return [(name, with_unit(value, self._units.get(name, ""))) for name, value in values]
 
     def __str__(self) -> str:
         return printable(f"{type(self).__name__}\n{text_table(self._rows())}")

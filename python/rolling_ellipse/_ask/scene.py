@@ -97,12 +97,12 @@ class Scene(FieldsOnly, Listed):
         as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.
         For an initial slip it is not that limit: where a large coefficient would press the body
         into the ground until it jams, an impulse of the ground removes the slip at t = 0, which
-        costs energy (`initial_state.energy_lost`). A slip the other way goes on with N = 0. Without
-        friction a moving contact is SLIDING, also that of a circle.
+        costs energy (`initial_state.energy_lost`). A slip the other way continues with N = 0.
+        Without friction a moving contact is SLIDING, also that of a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float
-        Angle [rad] and angular velocity [rad/s]; less than 1e-100 rad/s in size counts as rest.
+        Angle [rad] and angular velocity [rad/s]; ``|omega|`` below 1e-100 rad/s counts as rest.
     x : float
         Position of the centre along the ground [m].
     z : float, optional
@@ -251,8 +251,8 @@ class Scene(FieldsOnly, Listed):
 
     def _changed(self) -> dict[str, Any]:
         """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
-        found = ((field, getattr(self, field.name)) for field in fields(self))
-        return {field.name: value for field, value in found if value != field.default}
+        values = ((field, getattr(self, field.name)) for field in fields(self))
+        return {field.name: value for field, value in values if value != field.default}
 
     def __repr__(self) -> str:
         given = (f"{name}={value!r}" for name, value in self._changed().items())

@@ -73,14 +73,15 @@ def _values(one: Problem, mine: Rows) -> list[str]:
     """Compare the values that the last row, or every row, has to have."""
     (which, known), *_ = one.answer.items()
     t, states = (mine.t[-1:], mine.states[-1:]) if which == "last" else (mine.t, mine.states)
-    said = []
+    wrong = []
     for name, value in known.items():
         column = STATE.index(name)
         error = np.abs(states[:, column] - value)
         row = int(np.argmax(error))
         if not error[row] <= _CLOSE * one.scales[column]:
-            said.append(f"{name} is {states[row, column]:.6g} at {t[row]:.6g} s, right {value:.6g}")
-    return said
+            given = f"{states[row, column]:.6g} at {t[row]:.6g} s"
+            wrong.append(f"{name} is {given}, right {value:.6g}")
+    return wrong
 
 
 def _nearest_law(

@@ -53,18 +53,18 @@ class Gradient:
         ValueError
             If it has another shape.
         """
-        found = array("value", value)
-        if found.shape != self.value.shape:
-            raise ValueError(f"value must have shape (6,), got {found.shape}")
+        derivatives = array("value", value)
+        if derivatives.shape != self.value.shape:
+            raise ValueError(f"value must have shape (6,), got {derivatives.shape}")
         scales = problem(self.problem).scales
         largest = np.max(np.abs(self.value / scales))
-        return float(np.max(np.abs((found - self.value) / scales)) / largest)
+        return float(np.max(np.abs((derivatives - self.value) / scales)) / largest)
 
 
 @cache
 def _read() -> dict[str, dict[str, Any]]:
-    found = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(FOLDER.glob("*.json"))]
-    return {one["id"]: one for one in found}
+    files = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(FOLDER.glob("*.json"))]
+    return {one["id"]: one for one in files}
 
 
 @cache
@@ -121,8 +121,8 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
     """
     typed = [tag.strip() for tag in tags.split(",")] if isinstance(tags, str) else tags
     able = TAGS if typed is None else [choice("tags", tag, TAGS) for tag in typed]
-    found = [problem(name) for name in _read()]
-    return [one for one in found if one.scored and set(one.tags) <= set(able)]
+    every = [problem(name) for name in _read()]
+    return [one for one in every if one.scored and set(one.tags) <= set(able)]
 
 
 def scored_ones(

@@ -123,7 +123,7 @@ class Dae(FieldsOnly):
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
-        """Return dF/dy + cj dF/dy', shape (n, n), exact to rounding by complex steps."""
+        """Return dF/dy + cj dF/dy', shape (n, n), exact to within rounding, by complex steps."""
         steps = 1e-30j * np.eye(len(y))  # no truncation error in doubles, and no cancellation
         return self.residual(t, y + steps, yp + cj * steps).imag.T / 1e-30
 
@@ -150,15 +150,15 @@ class Ode:
     mode : str
         "rolling" (also at rest), "sliding" or "flight".
     t0 : float
-        Begin of the arc [s].
+        Start of the arc [s].
     y0 : ndarray, shape (6,)
         State there.
     kind : str
-        Event with which it begins, "" at the start.
+        Event with which it begins, "" for the first arc.
     side : int
         Sign of the slip, 0 without slip.
     quiet : float
-        Time at the begin during which events are kept positive [s]; see `events`.
+        Time from the start during which events are kept positive [s]; see `events`.
     xp : module
         NumPy or another array module such as ``jax.numpy``, with which `rhs` is computed.
     """
@@ -191,7 +191,7 @@ class Ode:
             SLIDING: {"STICK": self._slip, "LIFT_OFF": self._weight},
             FLIGHT: {"IMPACT": lambda y: y[1] - self._geometry(y)[0]},
         }
-        made = arcs[self.mode]
+        ends = arcs[self.mode]
 
         def event(kind: str, function: Callable[[Any], Any]) -> Any:
             def value(t: float, y: Any) -> Any:
@@ -201,8 +201,8 @@ class Ode:
             return value
 
         if self.side == 0 and self.mode == SLIDING:  # without friction slip has no side
-            del made["STICK"]
-        return [event(kind, function) for kind, function in made.items()]
+            del ends["STICK"]
+        return [event(kind, function) for kind, function in ends.items()]
 
     def jump(self, t: float, y: Any, index: int) -> Ode:
         """Return the arc that begins with event number `index` of this one."""
@@ -227,9 +227,9 @@ class Ode:
         if kind != "IMPACT" or abs(slip) < _LEAST_REBOUND * speed:
             slip = 0.0
         there = np.array([x, h, theta, h * omega + slip, o * omega, omega])
-        found = self._touching(float(t), there, slip, kind)
-        reversed_ = kind == "STICK" and found.mode == SLIDING
-        return replace(found, kind="REVERSE") if reversed_ else found
+        arc = self._touching(float(t), there, slip, kind)
+        reverses = kind == "STICK" and arc.mode == SLIDING
+        return replace(arc, kind="REVERSE") if reverses else arc
 
     def exact(self, t: Any) -> FloatArray:
         """Return the exact states at times, as `Problem.exact`."""

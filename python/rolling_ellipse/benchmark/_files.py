@@ -159,9 +159,9 @@ def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] 
     for name in columns:
         if name not in names:
             raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")
-    found = []
+    records = []
     for line, row in rows[1:]:
         texts = [*map(str.strip, row), *[""] * len(names)]  # a row may be shorter than the first
         entries = {name: texts[names.index(name)] for name in names}
-        found.append(_Row(problem.id, f"row {line} of {path.name}", entries))
-    return found
+        records.append(_Row(problem.id, f"row {line} of {path.name}", entries))
+    return records

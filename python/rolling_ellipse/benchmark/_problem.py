@@ -21,9 +21,9 @@ COLUMNS = ("t", *STATE, "normal_force", "friction_force")
 OUTPUT_RATE = 100  # states a second that a simulator is asked for
 
 
-def states_of(found: Any) -> FloatArray:
+def states_of(motion: Any) -> FloatArray:
     """Return the states of a motion's samples, shape (n, 6)."""
-    return np.stack([getattr(found, name) for name in STATE], axis=1)
+    return np.stack([getattr(motion, name) for name in STATE], axis=1)
 
 
 @dataclass(frozen=True)

@@ -98,19 +98,19 @@ def _states(problem: Problem, values: Any) -> FloatArray:
     if states.ndim != 2 or states.shape[1] != len(STATE):
         columns = ", ".join(STATE)
         lost = STATE[states.shape[1] :] if states.ndim == 2 and len(states) > len(STATE) else ()
-        said = f", without {', '.join(lost)}" if lost else ""
-        raise ValueError(f"{name} must have shape (n, 6) for {columns}, got {states.shape}{said}")
+        hint = f", without {', '.join(lost)}" if lost else ""
+        raise ValueError(f"{name} must have shape (n, 6) for {columns}, got {states.shape}{hint}")
     return states
 
 
-def _times(problem: Problem, given: Any, asked: FloatArray, count: int) -> FloatArray:
+def _times(problem: Problem, given: Any, default: FloatArray, count: int) -> FloatArray:
     name = f"t of {problem.id}"
-    if given is None and count > asked.size:
+    if given is None and count > default.size:
         raise ValueError(
-            f"states of {problem.id} must have a row for each of {asked.size} times, or t, "
+            f"states of {problem.id} must have a row for each of {default.size} times, or t, "
             f"got {count} rows"
         )
-    t = _column(name, asked[:count] if given is None else given, count)
+    t = _column(name, default[:count] if given is None else given, count)
     if not np.isfinite(t).all():
         row = int(np.argmin(np.isfinite(t)))
         raise ValueError(f"{name} must be finite, got {t[row]!s} in row {row}")

@@ -112,7 +112,7 @@ def accelerations(
 ) -> tuple[FloatArray, FloatArray]:
     """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
     # The rate of the matrix is the imaginary part after a complex step along q_dot, exact to
-    # rounding (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
+    # within rounding (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
     stepped = rows(q + 1j * _STEP * q_dot, body.a, body.b, printed)
     matrix, rate = stepped.real, stepped.imag / _STEP
     system = np.zeros((*q.shape[:-1], 9, 9))
@@ -143,8 +143,8 @@ def follow(
 
     # no warnings: a motion whose numbers become infinite or NaN ends there, with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        begun = np.concatenate([start.q, start.q_dot])
-        samples, message = _integrated(slope, begun, t, how)
+        y = np.concatenate([start.q, start.q_dot])
+        samples, message = _integrated(slope, y, t, how)
         samples = samples.reshape(-1, 2 * COORDINATES)
         q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
         q_ddot, multipliers = accelerations(q, q_dot, body, printed)

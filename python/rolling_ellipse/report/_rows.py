@@ -73,12 +73,12 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> FloatArray:
     """Return the q_dot with theta_dot = 1 that the constraint rows allow, (..., 5)."""
     matrix = rows(q, a, b, printed)
-    found: FloatArray = np.zeros(q.shape)
-    found[..., 2] = 1
+    rates: FloatArray = np.zeros(q.shape)
+    rates[..., 2] = 1
     for row, solved_for in ((3, 3), (2, 4), (1, 1), (0, 0)):
-        rest = np.sum(matrix[..., row, :] * found, axis=-1)
-        found[..., solved_for] = -rest / matrix[..., row, solved_for]
-    return found
+        rest = np.sum(matrix[..., row, :] * rates, axis=-1)
+        rates[..., solved_for] = -rest / matrix[..., row, solved_for]
+    return rates
 
 
 def misprints(printed: Any) -> tuple[str, ...]:

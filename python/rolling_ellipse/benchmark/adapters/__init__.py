@@ -17,14 +17,14 @@ from .._results import Result
 #: Names of the modules, with what pip installs for each.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")
 ENGINES["newton"] = "newton[sim]"
-Run = tuple[Any, ...]  # of the functions that `engine` tells
+Run = tuple[Any, ...]  # what `start` of `engine` returns
 
 
 def engine(start: Callable[..., Run]) -> Callable[..., Result]:
     """Return `simulate` of an engine.
 
-    ``start(scene, step, **options)`` returns a function that goes on by a number of steps, one that
-    returns the state (and N and F of the last step, if the engine tells them), and a note. A scene
+    ``start(scene, step, **options)`` returns a function that takes a number of steps, one that
+    returns the state (and N and F of the last step, if the engine has them), and a note. A scene
     that it refuses is not supported.
     """
 
@@ -44,9 +44,9 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
             if steps:
                 advance(steps)
             rows.append(state())
-        found = np.array(rows, dtype=float)
-        found[counts == 0, 6:] = np.nan  # no step was made yet
-        forces = dict(zip(("normal_force", "friction_force"), found[:, 6:].T, strict=False))
-        return Result(found[:, :6], note="".join(note), **forces)
+        table = np.array(rows, dtype=float)
+        table[counts == 0, 6:] = np.nan  # before the first step
+        forces = dict(zip(("normal_force", "friction_force"), table[:, 6:].T, strict=False))
+        return Result(table[:, :6], note="".join(note), **forces)
 
     return simulate
