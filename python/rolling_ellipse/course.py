@@ -24,7 +24,6 @@ import numpy as np
 
 from . import _core, geometry, impacts
 from ._ask.check import FloatArray, finite, number, shown
-from ._ask.habits import meant
 from ._ask.impulse import Impulse
 from ._ask.scene import SCENE_UNITS, Scene
 from ._ask.settings import Settings
@@ -122,7 +121,10 @@ def mark(task: str, answer: float) -> Mark:
         If SciPy is not installed (sheet 10).
     """
     if not (isinstance(task, str) and task in _TASKS):
-        hint = meant(task, _TASKS) if isinstance(task, str) else ""
+        from difflib import get_close_matches  # for mistakes only: it takes a millisecond
+
+        near = get_close_matches(shown(task).strip("'"), _TASKS, 3, 0.5)
+        hint = f"; near it: {', '.join(near)}" if near else ""
         raise ValueError(f"task must be one of '1.1' to '10.4', got {shown(task)}{hint}")
     if isinstance(answer, (bool, np.bool_)):
         raise TypeError(f"answer must be a number, got {answer}")
