@@ -13,9 +13,9 @@ ValueError naming the argument if a shape or a number is out of its range.
 from . import _equations
 from ._equations import *  # noqa: F403
 from ._errata import Comparison, Erratum, errata, errata_table
-from ._motion import PrintedMotion
+from ._motion import PrintedMotion, Start
 from ._rows import CODE, EQ_32, MATRIX, MISPRINTS, consistent_rates, constraint_matrix
-from ._simulate import InconsistentStartWarning, Start, simulate
+from ._simulate import InconsistentStartWarning, simulate
 
 __all__ = [
     "CODE", "EQ_32", "MATRIX", "MISPRINTS", "Comparison", "Erratum", "InconsistentStartWarning",

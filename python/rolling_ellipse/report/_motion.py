@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,13 +21,31 @@ from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
 from ._rows import along, masses, pull, rows
 
-if TYPE_CHECKING:
-    from ._simulate import Start
-
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
 _STEP = 1e-30  # size of a complex step: no truncation error in doubles, and nothing cancels
 _TINY = 1e-300  # least allowed error, for a component of 0 where atol = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The initial state of a simulation.
+
+    Attributes
+    ----------
+    q, q_dot : ndarray, shape (5,)
+        x, z, theta, psi, r [m, rad] and their rates.
+    q_change, q_dot_change : ndarray, shape (5,)
+        Difference from the given state; 0 unless it was projected.
+    violations : tuple of str
+        Constraints that the given state violates, each with its size.
+    """
+
+    q: FloatArray
+    q_dot: FloatArray
+    q_change: FloatArray
+    q_dot_change: FloatArray
+    violations: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

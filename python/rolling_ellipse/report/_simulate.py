@@ -6,7 +6,7 @@ Its start may violate constraints; the nearest consistent state replaces it, if 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -21,7 +21,7 @@ from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ..geometry import support, support_curvature, support_slope
-from ._motion import PrintedMotion, follow
+from ._motion import PrintedMotion, Start, follow
 from ._rows import CODE, along, direction, masses, misprints, rows
 
 Equations = Literal["corrected", "printed"]
@@ -38,27 +38,6 @@ _NAMES = (  # name and unit of a constraint, and the row that may be as printed
 
 class InconsistentStartWarning(UserWarning):
     """Warning: a simulation runs from a state that violates its constraints."""
-
-
-@dataclass(frozen=True, eq=False)
-class Start:
-    """The initial state of a simulation.
-
-    Attributes
-    ----------
-    q, q_dot : ndarray, shape (5,)
-        x, z, theta, psi, r [m, rad] and their rates.
-    q_change, q_dot_change : ndarray, shape (5,)
-        Difference from the given state; 0 unless it was projected.
-    violations : tuple of str
-        Constraints that the given state violates, each with its size.
-    """
-
-    q: FloatArray
-    q_dot: FloatArray
-    q_change: FloatArray
-    q_dot_change: FloatArray
-    violations: tuple[str, ...]
 
 
 def simulate(
