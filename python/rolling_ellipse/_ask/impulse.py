@@ -57,7 +57,7 @@ class Impulse:
             _ = self.core  # raises if a number is out of range
             return
         for name, values in vars(self).items():
-            _let_the_core_refuse(name, np.asarray(values), name)
+            let_the_core_refuse(name, np.asarray(values), name)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -88,8 +88,8 @@ class Impulse:
         try:
             blow = cls(jz=-force, dx=distance)
         except ValueError:
-            _let_the_core_refuse("jz", force, "F")
-            _let_the_core_refuse("dx", distance, "d")
+            let_the_core_refuse("jz", force, "F")
+            let_the_core_refuse("dx", distance, "d")
             raise
         pull = float(np.min(force, initial=0.0))
         if pull < 0:
@@ -147,21 +147,14 @@ def numbers(name: str, value: Any) -> Any:
     return kept
 
 
-def _largest(values: FloatArray) -> int:
-    """Return the index of the value of largest size; NaN counts as the largest."""
-    return int(np.abs(values).argmax())
-
-
-def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
-    """Let the core check the worst value (NaN, or else the largest); its error names `argument`."""
-    if not values.size:
-        return
-    # Flat index of the worst value of each piece
-    worst = [first + _largest(piece) for first, piece in pieces(values)]
-    index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
-    try:
-        _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
-    except ValueError as error:
-        place = ", ".join(map(str, index))
-        at = f" at index {place if len(index) == 1 else f'({place})'}" if index else ""
-        raise ValueError(f"{str(error).replace(name, argument, 1)}{at}") from None
+def let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
+    """Let the core check the worst value of each piece; its error names `argument`."""
+    for first, piece in pieces(values):
+        worst = int(np.abs(piece).argmax())  # NaN, or else the largest
+        try:
+            _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: piece[worst]}))
+        except ValueError as error:
+            index = [str(k) for k in np.unravel_index(first + worst, values.shape)]
+            place = index[0] if len(index) == 1 else f"({', '.join(index)})"
+            at = f" at index {place}" if index else ""
+            raise ValueError(f"{str(error).replace(name, argument, 1)}{at}") from None

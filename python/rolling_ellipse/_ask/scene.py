@@ -177,10 +177,7 @@ class Scene(FieldsOnly, Listed):
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
         """Check the arguments, and keep them as the fields of this scene."""
-        impulse = given["impulse"]
-        if impulse is not None:
-            _require_one_blow(impulse)
-        blow = None if impulse is None else impulse.core
+        blow = None if given["impulse"] is None else _one_blow(given["impulse"])
         core = _core.scene_of(given, blow, reached)  # refuses numbers out of range
         if core is None:  # there are numbers of other types than float
             for name, value in given.items():
@@ -282,7 +279,8 @@ def _doubt(name: str, value: float) -> str:
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)
 
 
-def _require_one_blow(impulse: Any) -> None:
+def _one_blow(impulse: Any) -> _core.Impulse:
+    """Return an impulse as the core takes it, or raise an error for any other argument."""
     if not isinstance(impulse, Impulse):
         raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
     if impulse.shape != ():
@@ -290,6 +288,7 @@ def _require_one_blow(impulse: Any) -> None:
             f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
             "use outcome(scene, impulse)"
         )
+    return impulse.core
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
