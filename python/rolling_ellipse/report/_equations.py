@@ -6,13 +6,13 @@ residual less the right one is the effect of the misprint.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from .._ask.check import FloatArray, choice, coordinates, finite, flag, number, require_together
-from .._ask.scene import Impulse, Scene
+from .._ask.impulse import Impulse, let_the_core_refuse
+from .._ask.scene import Scene
 from ..geometry import support_slope
 from ._rows import along, masses, polar, polar_cube, pull, rows
 
@@ -311,11 +311,10 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 
 
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
+    """Return the numbers of a blow, if the core takes them."""
     blow = number("impulse", impulse), number("d", d)
-    for name, value in zip(("impulse", "d"), blow, strict=True):
-        if not abs(value) <= 1e50:  # largest size of a number of an Impulse
-            wanted = "at most 1e50 in size" if math.isfinite(value) else "finite"
-            raise ValueError(f"{name} must be {wanted}, got {value}")
+    let_the_core_refuse("jz", np.asarray(blow[0]), "impulse")
+    let_the_core_refuse("dx", np.asarray(blow[1]), "d")
     return blow
 
 
