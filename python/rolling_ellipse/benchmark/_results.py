@@ -75,18 +75,14 @@ def checked(problem: Problem, mine: Any, times: FloatArray) -> Rows:
     states = _states(problem, result.states)
     t = _times(problem, result.t, times, len(states))
     columns = dict(zip(STATE, states.T, strict=True))
-    forces = {
-        name: _column(f"{name} of {problem.id}", getattr(result, name), len(t))
-        for name in COLUMNS[7:]
-    }
+    forces = {name: _column(problem, name, getattr(result, name), len(t)) for name in COLUMNS[7:]}
     endless = {name: np.where(np.isinf(values), values, 0.0) for name, values in forces.items()}
     within = (t >= 0) & (t <= problem.t_end)
     usable = np.isfinite(states).all(axis=1) & within
     there = np.isin(problem.times.round(9), t[usable].round(9))
     return Rows(
         t=t[usable], states=states[usable], events=_events(problem, result.events),
-        normal_force=forces["normal_force"][usable],
-        friction_force=forces["friction_force"][usable], note=result.note,
+        **{name: values[usable] for name, values in forces.items()}, note=result.note,
         missing="" if there.all() else f"{(~there).sum()} of {there.size} given times are missing",
         not_finite=_not_finite(t, within, columns | endless),
     )  # fmt: skip
@@ -110,7 +106,7 @@ def _times(problem: Problem, given: Any, default: FloatArray, count: int) -> Flo
             f"states of {problem.id} must have a row for each of {default.size} times, or t, "
             f"got {count} rows"
         )
-    t = _column(name, default[:count] if given is None else given, count)
+    t = _column(problem, "t", default[:count] if given is None else given, count)
     if not np.isfinite(t).all():
         row = int(np.argmin(np.isfinite(t)))
         raise ValueError(f"{name} must be finite, got {t[row]!s} in row {row}")
@@ -120,12 +116,12 @@ def _times(problem: Problem, given: Any, default: FloatArray, count: int) -> Flo
     return t
 
 
-def _column(name: str, values: Any, count: int) -> FloatArray:
+def _column(problem: Problem, name: str, values: Any, count: int) -> FloatArray:
     """Return numbers, one for each row; NaN without any."""
-    column = np.full(count, np.nan) if values is None else array(name, values)
+    column = np.full(count, np.nan) if values is None else array(f"{name} of {problem.id}", values)
     if column.shape != (count,):
         raise ValueError(
-            f"{name} must have one number for each of {count} rows of states, "
+            f"{name} of {problem.id} must have one number for each of {count} rows of states, "
             f"got shape {column.shape}"
         )
     return column

@@ -220,9 +220,8 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
     """Return energies gained and lost, penetration, hop and slip of rows, and exact samples."""
     scene, length = one.scene, float(one.scales[0])
     mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
-    change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / (
-        scene.mass * scene.gravity * length
-    )
+    unit = scene.mass * scene.gravity * length
+    change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / unit
     gap, slip = gap_and_slip(one, states)
     gap, slip = gap / length, np.abs(slip)
     touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING
