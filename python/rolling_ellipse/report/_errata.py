@@ -109,10 +109,9 @@ def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: 
     return sign * constraint_matrix(q, a=a, b=b, printed=())[2, 3] * third
 
 
-def _pull(equation: Callable[..., Any], **state: Any) -> Any:
-    """Return lambda2 cos(psi - theta) [N] with the multipliers of an equation."""
-    q = state["q"]
-    return equation(**state)[1] * np.cos(q[3] - q[2])
+def _pull(equation: Callable[..., Any]) -> Callable[..., Any]:
+    """Return lambda2 cos(psi - theta) [N], with the multipliers of an equation, as a function."""
+    return lambda **state: equation(**state)[1] * np.cos(state["q"][3] - state["q"][2])
 
 
 def _f(**state: Any) -> Any:
@@ -189,9 +188,7 @@ _COMPARISONS: dict[str, Callable[[], Comparison]] = {
     "eq 39, λ3": _both(equations.eq_39, equations.multipliers, 2, theta=math.pi / 2 - 1e-3),
     "eq 39, λ4": _both(equations.eq_39, equations.multipliers, 3, b=0.8),
     "eq 39, λ4, sign": _both(_eq_35, _right_35),
-    "eqs 39 to 42, g": _both(
-        partial(_pull, equations.eq_39), partial(_pull, equations.multipliers)
-    ),
+    "eqs 39 to 42, g": _both(_pull(equations.eq_39), _pull(equations.multipliers)),
     "eqs 40, 42": _both(equations.eq_40, _f),
     "eq 41": _both(_eq_37, partial(equations.eq_41, complete=True)),
     "eq 42, first terms": _both(_first_terms, lambda q: 0.0),

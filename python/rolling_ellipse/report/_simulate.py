@@ -118,9 +118,7 @@ def simulate(
     how: dict[str, Any] = {"stabilization": stabilization, "baumgarte": baumgarte}
     for name, value in ({"printed": printed} if corrected else how).items():
         if value is not None:
-            raise ValueError(
-                f"{name} must be None for the {equations} equations, got {shown(value)}"
-            )
+            raise ValueError(f"{name} must be None for {equations} equations, got {shown(value)}")
     if method is None:
         method = "dopri5" if not corrected else "radau" if str(stabilization) == "ggl" else "dop853"
     if not corrected:
@@ -156,9 +154,8 @@ def _checked_start(
         got = "; ".join(violated)
         if consistent == "refuse":
             raise ValueError(f"q and q_dot must meet the constraints at t = 0, got {got}")
-        warnings.warn(
-            f"the start violates constraints: {got}", InconsistentStartWarning, stacklevel=3
-        )
+        message = f"the start violates constraints: {got}"
+        warnings.warn(message, InconsistentStartWarning, stacklevel=3)
     return Start(*state, state[0] - q, state[1] - q_dot, violated)
 
 
