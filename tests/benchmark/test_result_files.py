@@ -47,6 +47,17 @@ def test_a_cut_file_is_refused_by_its_last_row(tmp_path: Path) -> None:
         benchmark.score(tmp_path)
 
 
+def test_an_empty_file_of_events_counts_as_none(tmp_path: Path) -> None:
+    """Events are then read off the states; of two columns with one name the first counts."""
+    one = benchmark.problem("slide.stick")
+    rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
+    header = "t,x,z,theta,x_dot,z_dot,omega,vx"
+    np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
+    (tmp_path / f"{one.id}.events.csv").write_text("\n")
+    (score,) = benchmark.score(tmp_path, problems=one)
+    assert score.passed and score.events["times"].keys() == {"STICK"}
+
+
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
     """All is written, or nothing: an own file, a link to it, a dangling one, a folder, a pipe."""
     mine, place = tmp_path / "mine", tmp_path / "place"
