@@ -64,6 +64,7 @@ KINDS = {
         "tests/border/test_fields.py", "tests/batches/test_simulate_many.py",
     )),
     "a field of Scene": Kind([field.name for field in fields(Scene)], (
+        "python/rolling_ellipse/_command_line.py",
         "python/rolling_ellipse/_motion/export/files.py",
         "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",
         "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
