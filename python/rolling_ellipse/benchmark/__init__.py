@@ -10,10 +10,9 @@ in the order x, z, theta, x_dot, z_dot, omega.
 >>> benchmark.problem("slide.stick").question
 """
 
-from ._catalogue import Gradient, gradients, problem, problems
 from ._equations import Dae, Ode
 from ._files import export
-from ._problem import KnownEvent, Problem
+from ._problem import Gradient, KnownEvent, Problem, gradients, problem, problems
 from ._results import Result
 from ._run import run, score
 from ._scores import Score, Scores

@@ -13,8 +13,7 @@ import numpy as np
 
 from .._ask.check import choice, file_name
 from .._motion.export.new_files import write_new
-from ._catalogue import FOLDER, problems, scored_ones
-from ._problem import COLUMNS, STATE, Problem
+from ._problem import COLUMNS, FOLDER, STATE, Problem, problems, scored_ones
 from ._results import KINDS, Result
 
 SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_force"}

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from .._ask.check import FloatArray, choice, positive, shown
-from ._catalogue import problems as able_to
-from ._catalogue import scored_ones
 from ._files import read_folder
-from ._problem import Problem
+from ._problem import Problem, scored_ones
+from ._problem import problems as able_to
 from ._results import checked
 from ._scores import TOLERANCE, UNSUPPORTED, Score, Scores, scored
 

@@ -16,9 +16,8 @@ from .._core import Mode
 from .._motion.events import energies
 from .._motion.trajectory import Trajectory
 from ._answers import answered
-from ._catalogue import scored_ones
 from ._events import gap_and_slip
-from ._problem import STATE, Problem
+from ._problem import STATE, Problem, scored_ones
 from ._results import Rows
 
 if TYPE_CHECKING:

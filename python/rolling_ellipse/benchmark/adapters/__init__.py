@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._ask.check import FloatArray, positive
 from ..._ask.scene import Scene
-from .._catalogue import problem as known_problem
+from .._problem import problem as known_problem
 from .._results import Result
 
 #: Names of the modules, with what pip installs for each.
