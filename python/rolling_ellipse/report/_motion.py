@@ -19,7 +19,7 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
-from ._rows import along, masses, pull, rows
+from ._rows import Names, Pair, along, masses, pull, rows
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
@@ -124,9 +124,7 @@ def _weight(body: Scene) -> FloatArray:
     return np.array([0, -body.mass * body.gravity, 0, 0, 0])
 
 
-def accelerations(
-    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
-) -> tuple[FloatArray, FloatArray]:
+def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
     """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
     # The rate of the matrix is the imaginary part after a complex step along q_dot, exact to
     # within rounding (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
@@ -150,7 +148,7 @@ def accelerations(
 
 
 def follow(
-    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], how: Settings
+    start: Start, t: FloatArray, body: Scene, printed: Names, how: Settings
 ) -> PrintedMotion:
     """Integrate the equations with the `printed` rows from t = 0, and sample at the times t."""
 

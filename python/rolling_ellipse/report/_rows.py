@@ -10,6 +10,9 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, choice, coordinates, finite, require_together
 from .._ask.scene import Scene
 
+Names = tuple[str, ...]  # of rows as printed
+Pair = tuple[FloatArray, FloatArray]
+
 #: Parts of the matrix that may be as printed: rows of f1, f2, f3 (eq 32), the sign of a44 (appendix
 #: C), and tan(theta) in row 4. A corrected row 4, times cos^2(theta), stays finite.
 MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
@@ -44,7 +47,7 @@ def pull(matrix: npt.NDArray[Any], multipliers: FloatArray) -> npt.NDArray[Any]:
     return np.sum(matrix * multipliers[..., :, None], axis=-2)
 
 
-def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
+def rows(q: npt.NDArray[Any], a: float, b: float, printed: Names) -> npt.NDArray[Any]:
     """Return the constraint matrix at a real or complex q, (..., 4, 5)."""
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
     sine, cosine = np.sin(psi - theta), np.cos(psi - theta)
@@ -70,7 +73,7 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     return matrix.reshape(*q.shape[:-1], 4, COORDINATES)
 
 
-def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> FloatArray:
+def direction(q: FloatArray, a: float, b: float, printed: Names) -> FloatArray:
     """Return the q_dot with theta_dot = 1 that the constraint rows allow, (..., 5)."""
     matrix = rows(q, a, b, printed)
     rates: FloatArray = np.zeros(q.shape)
@@ -81,7 +84,7 @@ def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> Fl
     return rates
 
 
-def misprints(printed: Any) -> tuple[str, ...]:
+def misprints(printed: Any) -> Names:
     """Return `printed` as a tuple of names out of MISPRINTS, or raise ValueError."""
     names = printed if isinstance(printed, (tuple, list)) else (printed,)
     return tuple(choice("printed", name, MISPRINTS) for name in names)

@@ -22,7 +22,7 @@ from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ..geometry import support, support_curvature, support_slope
 from ._motion import PrintedMotion, Start, follow
-from ._rows import CODE, along, direction, masses, misprints, rows
+from ._rows import CODE, Names, Pair, along, direction, masses, misprints, rows
 
 Equations = Literal["corrected", "printed"]
 Consistent = Literal["refuse", "project", "as_given"]
@@ -144,7 +144,7 @@ def simulate(
 
 
 def _checked_start(
-    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...], consistent: str
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names, consistent: str
 ) -> Start:
     violated = _violations(q, q_dot, body, printed)
     state = q, q_dot
@@ -168,9 +168,7 @@ def _vector(name: str, value: Any) -> FloatArray:
     return vector
 
 
-def _violations(
-    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
-) -> tuple[str, ...]:
+def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> tuple[str, ...]:
     """Return the violated ones of f2, f3, f4, f1 and the rates of f2 to f4: name, size, unit.
 
     A residual may be as large as 16 ulp of each coordinate make it, and 16 ulp of its terms more:
@@ -189,9 +187,7 @@ def _violations(
     )
 
 
-def _residuals(
-    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
-) -> tuple[FloatArray, FloatArray]:
+def _residuals(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
     """Return the residuals of `_NAMES`, and for each the sum of the sizes of its terms, (n, 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     _, z, theta, psi, r = np.abs(q).T
@@ -202,9 +198,7 @@ def _residuals(
     return np.column_stack([position, velocity]), terms
 
 
-def _project(
-    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
-) -> tuple[FloatArray, FloatArray]:
+def _project(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
     """Return the nearest consistent state in the metric of the kinetic energy.
 
     psi and r have no mass and follow from theta; x is free. The position makes m dz^2 + I dtheta^2
