@@ -76,7 +76,7 @@ def _named(one: Problem, mine: Rows, known: _Known) -> Iterator[str]:
     values = mine.states[known.places]
     for k, name in enumerate(STATE):
         if errors[k] > _LEAST:
-            words = _unlike(name, values[:, k], known.states[:, k], known.units[:, k], height)
+            words = _unlike(k, values[:, k], known, height)
             yield from [f"{name} looks {words}"] if words else []
 
 
@@ -102,13 +102,12 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
     return bool(there.sum() > 1 and now > _LEAST_SHIFT and then < _LEFT * now)
 
 
-def _unlike(
-    name: str, values: FloatArray, right: FloatArray, units: FloatArray, height: FloatArray
-) -> str:
+def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
     """Say as what the values of a variable look; one that is zero looks the same in any unit.
 
     `height` is that of the centre of a body on the ground.
     """
+    name, right, units = STATE[k], known.states[:, k], known.units[:, k]
     error, size = _largest((values - right) / units), _largest(right / units)
 
     def fits(changed: Any, most: float = min(error, size)) -> bool:
