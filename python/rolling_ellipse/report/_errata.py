@@ -75,24 +75,23 @@ def _rolling(theta: float, **other: float) -> dict[str, Any]:
     return {"theta": theta, "impulse": 48.0, "d": 1.5, **body, **state}
 
 
-def _both(
+def _compared(
     printed: Callable[..., Any], right: Callable[..., Any], entry: Any = (), theta: float = 0.7,
     **other: float,
-) -> Callable[[], Comparison]:  # fmt: skip
+) -> Comparison:  # fmt: skip
     """Compare an entry of what two functions return; they get the arguments that they take.
 
     A function of any arguments gets those of the equations of motion.
     """
+    known = _rolling(theta, **other)
+    values = []
+    for function in (printed, right):
+        names = signature(function).parameters.keys() & known.keys() or _STATE
+        values.append(float(np.asarray(function(**{name: known[name] for name in names}))[entry]))
+    return Comparison(*values)
 
-    def compared() -> Comparison:
-        known, values = _rolling(theta, **other), []
-        for function in (printed, right):
-            names = signature(function).parameters.keys() & known.keys() or _STATE
-            result = function(**{name: known[name] for name in names})
-            values.append(float(np.asarray(result)[entry]))
-        return Comparison(*values)
 
-    return compared
+_both = partial(partial, _compared)  # a comparison to be made later; a lambda has no pickle
 
 
 def _rate(row: int, q: Any, q_dot: Any, a: float, b: float, printed: Any = ("tan",)) -> Any:
@@ -109,9 +108,10 @@ def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: 
     return sign * constraint_matrix(q, a=a, b=b, printed=())[2, 3] * third
 
 
-def _pull(equation: Callable[..., Any]) -> Callable[..., Any]:
-    """Return lambda2 cos(psi - theta) [N], with the multipliers of an equation, as a function."""
-    return lambda **state: equation(**state)[1] * np.cos(state["q"][3] - state["q"][2])
+def _pull(equation: Callable[..., Any], **state: Any) -> Any:
+    """Return lambda2 cos(psi - theta) [N] with the multipliers of an equation."""
+    q = state["q"]
+    return equation(**state)[1] * np.cos(q[3] - q[2])
 
 
 def _f(**state: Any) -> Any:
@@ -150,6 +150,23 @@ def _first_terms(**state: Any) -> Any:
     return (one * np.sin(lean) - two * np.cos(lean)) / equations.divisor(q[3], a, b)
 
 
+def _reach(q: Any, a: float, b: float) -> Any:
+    """Return |r_OC| [m]: C is on the ground, as O is."""
+    return abs(equations.contact_x(q, a=a, b=b))
+
+
+def _to_the_right(theta: float, a: float, b: float) -> Any:
+    return abs(support_slope(theta, a=a, b=b))
+
+
+def _to_the_origin(q: Any) -> Any:
+    return -q[0]
+
+
+def _no_part(q: Any) -> float:
+    return 0.0
+
+
 def _even_turning() -> Comparison:
     """Compare f2 and f3 with the rates by the matrix as printed, where theta = t."""
     q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **_AXES)
@@ -166,15 +183,15 @@ def _back_substitution() -> Comparison:
     return Comparison(*(float(np.max(np.abs(v))) for v in (motion.back_substitution(), motion.gap)))
 
 
+def _roll_over() -> Comparison:
+    return Comparison(1.0, thresholds(**_AXES).roll_over_speed)
+
+
 #: The comparison of each row of errata.json, by its place in the report.
 _COMPARISONS: dict[str, Callable[[], Comparison]] = {
-    "section 2.2, before eq 6": _both(
-        contact_distance, lambda q: abs(equations.contact_x(q, **_AXES))
-    ),
+    "section 2.2, before eq 6": _both(contact_distance, _reach),
     "section 2.2, cases 1 and 2": _both(equations.case_lead, support_slope, theta=4.0),
-    "section 2.2, case 2 and Figure 8": _both(
-        lambda theta: abs(support_slope(theta, **_AXES)), support_slope, theta=5.5
-    ),
+    "section 2.2, case 2 and Figure 8": _both(_to_the_right, support_slope, theta=5.5),
     "eqs 9, 10, f1": _both(equations.f1, partial(_rate, 0)),
     "eq 32, df2, row 2": _row(1, ("df2", "tan")),
     "eq 32, df3": _row(2, EQ_32),
@@ -188,17 +205,19 @@ _COMPARISONS: dict[str, Callable[[], Comparison]] = {
     "eq 39, λ3": _both(equations.eq_39, equations.multipliers, 2, theta=math.pi / 2 - 1e-3),
     "eq 39, λ4": _both(equations.eq_39, equations.multipliers, 3, b=0.8),
     "eq 39, λ4, sign": _both(_eq_35, _right_35),
-    "eqs 39 to 42, g": _both(_pull(equations.eq_39), _pull(equations.multipliers)),
+    "eqs 39 to 42, g": _both(
+        partial(_pull, equations.eq_39), partial(_pull, equations.multipliers)
+    ),
     "eqs 40, 42": _both(equations.eq_40, _f),
     "eq 41": _both(_eq_37, partial(equations.eq_41, complete=True)),
-    "eq 42, first terms": _both(_first_terms, lambda q: 0.0),
+    "eq 42, first terms": _both(_first_terms, _no_part),
     "eq 42, factor": _both(equations.eq_42, _f1),
-    "section 3.4, point O": _both(lambda q: -q[0], support_slope),
+    "section 3.4, point O": _both(_to_the_origin, support_slope),
     "eqs 45–48": _both(equations.eq_48, equations.struck_speed),
     "section 4.2.2, Figure 11": _back_substitution,
     "section 4.2.2, θ = t": _even_turning,
     "section 4.2.2, Figure 12": _both(equations.eq_5, contact_angle, theta=2.0),
-    "Figure 13": lambda: Comparison(1.0, thresholds(**_AXES).roll_over_speed),
+    "Figure 13": _roll_over,
     "appendix B": _both(equations.appendix_b_radius, contact_distance),
 }
 _ERRATA = tuple(
