@@ -1,5 +1,5 @@
-"""Batches on executors, real and made up, have the bits of `simulate_many` without executor and
-lose only the scenes of lost tasks."""
+"""Batches on any executor have the bits of `simulate_many` without one; a lost task loses only its
+own scenes."""
 
 import itertools
 import os
@@ -28,39 +28,25 @@ MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Executor that runs each task at once, fails for the tasks in `lost` and may refuse more."""
+    """Executor that runs each task at once, fails for the tasks in `lost`, and after some tasks
+    never ends one, or refuses more."""
 
-    def __init__(self, lost: tuple[int, ...] = (), closes_after: int = 10**9) -> None:
-        self.lost, self.closes_after = lost, closes_after
-        self.given = 0
+    def __init__(
+        self, lost: tuple[int, ...] = (), hangs_after: int = 10**9, closes_after: int = 10**9
+    ) -> None:
+        self.lost, self.hangs_after, self.closes_after = lost, hangs_after, closes_after
         self.futures: list[Future[Any]] = []
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        place, self.given = self.given, self.given + 1
+        place, future = len(self.futures), Future[Any]()
         if place >= self.closes_after:
             raise RuntimeError("cannot schedule new futures after shutdown")
-        future: Future[Any] = Future()
         self.futures.append(future)
         if place in self.lost:
             future.set_exception(BrokenProcessPool("terminated abruptly"))
-        else:
+        elif place < self.hangs_after:
             future.set_result(pickle.loads(pickle.dumps(fn(*args, **kwargs))))
         return future
-
-
-class Waiting(Here):
-    """Executor that does the first `does` tasks; later tasks never end."""
-
-    def __init__(self, does: int) -> None:
-        super().__init__()
-        self.does = does
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        if self.given < self.does:
-            return super().submit(fn, *args, **kwargs)
-        self.given += 1
-        self.futures.append(Future())
-        return self.futures[-1]
 
 
 class Mapping:
@@ -113,57 +99,43 @@ def pool(request: pytest.FixtureRequest) -> Iterator[Any]:
 
 
 def test_every_pool_gives_the_same_bits(pool: Any, tmp_path: Path) -> None:
-    workers, folder = pool, tmp_path / "out"
-    found = simulate_many(NAMED * 5, TIMES, workers=workers)
     expected = simulate_many(NAMED * 5, TIMES)
-    for one, other in zip(found, expected, strict=True):
-        require_same(one, other)
-    simulate_many(NAMED * 5, TIMES, workers=workers, out=folder)
-    assert list(load_many(folder)) == expected
-    arrays = simulate_many(NAMED * 5, TIMES, workers=workers, returns="z")
+    require_same(simulate_many(NAMED * 5, TIMES, workers=pool), expected)
+    assert list(load_many(simulate_many(NAMED * 5, TIMES, workers=pool, out=tmp_path))) == expected
+    arrays = simulate_many(NAMED * 5, TIMES, workers=pool, returns="z")
     assert np.array_equal(arrays["z"], [each.z for each in expected])  # type: ignore[union-attr]
     body = {"a": 2.0, "b": 1.0, "omega": 1.0}
     for call in (
         lambda workers: rl.flow(2.0, theta=THETA, workers=workers, **body),
         lambda workers: rl.flow(1e3 * THETA, theta=0.1, workers=workers, **body),
-        lambda workers: (rl.classify(theta=THETA, workers=workers, **body),),
+        lambda workers: rl.classify(theta=THETA, workers=workers, **body),
     ):
-        for one, other in zip(call(workers), call(1), strict=True):
-            assert one.dtype == other.dtype and one.tobytes() == other.tobytes()
+        require_same(call(pool), call(1))
     for wrong in ({"a": -1.0}, {"theta": np.append(THETA, np.nan)}):
         with pytest.raises(ValueError, match=r"^(a|theta)(\[\d+\])? must be"):
-            rl.classify(**{"theta": 0.1, **body, **wrong}, workers=workers)
+            rl.classify(**{"theta": 0.1, **body, **wrong}, workers=pool)
 
 
-def test_few_elements_and_none() -> None:
+def test_few_elements_and_none_are_those_without_an_executor() -> None:
     """Scalars stay scalars; many times of one body, evaluated by a series, stay one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
-        require_same(rl.flow(t, **body, workers=Here()), rl.flow(t, **body))
-        require_same(
-            rl.flow(t, **body | {"a": [2.0]}, workers=Here()), rl.flow(t, **body | {"a": [2.0]})
-        )
+        for each in (body, body | {"a": [2.0]}):
+            require_same(rl.flow(t, **each, workers=Here()), rl.flow(t, **each))
     assert rl.classify(**body, workers=Here()) is rl.classify(**body)
 
 
-def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
-    """128 tasks are given before the first result is asked for, and only their scenes are taken."""
-    taken = itertools.count()
-    executor = Here()
-
-    def endless() -> Iterator[Scene]:
-        for i in taken:
-            yield MANY[i % len(MANY)]
-
-    class Enough(Exception):
-        pass
+def test_an_executor_gets_128_tasks_before_its_first_result_is_asked_for() -> None:
+    """Only the scenes of these tasks are taken."""
+    taken, executor = itertools.count(), Here()
 
     def look(done: int, of: int | None) -> None:
-        raise Enough
+        raise InterruptedError
 
-    with pytest.raises(Enough):
-        simulate_many(endless(), [1.0], workers=executor, progress=look)
-    assert executor.given == 128
+    with pytest.raises(InterruptedError):
+        endless = (MANY[i % len(MANY)] for i in taken)
+        simulate_many(endless, [1.0], workers=executor, progress=look)
+    assert len(executor.futures) == 128
     assert next(taken) == sum(size for _, size in itertools.islice(sizes(1), 128))
 
 
@@ -187,19 +159,16 @@ class Heavy(Here):
         return future
 
 
-class HeavyMap:
-    """Pool that returns the results of all its tasks at once."""
+class HeavyMap(Mapping):
+    """Pool that counts the bytes of the results of a `map`, which it returns at once."""
 
     most = largest = 0
 
     def map(self, function: Any, tasks: list[bytes]) -> list[Any]:
-        found = [function(task) for task in tasks]
-        sizes = [sum(table.nbytes for table in tables.values()) for tables in found]
+        results = super().map(function, tasks)
+        sizes = [sum(table.nbytes for table in tables.values()) for tables in results]
         self.most, self.largest = max(self.most, sum(sizes)), max(self.largest, *sizes)
-        return found
-
-    def close(self) -> None:
-        pass
+        return results
 
 
 @pytest.mark.parametrize("pool", [Heavy, HeavyMap])
@@ -211,11 +180,7 @@ class HeavyMap:
     ],
 )  # fmt: skip
 def test_results_that_wait_have_few_bytes(
-    samples: int,
-    bytes_held: int,
-    way: dict[str, Any],
-    pool: Any,
-    monkeypatch: pytest.MonkeyPatch,
+    samples: int, bytes_held: int, way: dict[str, Any], pool: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The bytes that wait stay below the allowed number, or are one result. A chunk may be a
     sixteenth larger than the one before, and the limit follows one task later."""
@@ -228,38 +193,30 @@ def test_results_that_wait_have_few_bytes(
 # ---------------------------------------------------------------------------------- lost workers
 
 
-def begins() -> list[int]:
-    return [begin for begin, _ in itertools.islice(sizes(1), 40)]
+FIRST = [first for first, _ in itertools.islice(sizes(1), 40)]  # scenes of the tasks
 
 
-def test_the_scenes_of_a_lost_task_say_so() -> None:
-    expected, begin = simulate_many(MANY, [1.0]), begins()
-    found = simulate_many(MANY, [1.0], workers=Here(lost=(0, 3)))
-    lost = [isinstance(each, WorkerError) for each in found]
-    assert [i for i, is_lost in enumerate(lost) if is_lost] == [
-        *range(begin[1]), *range(begin[3], begin[4]),
-    ]  # fmt: skip
-    for each, motion in zip(found, expected, strict=True):
-        if isinstance(each, WorkerError):
-            assert isinstance(each.__cause__, BrokenProcessPool)
+@pytest.mark.parametrize(
+    ("workers", "lost", "cause"),
+    [
+        (Here(lost=(0, 3)), [*range(FIRST[1]), *range(FIRST[3], FIRST[4])], "BrokenProcessPool"),
+        (Here(closes_after=4), range(FIRST[4], 400), "cannot schedule new futures"),
+        (Mapping(lost=True), range(400), "BrokenPipeError"),
+    ],
+    ids=["two tasks end", "no more are taken", "a pool breaks"],
+)
+def test_only_the_scenes_of_a_lost_task_are_lost(workers: Any, lost: Any, cause: str) -> None:
+    found = simulate_many(MANY, [1.0], workers=workers)
+    for i, (each, motion) in enumerate(zip(found, simulate_many(MANY, [1.0]), strict=True)):
+        if i in lost:
+            assert isinstance(each, WorkerError) and cause in str(each) + repr(each.__cause__)
         else:
             require_same(each, motion)
-    assert str(found[begin[3]]).startswith(f"scenes {begin[3]} to {begin[4] - 1} got lost")
+    if len(lost) < 100:
+        assert str(found[FIRST[3]]).startswith(f"scenes {FIRST[3]} to {FIRST[4] - 1} got lost")
 
 
-def test_an_executor_that_takes_no_more() -> None:
-    expected, begin = simulate_many(MANY, [1.0]), begins()
-    found = simulate_many(MANY, [1.0], workers=Here(closes_after=4))
-    assert found[: begin[4]] == expected[: begin[4]]
-    assert len(found) == len(MANY)
-    assert all(isinstance(each, WorkerError) for each in found[begin[4] :])
-    assert "cannot schedule new futures" in str(found[-1])
-
-
-def test_a_pool_that_breaks_loses_a_part() -> None:
-    found = simulate_many(MANY, [1.0], workers=Mapping(lost=True))
-    assert len(found) == len(MANY) and {type(each) for each in found} == {WorkerError}
-    assert "BrokenPipeError" in str(found[0])
+def test_arrays_have_nan_for_lost_scenes() -> None:
     lost = simulate_many(MANY, [1.0], workers=Mapping(lost=True), returns="x")
     assert set(lost.status) == {"LOST"} and np.isnan(lost["x"]).all() and len(lost.errors) == 400
 
@@ -321,7 +278,7 @@ def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
 
 def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) -> None:
     """The fifth task never ends; the interrupt cancels all tasks behind it."""
-    executor, out = Waiting(4), tmp_path / "out"
+    executor, out = Here(hangs_after=4), tmp_path / "out"
     with ctrl_c_after(0.5):
         simulate_many(MANY, [1.0], workers=executor, out=out)
     assert len(list(out.glob("*-*.npz"))) == 4
@@ -344,8 +301,8 @@ def test_what_ended_out_of_order_is_kept_too(tmp_path: Path) -> None:
 
     class First(Here):
         def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-            made = super().submit(fn, *args, **kwargs)
-            return Late() if self.given == 1 else made
+            future = super().submit(fn, *args, **kwargs)
+            return Late() if len(self.futures) == 1 else future
 
     with pytest.raises(KeyboardInterrupt):
         simulate_many([scenes.rocking] * 100, [1.0], workers=First(), out=out)

@@ -1,4 +1,4 @@
-"""A folder of motions has the bits of memory, can be continued, and accepts no foreign files."""
+"""Motions in a folder equal those in memory bit for bit; an interrupted run can be resumed."""
 
 import errno
 import json
@@ -18,6 +18,7 @@ import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, singly
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
+from oracles.programs import run
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
 from rolling_ellipse._verbs.batches import folders
 
@@ -35,13 +36,13 @@ def chunks(folder: Path) -> list[Path]:
 
 def states(folder: Path) -> dict[str, tuple[int, int]]:
     """File number and time of each chunk, which change if the file is written again."""
-    found = {path.name: path.stat() for path in chunks(folder)}
-    return {name: (of.st_ino, of.st_mtime_ns) for name, of in found.items()}
+    files = {path.name: path.stat() for path in chunks(folder)}
+    return {name: (of.st_ino, of.st_mtime_ns) for name, of in files.items()}
 
 
-def require_equal(found: Any, expected: Any) -> None:
+def require_equal(loaded: Any, expected: Any) -> None:
     """Require equal motions and errors; events kept by a folder must equal computed events."""
-    for one, other in zip(found, expected, strict=True):
+    for one, other in zip(loaded, expected, strict=True):
         assert type(one) is type(other) and str(one) == str(other)
         ours, theirs = (getattr(each, "trajectory", each) for each in (one, other))
         if isinstance(ours, rl.Trajectory):
@@ -59,7 +60,7 @@ def require_equal(found: Any, expected: Any) -> None:
     ],
     ids=str,
 )  # fmt: skip
-def test_it_comes_back(way: dict[str, Any], out: Path) -> None:
+def test_motions_and_errors_come_back(way: dict[str, Any], out: Path) -> None:
     many = NAMED * 3
     assert simulate_many(many, TIMES, out=out, **way) == str(out)
     assert len(chunks(out)) == 3
@@ -73,9 +74,8 @@ def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
         Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),
         Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
     ]
-    simulate_many(mine, [1.0], out=out)
-    found = [each for each in load_many(out) if isinstance(each, rl.Trajectory)]
-    assert [repr(each.scene) for each in found] == [repr(scene) for scene in mine]
+    motions: Any = load_many(simulate_many(mine, [1.0], out=out))
+    assert [repr(each.scene) for each in motions] == [repr(scene) for scene in mine]
 
 
 @pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # 512 * 5e-324 / 1000 rounds to 5e-324
@@ -93,10 +93,10 @@ def test_what_is_there_is_not_computed_again(out: Path) -> None:
     first, *_, last = chunks(out)
     first.unlink()
     (out / "end.json").unlink()
-    told: list[int] = []
-    simulate_many(GRID, TIMES, out=out, workers=2, progress=lambda n, of: told.append(n))
+    reports: list[int] = []
+    simulate_many(GRID, TIMES, out=out, workers=2, progress=lambda n, of: reports.append(n))
     now = states(out)
-    assert set(now) == set(everything) and len(told) == 1
+    assert set(now) == set(everything) and len(reports) == 1
     assert {name for name in now if now[name] != everything[name]} == {first.name}
     require_equal(load_many(out), simulate_many(GRID, TIMES))
     last.unlink()  # a damaged file of a complete folder is also made again
@@ -148,7 +148,7 @@ def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) 
         load_many(out)
 
 
-def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
+def test_what_is_no_folder_of_motions_is_refused_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("kept")
     (tmp_path / "lost+found").mkdir()
     (tmp_path / ".DS_Store").write_text("kept")
@@ -210,7 +210,7 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
 
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
 @pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
-def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> None:
+def test_other_files_in_their_places_are_refused(name: str, content: bytes, small: Path) -> None:
     path = chunks(small)[0] if name == "chunk" else small / name
     path.write_bytes(content)
     with pytest.raises(ValueError, match=rf"^path must name a file written by sim.*{path.name}"):
@@ -218,7 +218,7 @@ def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> 
 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])
-def test_an_end_that_tells_of_other_scenes(count: Any, small: Path) -> None:
+def test_an_end_that_counts_other_scenes_is_refused(count: Any, small: Path) -> None:
     """The folder has three scenes; another count would need other chunks."""
     end = json.loads((small / "end.json").read_text())
     (small / "end.json").write_text(json.dumps(end | {"scenes": count}))
@@ -229,12 +229,6 @@ def test_an_end_that_tells_of_other_scenes(count: Any, small: Path) -> None:
 
 
 # -------------------------------------------------------------------------- two folders in one
-
-
-def merged(folder: Path, other: Path) -> None:
-    """Copy all files of `other` into `folder`, as `cp -r other/* folder` does."""
-    for path in other.iterdir():
-        shutil.copy(path, folder)
 
 
 @pytest.mark.parametrize(
@@ -250,15 +244,13 @@ def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path)
     simulate_many(**asked, out=out)
     simulate_many(**(asked | changes), out=tmp_path / "other")
     theirs = {path.name for path in chunks(tmp_path / "other")} - {p.name for p in chunks(out)}
-    merged(out, tmp_path / "other")
+    shutil.copytree(tmp_path / "other", out, dirs_exist_ok=True)
     with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     for call in (asked, asked | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
             simulate_many(**call, out=out)
-    for name in theirs:  # the error text asks for this removal
-        (out / name).unlink()
-    for name in ("request.npz", "end.json"):
+    for name in (*theirs, "request.npz", "end.json"):  # the error text asks for this removal
         (out / name).unlink()
     simulate_many(**asked, out=out)
     require_equal(load_many(out), simulate_many(**asked))
@@ -269,17 +261,18 @@ def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
     shutil.copytree(out, tmp_path / "other")
     for place, path in enumerate(chunks(out)):
         ((out if place % 2 else tmp_path / "other") / path.name).unlink()
-    merged(out, tmp_path / "other")
+    shutil.copytree(tmp_path / "other", out, dirs_exist_ok=True)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
     simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
-    merged(out, tmp_path / "first")  # the end.json of `first` counts other scenes
+    shutil.copytree(tmp_path / "first", out, dirs_exist_ok=True)
+    # the end.json of `first` counts other scenes
     with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
 
 
-def test_a_chunk_under_the_name_of_another_request(out: Path, tmp_path: Path) -> None:
+def test_a_chunk_under_the_name_of_another_request_is_refused(out: Path, tmp_path: Path) -> None:
     """A chunk of another request has states at other times."""
     simulate_many(GRID, [2.0, 6.0], out=out)
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
@@ -332,7 +325,7 @@ def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(ou
 # ---------------------------------------------------------------------- full disks, interrupts
 
 
-def test_a_full_disk(out: Path) -> None:
+def test_a_full_disk_leaves_the_request_alone(out: Path) -> None:
     """Files may have 15 kB here, and the first chunk, of 1600 samples, needs 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
     with files_of_at_most(15_000), pytest.raises(OSError) as caught:
@@ -373,8 +366,7 @@ rl.simulate_many([rl.scenes.rocking] * 400, [1.0], out=sys.argv[1], progress=loo
 
 
 def test_a_killed_process_has_left_what_it_finished(out: Path) -> None:
-    done = subprocess.run([sys.executable, "-c", KILLED, os.fspath(out)], timeout=120)
-    assert done.returncode == -signal.SIGKILL
+    assert run(KILLED, out).returncode == -signal.SIGKILL
     before = states(out)
     assert len(before) > 5
     simulate_many([scenes.rocking] * 400, [1.0], out=out)

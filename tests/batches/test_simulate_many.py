@@ -37,9 +37,12 @@ WAYS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
     """Fields, events and messages of exceptions are equal, and no warning appears."""
-    found = simulate_many(NAMED, TIMES, workers=workers, **way)
-    for one, other in zip(found, singly(NAMED, TIMES, **way), strict=True):
-        require_same(one, other)
+    answers, expected = (
+        simulate_many(NAMED, TIMES, workers=workers, **way),
+        singly(NAMED, TIMES, **way),
+    )
+    require_same(answers, expected)
+    for one, other in zip(answers, expected, strict=True):
         if isinstance(one, rl.Trajectory):
             assert one == other and one.sol(one.t_end) == other.sol(one.t_end)
 
@@ -105,8 +108,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
 def test_times_as_of_simulate(t: Any) -> None:
     """3000 times are more samples than the core evaluates in one block."""
-    for one, scene in zip(simulate_many(ROLLING, t), ROLLING, strict=True):
-        require_same(one, simulate(scene, t))
+    require_same(simulate_many(ROLLING, t), singly(ROLLING, t))
 
 
 def test_bodies_at_the_limits() -> None:
@@ -114,11 +116,7 @@ def test_bodies_at_the_limits() -> None:
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
-    for one, other in zip(simulate_many(bodies, t), singly(bodies, t), strict=True):
-        require_same(one, other)
-
-
-# ---------------------------------------------------------------------------- scenes from arrays
+    require_same(simulate_many(bodies, t), singly(bodies, t))
 
 
 def test_arrays_broadcast() -> None:
@@ -126,17 +124,13 @@ def test_arrays_broadcast() -> None:
     a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
     blow = Impulse(jx=0.0, jz=[[[-1.0]], [[-20.0]]], dx=0.5)
     grid = {"a": a[:, None], "b": 1, "friction": friction, "impulse": blow, "z": None, "x": -0.0}
-    found = simulate_many(grid, TIMES)
-    order = itertools.product([-1.0, -20.0], a, friction)
-    each = [
+    motions: Any = simulate_many(grid, TIMES)
+    scenes = [
         Scene(a, 1, friction=mu, x=-0.0, impulse=Impulse(jx=0.0, jz=jz, dx=0.5))
-        for jz, a, mu in order
+        for jz, a, mu in itertools.product([-1.0, -20.0], a, friction)
     ]
-    assert len(found) == 12
-    for one, other in zip(found, singly(each, TIMES), strict=True):
-        require_same(one, other)
-        assert isinstance(one, rl.Trajectory)
-        assert repr(one.scene) == repr(other.scene)  # repr shows the sign of a zero
+    require_same(motions, singly(scenes, TIMES))
+    assert list(map(repr, scenes)) == [repr(each.scene) for each in motions]  # with signs of zeros
 
 
 def test_every_argument_of_a_scene_has_its_place() -> None:
@@ -147,19 +141,15 @@ def test_every_argument_of_a_scene_has_its_place() -> None:
         "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(jx=0.1, jz=-0.2, dx=0.3, dz=0.4),
     }  # fmt: skip
     assert [*arguments, "unknown"] == list(inspect.signature(Scene).parameters)
-    (found,) = simulate_many(arguments, TIMES)
-    require_same(found, simulate(Scene(**arguments), TIMES))
-    (given,) = simulate_many([Scene(**arguments)], TIMES)
-    require_same(given, found)
+    for asked in (arguments, [Scene(**arguments)]):
+        require_same(simulate_many(asked, TIMES), [simulate(Scene(**arguments), TIMES)])
 
 
 def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> None:
     theta = np.zeros(200_000)
     theta[170_001] = math.nan
-    done: list[int] = []
     with pytest.raises(ValueError, match=r"^scenes\['theta'\]\[170001\] must be"):
-        simulate_many({"a": 2, "b": 1, "theta": theta}, 1.0, progress=lambda n, of: done.append(n))
-    assert done == []
+        simulate_many({"a": 2, "b": 1, "theta": theta}, 1.0, progress=pytest.fail)
 
 
 @pytest.mark.parametrize("nothing", [[], {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
@@ -197,39 +187,30 @@ def test_what_may_be_right_of_no_scenes_is_not_refused(given: dict[str, Any]) ->
     assert rl.ends({"a": 2.0, "b": 1.0} | given, 1.0).theta.size == 0
 
 
-# ------------------------------------------------------------------------------- other arguments
-
-
 def test_arguments_are_those_of_simulate() -> None:
-    mine = dict(inspect.signature(simulate_many).parameters)
-    others = dict(inspect.signature(simulate).parameters)
-    for name in ("scene", "scenes", "workers", "progress", "out", "returns"):
-        mine.pop(name, None)
-        others.pop(name, None)
+    own = {"scene", "scenes", "workers", "progress", "out", "returns"}
+    mine, others = (
+        {name: each for name, each in inspect.signature(of).parameters.items() if name not in own}
+        for of in (simulate_many, simulate)
+    )
     assert mine == others and Options.__annotations__.keys() == mine.keys() - {"t"}
 
 
-# ---------------------------------------------------------------------------- chunks and progress
-
-
-def test_sizes_of_chunks() -> None:
-    """Chunks cover all scenes in order, grow from 16 to 2048 and hold at most 2^18 samples."""
+def test_chunks_grow_and_cover_all_scenes_in_order() -> None:
+    """Chunks grow from 16 to 2048 scenes and hold at most 2^18 samples."""
     for samples in (1, 1001, 2**20):
-        found = list(itertools.islice(sizes(samples), 500))
-        assert [begin for begin, _ in found] == list(
-            itertools.accumulate((size for _, size in found[:-1]), initial=0)
-        )
-        grown = [size for _, size in found]
-        assert grown == sorted(grown)
+        first, grown = zip(*itertools.islice(sizes(samples), 500), strict=True)
+        assert first == (*itertools.accumulate(grown[:-1], initial=0),)
+        assert [*grown] == sorted(grown)
         assert max(grown) == max(1, min(2048, 2**18 // samples)) and grown[0] == min(16, grown[-1])
 
 
-def test_progress() -> None:
-    told: list[tuple[int, int | None]] = []
-    simulate_many([scenes.rocking] * 50, 1.0, progress=lambda *said: told.append(said))
-    assert [done for done, _ in told] == [16, 32, 49, 50] and {of for _, of in told} == {50}
-    simulate_many(iter([scenes.rocking] * 3), 1.0, progress=lambda *said: told.append(said))
-    assert told[-1] == (3, None)
+def test_progress_is_reported_after_each_chunk() -> None:
+    reports: list[tuple[int, int | None]] = []
+    simulate_many([scenes.rocking] * 50, 1.0, progress=lambda *report: reports.append(report))
+    assert reports == [(done, 50) for done in (16, 32, 49, 50)]
+    simulate_many(iter([scenes.rocking] * 3), 1.0, progress=lambda *report: reports.append(report))
+    assert reports[-1] == (3, None)
 
 
 @pytest.mark.parametrize("bar", [True, False])
@@ -264,9 +245,6 @@ def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
     simulate_many(many(), [1.0], out=tmp_path / "out", progress=look)
     largest = max(size for begin, size in itertools.islice(sizes(1), 200) if begin < 1500)
     assert 16 <= most <= 2 * largest + 1
-
-
-# -------------------------------------------------------------------------------------- Ctrl-C
 
 
 @pytest.mark.parametrize("workers", [1, 2])
