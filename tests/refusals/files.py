@@ -35,9 +35,9 @@ def reads(content: bytes) -> Callable[[Path], Any]:
     return call
 
 
-def pipe(folder: Path) -> Any:
-    os.mkfifo(folder / "motion.npz")
-    return rl.load(folder / "motion.npz")
+def pipe(load: Callable[[Path], Any]) -> Callable[[Path], Any]:
+    """Load a pipe that nobody writes to, which would be waited for."""
+    return lambda folder: [os.mkfifo(folder / "pipe"), load(folder / "pipe")]
 
 
 def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
@@ -142,7 +142,7 @@ REFUSALS: list[Row] = [
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders
-    ("path", pipe),
+    ("path", pipe(rl.load)), ("path", pipe(rl.WorkPrecision.load)),
     ("folder", lambda folder: [(folder / "02_physics.ipynb").write_text(""), rl.examples(folder)]),
     ("path", lambda _: MOTION.save("")),
     (IsADirectoryError, lambda folder: MOTION.save(f"{folder}/")),

@@ -1,0 +1,32 @@
+"""Simulators for the benchmark, and their results."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rolling_ellipse import benchmark
+from rolling_ellipse.benchmark._problem import states_of
+
+HEADER = "t,x,z,theta,x_dot,z_dot,omega"
+
+
+def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Result:
+    """States and forces of the exact motion."""
+    motion = one.trajectory.sol(t)
+    forces = {"normal_force": motion.normal_force, "friction_force": motion.friction_force}
+    return benchmark.Result(states_of(motion), **forces)
+
+
+def score_of(one: benchmark.Problem, result: Any, **more: Any) -> benchmark.Score:
+    """The score of states, with more of their result, or of a result."""
+    result = benchmark.Result(result, **more) if more else result
+    (score,) = benchmark.score({one.id: result}, problems=one)
+    return score
+
+
+def write_states(folder: Path, one: benchmark.Problem, states: Any, header: str = HEADER) -> Path:
+    """Write states at the first output times as a table of results."""
+    path = folder / f"{one.id}.csv"
+    rows = np.column_stack([one.output_times[: len(states)], states])
+    np.savetxt(path, rows, "%.17g", ",", header=header, comments="")
+    return path
