@@ -3,9 +3,6 @@
 import inspect
 import re
 import signal
-import subprocess
-import sys
-import textwrap
 import tracemalloc
 from collections.abc import Callable
 from typing import Any
@@ -13,15 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.programs import printed
 from rolling_ellipse import Scene, _core, flow, scenes, simulate, thresholds
 from rolling_ellipse._ask import settings
 from rolling_ellipse._ask.records import cached_property
 
 TIMES = simulate(scenes.rolling, 1.0)._solution
 SLIDES = simulate(scenes.slip, 1.0)._solution
-
-
-# ------------------------------------------------------------------------- arrays
 
 
 def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
@@ -36,9 +31,6 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
         copied.append(tracemalloc.get_traced_memory()[1] >= aligned.nbytes)
         tracemalloc.stop()
     assert not there.flags.aligned and copied == [False, True]
-
-
-# --------------------------------------------------------------------------------- threads
 
 
 def test_threads_that_cannot_start_are_not_missed() -> None:
@@ -58,10 +50,7 @@ def test_threads_that_cannot_start_are_not_missed() -> None:
             assert np.array_equal(one, many)
         print("the same")
     """
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=120
-    )
-    assert done.returncode == 0 and done.stdout == "the same\n", done.stderr
+    assert printed(code) == "the same\n"
 
 
 def test_memory_that_is_not_there_is_a_memory_error() -> None:
@@ -95,13 +84,8 @@ def test_memory_that_is_not_there_is_a_memory_error() -> None:
         assert refused > 20, refused
         print("no crash")
     """
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=300
-    )
-    assert done.returncode == 0 and done.stdout == "no crash\n", done.stderr
+    assert printed(code) == "no crash\n"
 
-
-# ---------------------------------------------------------------------------------- Ctrl-C
 
 LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
 MANY = np.linspace(0.0, 1e3, 40_000_000)
@@ -162,9 +146,6 @@ def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
         signal.signal(signal.SIGALRM, usual)
 
 
-# ------------------------------------------------------------------- settings, names and help
-
-
 def test_choices_are_those_of_the_core() -> None:
     for name in ("MODELS", "METHODS", "STABILIZATIONS"):
         assert getattr(settings, name) == getattr(_core, name)
@@ -179,7 +160,7 @@ def test_only_what_is_public_is_offered() -> None:
 WITHOUT_UNITS = ("events", "success", "reason", "stats", "model", "method", "status", "message")
 
 
-def test_help_tells_units() -> None:
+def test_help_states_units() -> None:
     properties = {
         name: inspect.getdoc(each)
         for name, each in vars(rl.Trajectory).items()
@@ -206,8 +187,8 @@ class Dial:
         return self.value
 
 
-def test_settings_that_were_seen_before_are_checked_as_at_first() -> None:
-    """An equal number of another type is checked anew, and so is an object that has changed."""
+def test_settings_that_were_seen_before_are_checked_again() -> None:
+    """As are an equal number of another type and an object that has changed."""
     scene, dial = rl.scenes.rolling, Dial(1e-4)
     how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
     assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500

@@ -53,7 +53,7 @@ def test_a_case_is_the_same_every_time() -> None:
     assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_a_finding_is_made_short(capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_finding_is_shortened(capfd: pytest.CaptureFixture[str]) -> None:
     """Every motion of a body with restitution is a finding here, and one is printed."""
     from fuzz.process import Finding
     from fuzz_api import Hunt

@@ -1,6 +1,10 @@
-"""Public functions of arrays give the same bits for an array of any layout, and for its rows."""
+"""Public functions of arrays give the same bits for an array of any layout, and for its rows.
+
+Functions of numbers broadcast; each element has the bits of a single call.
+"""
 
 import inspect
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -70,12 +74,14 @@ ACCELERATED = ("eq_39", "lambda4_numerator", "eq_40", "complete_f", "eq_41", "eq
 FIRST = np.linspace(0, 9, 7)
 CALLS: dict[str, Call] = {
     # the times of one motion share a table, so that single times agree in units, not in bits
-    "flow": Call(rl.flow, {"t": within(-2, 9), **BODY, **START, "gyration2": within(0.2, 2)}),
+    "flow": Call(rl.flow, {"t": within(-2, 9), **BODY, **START, "gyration2": within(0.2, 2),
+                           "gravity": within(1.6, 9.8)}),
     "flow: times": Call(lambda t: rl.flow(t, **AXES, theta=0.1, omega=3.0), {"t": TIMES}, False),
     "flow: slope": Call(rl.flow, {"t": within(0, 5), **BODY, **START, "slope": within(-0.4, 0.4)}),
     "flow_jacobian": Call(
         rl.flow_jacobian, {"t": within(0, 2), **BODY, **START, "gravity": within(1.6, 9.8)}),
-    "classify": Call(rl.classify, {**BODY, **START, "friction": within(0, 1)}),
+    "classify": Call(rl.classify, {**BODY, **START, "friction": within(0, 1),
+                                   "gravity": within(1.6, 9.8), "gyration2": within(0.2, 2)}),
     "outcome": Call(lambda **blow: rl.outcome(Scene(2, 1), Impulse(**blow)), BLOWS),
     "Impulse.press": Call(
         lambda F, d: rl.outcome(Scene(2, 1), Impulse.press(F, d)),
@@ -101,8 +107,10 @@ CALLS: dict[str, Call] = {
         lambda y: rl.rolling_equation(MOTION.scene)(0.0, y.T).T, {"y": within(-4, 4, 3)}),
     **{f"geometry.{name}": Call(getattr(geometry, name), {"theta": within(-9, 9), **BODY})
        for name in geometry.__all__},
-    "impacts.collide": Call(
-        impacts.collide, {**HIT, **BODY, "friction": within(0, 1), "restitution": within(0, 1)}),
+    **{f"impacts.collide: {law}": Call(
+        lambda law=law, **hit: impacts.collide(**hit, law=law),
+        {**HIT, **BODY, "friction": within(0, 1), "restitution": within(0, 1)})
+       for law in impacts.LAWS},
     "impacts.kinetic_speed": Call(
         impacts.kinetic_speed,
         {name: HIT[name] for name in ("x_dot", "z_dot", "omega")} | {"gyration2": within(0.2, 1)}),
@@ -169,23 +177,24 @@ LAYOUTS: dict[str, Callable[[Array], Array]] = {
 each_call = pytest.mark.parametrize("name", CALLS)
 
 
-def leaves(found: Any) -> list[Any]:
+def leaves(result: Any) -> list[Any]:
     """The numbers, arrays and texts in a result."""
-    if isinstance(found, Trajectory):
+    if isinstance(result, Trajectory):
         return [
-            getattr(found, name) for name in ("t", "x", "z", "theta", "omega", "mode", "q", "q_dot")
+            getattr(result, name)
+            for name in ("t", "x", "z", "theta", "omega", "mode", "q", "q_dot")
         ]
-    if isinstance(found, dict):
-        return [leaf for value in found.values() for leaf in leaves(value)]
-    if isinstance(found, (list, tuple)):
-        return [leaf for value in found for leaf in leaves(value)]
-    return [found]
+    if isinstance(result, dict):
+        return [leaf for value in result.values() for leaf in leaves(value)]
+    if isinstance(result, (list, tuple)):
+        return [leaf for value in result for leaf in leaves(value)]
+    return [result]
 
 
-def bits(found: Any) -> list[Any]:
+def bits(result: Any) -> list[Any]:
     return [
         (leaf.shape, leaf.dtype, leaf.tobytes()) if isinstance(leaf, np.ndarray) else repr(leaf)
-        for leaf in leaves(found)
+        for leaf in leaves(result)
     ]
 
 
@@ -213,6 +222,74 @@ def test_a_row_of_many_has_the_bits_of_a_single_call(name: str) -> None:
             if isinstance(whole, np.ndarray):
                 pair = (np.asarray(each, whole.dtype) for each in (whole[k], alone))
                 assert len({each.tobytes() for each in pair}) == 1, k
+
+
+# --------------------------------------------------------------------------- functions of numbers
+
+OF_NUMBERS = [name for name in CALLS if name.startswith(("geometry", "impacts.c", "impacts.k"))]
+each_of_numbers = pytest.mark.parametrize("name", [*OF_NUMBERS, "flow", "flow: slope", "classify"])
+SHAPES = ((3, 1, 5), (4, 1), (5,), ())  # of the arguments in turn; together (3, 4, 5)
+
+
+def shaped(name: str, *shapes: tuple[int, ...]) -> dict[str, Array]:
+    """The first numbers of each argument, in these shapes in turn."""
+    sizes = zip(CALLS[name].given.items(), itertools.cycle(shapes))
+    return {key: np.resize(values, shape) for (key, values), shape in sizes}
+
+
+def answers(name: str, given: dict[str, Any]) -> tuple[Any, ...]:
+    answer = CALLS[name].function(**given)
+    return answer if isinstance(answer, tuple) else (answer,)
+
+
+@each_of_numbers
+def test_an_element_is_a_single_call(name: str) -> None:
+    given = shaped(name, *SHAPES)
+    arrays, every = answers(name, given), np.broadcast_arrays(*given.values())
+    assert all(values.shape == (3, 4, 5) for values in arrays)
+    assert all(values.dtype == (np.int8 if name == "classify" else float) for values in arrays)
+    for index in np.ndindex(3, 4, 5):
+        one = dict(zip(given, (float(values[index]) for values in every), strict=True))
+        for kind in (float, np.float64, np.array):
+            alone = answers(name, {key: kind(value) for key, value in one.items()})
+            assert all(type(value) in (float, rl.Outcome) for value in alone)
+            assert alone == tuple(values[index] for values in arrays)
+
+
+@each_of_numbers
+@pytest.mark.parametrize("shape", [(0,), (0, 4), (1,), (1, 1)])
+def test_results_have_the_shape_and_never_the_memory_of_arguments(
+    name: str, shape: tuple[int, ...]
+) -> None:
+    given = shaped(name, (), shape)
+    for values in answers(name, given):
+        assert values.shape == shape
+        assert not any(np.shares_memory(values, each) for each in given.values())
+
+
+@each_of_numbers
+def test_a_wrong_number_beside_an_empty_array_is_refused(name: str) -> None:
+    given = {key: float(value) for key, value in shaped(name, ()).items()}
+    for empty, wrong in itertools.permutations(given, 2):
+        with pytest.raises(ValueError, match=rf"^{wrong}(\[0\])? must be"):
+            answers(name, given | {empty: np.empty((2, 0)), wrong: np.nan})
+
+
+def test_coordinates_broadcast_before_their_last_axis() -> None:
+    theta, omega = np.linspace(-2.0, 5.0, 4)[:, None], np.array([0.5, -1.0, 3.0])
+    q, q_dot = rl.kinematics(theta, omega, **AXES)
+    residuals = vars(rl.constraints(q.tolist(), q_dot, **AXES))
+    assert q.shape == q_dot.shape == (4, 3, 5)
+    assert [values.shape for values in residuals.values()] == [(4, 3, 3), (4, 3, 4), (4, 3), (4, 3)]
+    for i, j in np.ndindex(4, 3):
+        single = rl.kinematics(float(theta[i, 0]), float(omega[j]), **AXES)
+        assert np.array_equal(single, [q[i, j], q_dot[i, j]])
+        alone = vars(rl.constraints(*single, **AXES))
+        assert all(np.array_equal(alone[name], residuals[name][i, j]) for name in residuals)
+        assert np.ndim(alone["gap"]) == np.ndim(alone["slip"]) == 0
+    for one, other in ((q, q_dot[0, 0]), (q[:, :1], q_dot[:1])):
+        assert rl.constraints(one, other, **AXES).velocity.shape == (4, 3, 4)
+    assert rl.constraints(np.empty((0, 5)), np.empty((0, 5)), **AXES).position.shape == (0, 3)
 
 
 # --------------------------------------------------------------------- every function is here

@@ -1,11 +1,9 @@
 """A process ends or forks while one of its threads works, as if the thread did not exist."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from oracles.programs import run
 
 # Calls of every kind, long ones or short ones that are repeated while the main thread ends.
 # Pictures are left out: matplotlib itself aborts there (a static map of ft2font outlives Python).
@@ -66,65 +64,47 @@ def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> N
     """The main thread ends during the call, at two moments; the process ends with exit code 0."""
     for seconds in ("0.15", "0.22"):
         script = DAEMON.replace("{call}", call).replace("{seconds}", seconds)
-        done = subprocess.run(
-            [sys.executable, "-c", script], cwd=tmp_path,
-            env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, text=True, timeout=300,
-        )  # fmt: skip
+        done = run(script, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (0, "")
 
 
-# A thread is held in its work. A child is forked meanwhile and does this work on another motion.
-# The alarm ends a child that waits for the thread, which it does not have.
+# A thread is held in a figure. A child is forked meanwhile and draws the figure of another motion.
+# The alarm ends a child that waits for the thread, which it does not have. Properties are read
+# beside a held thread in test_threads.py.
 FORK = """
 import os, pickle, signal, sys, threading, types, warnings
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
-from rolling_ellipse._motion import trajectory as _trajectory
 warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
 file = pickle.dumps(rl.simulate(rl.scenes.drop, 2.0))
 held, other = pickle.loads(file), pickle.loads(file)
-begun, go_on = threading.Event(), threading.Event()
+begun, released = threading.Event(), threading.Event()
 main = threading.current_thread()
 
 def wait(*_):
     if threading.current_thread() is not main:
         begun.set()
-        go_on.wait()
+        released.wait()
 
-{before}
-thread = threading.Thread(target=lambda: held{work})
+sys.modules["hooks"] = types.SimpleNamespace(wait=wait)
+plt.rcParams["figure.hooks"] = ["hooks:wait"]
+thread = threading.Thread(target=held.plot_energy)
 thread.start()
 begun.wait()
 child = os.fork()
 if child == 0:
     signal.alarm(30)
-    other{work}
+    other.plot_energy()
     os._exit(0)
 code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-go_on.set()
+released.set()
 thread.join()
 raise SystemExit(code)
 """
-WITHIN = "usual = _trajectory.{0}; _trajectory.{0} = lambda *of: (wait(), usual(*of))[1]"
-FIGURE = """
-sys.modules["hooks"] = types.SimpleNamespace(wait=wait)
-plt.rcParams["figure.hooks"] = ["hooks:wait"]
-"""
-WORK = {
-    "energy": (".energy", WITHIN.format("touch")),
-    "q": (".q", WITHIN.format("details")),
-    "sol": (".sol([1.0])", WITHIN.format("_core.simulate")),
-    "a figure": (".plot_energy()", FIGURE),
-}
 
 
-@pytest.mark.parametrize("name", WORK)
-def test_a_fork_beside_a_property_or_a_figure_goes_on(name: str) -> None:
-    work, before = WORK[name]
-    script = FORK.replace("{work}", work).replace("{before}", before)
-    environment = os.environ | {"MPLBACKEND": "agg"}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, timeout=300, check=False)
-    assert done.returncode == 0
+def test_a_fork_beside_a_figure_does_not_wait_for_it() -> None:
+    assert run(FORK).returncode == 0
 
 
 # The forking thread becomes the main thread of the child, which receives Ctrl-C.
@@ -156,5 +136,4 @@ raise SystemExit(code)
 
 
 def test_ctrl_c_ends_long_work_of_a_child_that_a_thread_forked() -> None:
-    done = subprocess.run([sys.executable, "-c", FORKED_BY_A_THREAD], timeout=300, check=False)
-    assert done.returncode == 0
+    assert run(FORKED_BY_A_THREAD).returncode == 0

@@ -1,11 +1,8 @@
 """Films, pictures, pages and races never change state that all threads share, not even briefly."""
 
-import sys
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from threading import Barrier
 from typing import Any
 
 import matplotlib
@@ -14,6 +11,7 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from oracles.threads import at_once
 from rolling_ellipse import scenes, simulate
 
 ROLLED, DROPPED = simulate(scenes.rolling, 1.0), simulate(scenes.drop, 1.0)
@@ -53,11 +51,10 @@ def explorer(path: Path) -> None:
     rl.explore(scenes.report, t_end=1.0).to_html(path)
 
 
-def refused_pictures() -> None:
-    """Draw five pictures that fail when their figure is open."""
-    for _ in range(5):
-        with pytest.raises(ValueError):
-            rl.plot_energy(ROLLED, color="no such colour")
+def refused_picture() -> None:
+    """Draw a picture that fails when its figure is open."""
+    with pytest.raises(ValueError):
+        rl.plot_energy(ROLLED, color="no such colour")
 
 
 def warned() -> None:
@@ -65,31 +62,20 @@ def warned() -> None:
         simulate(SLIPPING, [0.0, 2.0], model="rolling")
 
 
-def test_threads_leave_what_they_share(tmp_path: Path) -> None:
-    """Nine threads work at once; each warning is shown, and each figure has its own number."""
+def test_threads_leave_what_they_share_as_it_was(tmp_path: Path) -> None:
+    """Thirteen threads work at once; each warning is shown, and each figure has its own number."""
     films = [lambda i=i: film(tmp_path / f"film{i}.{'gif' if i else 'mp4'}") for i in range(3)]
     work: list[Callable[[], Any]] = [
         *films, pictures, pictures, race, lambda: explorer(tmp_path / "explorer.html"), warned,
-        refused_pictures,
+        *5 * [refused_picture],
     ]  # fmt: skip
-    start, usual = Barrier(len(work)), sys.getswitchinterval()
-
-    def begin(each: Callable[[], Any]) -> Any:
-        start.wait()
-        return each()
-
     with warnings.catch_warnings(record=True) as shown:
         warnings.simplefilter("always")
         before = list(warnings.filters), dict(matplotlib.rcParams)
-        sys.setswitchinterval(5e-6)
-        try:
-            with ThreadPoolExecutor(len(work)) as pool:
-                found = [*pool.map(begin, work)]
-        finally:
-            sys.setswitchinterval(usual)
+        results = at_once(work)
         assert (list(warnings.filters), dict(matplotlib.rcParams)) == before
     assert [each.category for each in shown] == [rl.ValidityWarning] * WARNED
-    figures = [figure for drawn in found if isinstance(drawn, list) for figure in drawn]
+    figures = [figure for drawn in results if isinstance(drawn, list) for figure in drawn]
     assert len(figures) == 10
     assert sorted(figure.number for figure in figures) == plt.get_fignums()
     assert all(plt.figure(figure.number) is figure for figure in figures)
@@ -140,6 +126,5 @@ def test_a_picture_that_fails_closes_its_own_figure_only(monkeypatch: pytest.Mon
         return figure
 
     monkeypatch.setattr(plt, "figure", beside)
-    with pytest.raises(ValueError):
-        rl.plot_energy(ROLLED, color="no such colour")
+    refused_picture()
     assert plt.get_fignums() == [each.number for each in mine]

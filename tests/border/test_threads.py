@@ -2,17 +2,18 @@
 
 import pickle
 import random
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from operator import attrgetter
-from threading import Barrier, Event
+from threading import Event
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.pickles import require_same
+from oracles.threads import at_once
 from rolling_ellipse import Scene, _core, scenes, simulate
 from rolling_ellipse._ask.records import cached_property
 from rolling_ellipse._motion import trajectory as trajectories
@@ -98,43 +99,18 @@ def refusal(call: Callable[[], Any]) -> str:
     return str(caught.value)
 
 
-@pytest.fixture(autouse=True)
-def eager_threads() -> Iterator[None]:
-    """Let threads switch a thousand times as often as usual."""
-    usual = sys.getswitchinterval()
-    sys.setswitchinterval(5e-6)
-    yield
-    sys.setswitchinterval(usual)
-
-
-def at_once(work: Callable[[int], Any]) -> list[Any]:
-    """Results of `work` in all threads, which start together."""
-    start = Barrier(THREADS)
-
-    def begin(thread: int) -> Any:
-        start.wait()
-        return work(thread)
-
-    with ThreadPoolExecutor(THREADS) as pool:
-        return list(pool.map(begin, range(THREADS)))
-
-
 def test_mixed_calls_have_the_bits_of_one_thread() -> None:
     """8000 calls: each thread makes all calls in its own random order."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
-    def work(thread: int) -> int:
+    def work(thread: int) -> None:
         draw = random.Random(thread)
-        asked = list(alone)
-        done = 0
-        while done < CALLS_EACH:
-            draw.shuffle(asked)
-            for kind, place in asked[: CALLS_EACH - done]:
-                require_same(KINDS[kind](place), alone[kind, place], f"{kind}, {place}")
-                done += 1
-        return done
+        order = list(alone) * (1 + CALLS_EACH // len(alone))
+        draw.shuffle(order)
+        for kind, place in order[:CALLS_EACH]:
+            require_same(KINDS[kind](place), alone[kind, place], f"{kind}, {place}")
 
-    assert at_once(work) == [CALLS_EACH] * THREADS
+    assert at_once([partial(work, thread) for thread in range(THREADS)]) == [None] * THREADS
 
 
 def late_names(of: Any) -> list[str]:
@@ -162,10 +138,10 @@ LATE: dict[str, Callable[[], Any]] = {
 def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> None:
     """Threads read the properties of a new object together, each in another order."""
 
-    def comparable(found: Any) -> Any:
+    def comparable(value: Any) -> Any:
         """The value; for an object of the core, which has no fields in Python, its class."""
-        kind = type(found)
-        return kind.__name__ if kind.__module__ == _core.__name__ else found
+        kind = type(value)
+        return kind.__name__ if kind.__module__ == _core.__name__ else value
 
     names = late_names(make())
     assert names
@@ -177,8 +153,8 @@ def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> N
             first = (thread + turn) % len(names)
             return {name: getattr(shared, name) for name in names[first:] + names[:first]}
 
-        for found in at_once(ask):
-            require_same({name: comparable(found[name]) for name in names}, alone)
+        for read in at_once([partial(ask, thread) for thread in range(THREADS)]):
+            require_same({name: comparable(read[name]) for name in names}, alone)
 
 
 def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
@@ -200,12 +176,12 @@ def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
 ) -> None:
     """A thread held inside a property lets another thread read the property of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
-    begun, go_on, usual = Event(), Event(), attrgetter(within)(trajectories)
+    begun, released, usual = Event(), Event(), attrgetter(within)(trajectories)
 
     def slowly(of: Any, *more: Any) -> Any:
         if of is held or of is held.scene.core:
             begun.set()
-            go_on.wait()
+            released.wait()
         return usual(of, *more)
 
     monkeypatch.setattr(f"{trajectories.__name__}.{within}", slowly)
@@ -213,7 +189,7 @@ def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
         first = pool.submit(read, held)
         begun.wait()
         try:
-            found = pool.submit(read, other).result(timeout=60)
+            second = pool.submit(read, other).result(timeout=60)
         finally:
-            go_on.set()
-        require_same(found, first.result())
+            released.set()
+        require_same(second, first.result())

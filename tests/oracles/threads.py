@@ -1,0 +1,24 @@
+"""Work of several threads that start together and take turns as often as they can."""
+
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+from typing import Any
+
+
+def at_once(works: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Results of the works, each in a thread of its own; they switch a thousand times as often as
+    usual."""
+    start, usual = Barrier(len(works)), sys.getswitchinterval()
+
+    def begin(work: Callable[[], Any]) -> Any:
+        start.wait()
+        return work()
+
+    sys.setswitchinterval(5e-6)
+    try:
+        with ThreadPoolExecutor(len(works)) as pool:
+            return [*pool.map(begin, works)]
+    finally:
+        sys.setswitchinterval(usual)
