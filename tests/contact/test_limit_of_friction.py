@@ -14,15 +14,9 @@ from oracles.rolling import forces, motion
 from rolling_ellipse import Mode, Scene, Status, simulate
 
 PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, starting near the tip
-    (0.4, 1.0),
-    (-0.4, 1.0),
-    (0.4, 0.0),
-    (-0.7, -1e-6),
-    (0.2, 1e-9),
-    (math.pi / 2, 0.1),
-    (math.pi / 2 - 1e-9, -0.5),
-    (1e-10, -5e-5),
-]
+    (0.4, 1.0), (-0.4, 1.0), (0.4, 0.0), (-0.7, -1e-6), (0.2, 1e-9), (math.pi / 2, 0.1),
+    (math.pi / 2 - 1e-9, -0.5), (1e-10, -5e-5),
+]  # fmt: skip
 
 
 def needed(a: float, b: float, theta: float, omega: float) -> float:
@@ -46,13 +40,10 @@ def test_at_the_limit_a_body_moves_as_beside_it(
     assert np.max(np.diff(moving.energy)) <= 32 * EPS * moving.energy[0]
     # relative change of friction; near the tip, which needs none, an absolute one of 1e-3 * beside
     beside = 1e-9
-    near = [
-        simulate(
-            scene.replace(friction=limit + side * (limit + 1e-3) * beside), times, model="contact"
-        )
-        for side in (1, 0 if limit < 1e-9 else -1)
-    ]
-    off = [np.max(np.abs(moving.omega - other.omega)) for other in near]
+    off = []
+    for side in (1, 0 if limit < 1e-9 else -1):
+        near = scene.replace(friction=limit + side * (limit + 1e-3) * beside)
+        off.append(np.max(np.abs(moving.omega - simulate(near, times, model="contact").omega)))
     assert min(off) <= 1e3 * beside * (1 + np.max(np.abs(moving.omega)))
 
 

@@ -4,15 +4,14 @@ import os
 import re
 import signal
 import stat
-import subprocess
-import sys
 import tempfile
 import threading
 from pathlib import Path
 
 import pytest
 from oracles.limits import files_of_at_most
-from rolling_ellipse._motion.export.atomic import replacing
+from oracles.programs import run
+from rolling_ellipse._motion.export.atomic import replacing  # all that writes files uses it
 
 OLD, NEW = b"what was there", b"what comes"
 
@@ -80,16 +79,15 @@ def test_a_file_that_vanished_in_between_is_no_success(old: Path) -> None:
 
 
 def test_a_kill_leaves_the_old_file(old: Path) -> None:
-    program = (
-        "import os, signal, sys\n"
-        "from rolling_ellipse._motion.export.atomic import replacing\n"
-        "with replacing(sys.argv[1]) as new, open(new, 'wb') as file:\n"
-        "    file.write(b'half')\n"
-        "    file.flush()\n"
-        "    os.kill(os.getpid(), signal.SIGKILL)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program, old], timeout=60)
-    assert done.returncode == -signal.SIGKILL
+    program = """
+        import os, signal, sys
+        from rolling_ellipse._motion.export.atomic import replacing
+        with replacing(sys.argv[1]) as new, open(new, 'wb') as file:
+            file.write(b'half')
+            file.flush()
+            os.kill(os.getpid(), signal.SIGKILL)
+    """
+    assert run(program, old).returncode == -signal.SIGKILL
     assert old.read_bytes() == OLD
 
 
@@ -156,14 +154,14 @@ def test_devices_and_pipes_are_written_not_replaced(tmp_path: Path) -> None:
     with replacing("/dev/null") as new:
         new.write_bytes(NEW)
     assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
-    pipe, found = tmp_path / "pipe", []
+    pipe, contents = tmp_path / "pipe", []
     os.mkfifo(pipe)
-    reader = threading.Thread(target=lambda: found.append(pipe.read_bytes()), daemon=True)
+    reader = threading.Thread(target=lambda: contents.append(pipe.read_bytes()), daemon=True)
     reader.start()
     with replacing(pipe) as new:
         new.write_bytes(NEW)
     reader.join(10)
-    assert found == [NEW] and stat.S_ISFIFO(pipe.stat().st_mode)
+    assert contents == [NEW] and stat.S_ISFIFO(pipe.stat().st_mode)
 
 
 @pytest.mark.parametrize(

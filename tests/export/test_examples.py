@@ -38,20 +38,17 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
 
 
 def test_no_link_is_followed(tmp_path: Path) -> None:
-    """A dangling one, one to an equal file, and a folder that is one: nothing is written."""
-    place, away = tmp_path / "place", tmp_path / "away"
+    """To an equal file, or as a folder; benchmark/test_result_files.py has other links."""
+    away, empty = tmp_path / "away", tmp_path / "empty"
     rl.examples(away)
-    for name, target in (
-        ("01_first_roll.ipynb", tmp_path / "nowhere"),
-        ("01_first_roll.ipynb", away / "01_first_roll.ipynb"),
-        ("reference", tmp_path / "empty"),
-    ):
+    empty.mkdir()
+    for name, target in {
+        "01_first_roll.ipynb": away / "01_first_roll.ipynb",
+        "reference": empty,
+    }.items():
+        place = tmp_path / f"with {name}"
         place.mkdir()
-        (tmp_path / "empty").mkdir(exist_ok=True)
         (place / name).symlink_to(target)
         with pytest.raises(ValueError, match=rf"folder must not have another .*{name}"):
             rl.examples(place)
-        assert [path.name for path in place.iterdir()] == [name]
-        assert not (tmp_path / "nowhere").exists() and not any((tmp_path / "empty").iterdir())
-        (place / name).unlink()
-        place.rmdir()
+        assert [path.name for path in place.iterdir()] == [name] and not any(empty.iterdir())

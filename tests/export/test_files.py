@@ -26,30 +26,32 @@ SAVED: dict[str, Callable[[], Any]] = {
     "multipliers": lambda: lifted(TIMES, method="rk4", step=0.1),
 }
 REFUSED = r"^path must name a file written by save, got '[^']*motion\.npz': "
+Motions, Contents = dict[str, Trajectory], dict[str, bytes]
+each_model = pytest.mark.parametrize("name", SAVED)
 
 
 @pytest.fixture(scope="module")
-def motions() -> dict[str, Trajectory]:
+def motions() -> Motions:
     return {name: make() for name, make in SAVED.items()}
 
 
 @pytest.fixture(scope="module")
-def contents(
-    motions: dict[str, Trajectory], tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, bytes]:
-    path = tmp_path_factory.mktemp("saved") / "motion.npz"
-    found = {}
+def contents(motions: Motions, tmp_path_factory: pytest.TempPathFactory) -> Contents:
+    folder = tmp_path_factory.mktemp("saved")
     for name, motion in motions.items():
-        motion.save(path)
-        found[name] = path.read_bytes()
-    return found
+        motion.save(folder / f"{name}.npz")
+    return {name: (folder / f"{name}.npz").read_bytes() for name in motions}
 
 
-def refusal(content: bytes, path: Path, said: str = "") -> str:
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "motion.npz"
+
+
+def require_refused(content: bytes, path: Path, reason: str = "") -> None:
     path.write_bytes(content)
-    with pytest.raises(ValueError, match=REFUSED + said) as caught:
+    with pytest.raises(ValueError, match=REFUSED + reason):
         rl.load(path)
-    return str(caught.value)
 
 
 # ---------------------------------------------------------------------------- damaged bytes
@@ -70,29 +72,24 @@ def damaged(content: bytes, rng: np.random.Generator, damage: str) -> bytes:
     return content[:start] + DAMAGES[damage](content[start:end]) + content[end:]
 
 
-def test_damage_is_refused_or_does_no_harm(
-    motions: dict[str, Trajectory], contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    rng, path, harmless = np.random.default_rng(71), tmp_path / "motion.npz", 0
+def test_damage_is_refused_or_harmless(motions: Motions, contents: Contents, path: Path) -> None:
+    rng, harmless = np.random.default_rng(71), 0
     for i in range(2500):
         name = list(SAVED)[i % len(SAVED)]
         damage = str(rng.choice(list(DAMAGES)))
         path.write_bytes(damaged(contents[name], rng, damage))
         try:
-            found = rl.load(path)
+            motion = rl.load(path)
         except ValueError as error:
             assert re.match(REFUSED, str(error)), (i, damage)
         else:  # the byte is in a date, or in a member header that the directory repeats
             harmless += 1
-            require_same(found, dataclasses.replace(motions[name], kept_events=found.events))
+            require_same(motion, dataclasses.replace(motions[name], kept_events=motion.events))
     assert 100 < harmless < 800
 
 
-@pytest.mark.parametrize("name", SAVED)
-def test_no_damage_is_no_damage(
-    name: str, motions: dict[str, Trajectory], contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    path = tmp_path / "motion.npz"
+@each_model
+def test_a_whole_file_is_read(name: str, motions: Motions, contents: Contents, path: Path) -> None:
     path.write_bytes(put_together(*taken_apart(contents[name])))
     expected = dataclasses.replace(motions[name], kept_events=motions[name].events)
     require_same(rl.load(path), expected)
@@ -120,11 +117,8 @@ def changed(about: Any, road: tuple[Any, ...], change: Callable[[Any, Any], None
     return about
 
 
-def nested(depth: int) -> Any:
-    found: Any = []
-    for _ in range(depth):
-        found = [found]
-    return found
+def nested(depth: int) -> list[Any]:
+    return [nested(depth - 1)] if depth else []
 
 
 WRONG_VALUES: dict[str, Any] = {
@@ -135,10 +129,9 @@ WRONG_VALUES: dict[str, Any] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAVED)
-def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_path: Path) -> None:
+@each_model
+def test_wrong_values_are_refused(name: str, contents: Contents, path: Path) -> None:
     """Each value of the text is replaced by many others; a file still read is saved unchanged."""
-    path, again = tmp_path / "motion.npz", tmp_path / "again.npz"
     about, arrays = taken_apart(contents[name])
     taken = set()
     about["events"] = about["events"][:1]  # the other events have the same form
@@ -148,24 +141,21 @@ def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_pat
             wrong = changed(about, road, lambda part, key, new=value: part.__setitem__(key, new))  # type: ignore[misc]
             path.write_bytes(put_together(wrong, arrays))
             try:
-                found = rl.load(path)
+                motion = rl.load(path)
             except ValueError as error:
                 assert re.match(REFUSED, str(error)), (road, label)
                 continue
             taken.add(label)
-            found.save(again)
-            assert taken_apart(again.read_bytes())[0] == wrong, (road, label)
+            motion.save(path)
+            assert taken_apart(path.read_bytes())[0] == wrong, (road, label)
     assert taken <= {
         "null", "text", "number as text", "empty", "negative", "whole", "half", "inf", "-inf",
         "huge", "none", "part",
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAVED)
-def test_no_name_is_missing_or_unknown(
-    name: str, contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    path = tmp_path / "motion.npz"
+@each_model
+def test_no_name_is_missing_or_unknown(name: str, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])
     for road in places(about):
         part = about
@@ -174,10 +164,10 @@ def test_no_name_is_missing_or_unknown(
         if not isinstance(part, dict):
             continue
         new = changed(about, (*road, "colour"), lambda part, key: part.__setitem__(key, 1))
-        refusal(put_together(new, arrays), path, ".*colour")
+        require_refused(put_together(new, arrays), path, ".*colour")
         for key in part if road != ("stats",) else ():
             new = changed(about, (*road, key), lambda part, key: part.__delitem__(key))
-            refusal(put_together(new, arrays), path, f".* must have '{key}'$")
+            require_refused(put_together(new, arrays), path, f".* must have '{key}'$")
 
 
 # ----------------------------------------------------------------------------- wrong arrays
@@ -202,36 +192,30 @@ RETYPED: dict[str, Callable[[Any], Any]] = {
 
 
 @pytest.mark.parametrize("change", RETYPED.values(), ids=RETYPED)
-@pytest.mark.parametrize("name", SAVED)
-def test_wrong_arrays_are_refused(
-    name: str, change: Callable[[Any], Any], contents: dict[str, bytes], tmp_path: Path
-) -> None:
+@each_model
+def test_wrong_arrays_are_refused(name: str, change: Any, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])
-    for array in arrays:
-        wrong = arrays | {array: change(arrays[array])}
-        refusal(put_together(about, wrong), tmp_path / "motion.npz")
+    for array, values in arrays.items():
+        require_refused(put_together(about, arrays | {array: change(values)}), path)
 
 
-@pytest.mark.parametrize("name", SAVED)
-def test_the_arrays_of_the_model_and_no_others(
-    name: str, contents: dict[str, bytes], tmp_path: Path
+@each_model
+def test_a_file_has_the_arrays_of_its_model_and_no_others(
+    name: str, contents: Contents, path: Path
 ) -> None:
-    path = tmp_path / "motion.npz"
     about, arrays = taken_apart(contents[name])
     for array in set(arrays) - {"start"}:
         rest = {key: values for key, values in arrays.items() if key != array}
-        refusal(put_together(about, rest), path, f"model '{name}' must have '{array}'")
-        refusal(put_together(about, rest | {"colour": arrays[array]}), path, ".*'colour.npy'")
+        require_refused(put_together(about, rest), path, f"model '{name}' must have '{array}'")
+        other = put_together(about, rest | {"colour": arrays[array]})
+        require_refused(other, path, ".*'colour.npy'")
     for array in ("z", "mode", "coordinates"):
         if array not in arrays:
-            more = arrays | {array: arrays["x"]}
-            refusal(put_together(about, more), path, f"model '{name}' must not have '{array}'")
+            more = put_together(about, arrays | {array: arrays["x"]})
+            require_refused(more, path, f"model '{name}' must not have '{array}'")
 
 
-def test_samples_in_any_order_and_of_another_machine(
-    motions: dict[str, Trajectory], tmp_path: Path
-) -> None:
-    path = tmp_path / "motion.npz"
+def test_samples_in_any_order_and_of_another_machine_are_read(motions: Motions, path: Path) -> None:
     for times in ([1.0, 0.0, 0.5, 0.5], []):
         motions["multipliers"].sol(times).save(path)
         assert rl.load(path).t.tolist() == times
@@ -250,43 +234,41 @@ class Harmful:
 
 
 def test_nothing_is_unpickled(
-    contents: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    contents: Contents, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.chdir(path.parent)
     about, arrays = taken_apart(contents["rolling"])
     wrong = np.full(12, None)
     wrong[3] = Harmful()
     for name in arrays:
-        refusal(put_together(about, arrays | {name: wrong}), tmp_path / "motion.npz")
+        require_refused(put_together(about, arrays | {name: wrong}), path)
     assert not Path("harmed").exists()
 
 
-def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> None:
+def test_a_member_is_read_once(contents: Contents, path: Path) -> None:
     """A directory with a million members of the same bytes would take a week."""
-    path = tmp_path / "motion.npz"
     path.write_bytes(contents["rolling"])
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
         archive.writestr("x.npy", archive.read("x.npy"))
-    refusal(path.read_bytes(), path, "it must hold known arrays, once each, got 'x.npy'")
+    require_refused(path.read_bytes(), path, "it must hold known arrays, once each, got 'x.npy'")
 
 
-@pytest.mark.parametrize("begin", [b"", b"PK\x03\x04"])
-def test_a_huge_file_is_not_read_to_be_refused(begin: bytes, tmp_path: Path) -> None:
+@pytest.mark.parametrize("start", [b"", b"PK\x03\x04"])
+def test_a_huge_file_is_not_read_to_be_refused(start: bytes, path: Path, tmp_path: Path) -> None:
     """A file of 6 GiB with two kinds of first bytes, and an endless file, are refused early."""
-    huge, many = tmp_path / "motion.npz", tmp_path / "many"
-    many.mkdir()
-    (many / "request.npz").symlink_to(huge)
-    with open(huge, "wb") as file:
-        file.write(begin)
+    (tmp_path / "many").mkdir()
+    (tmp_path / "many" / "request.npz").symlink_to(path)
+    with open(path, "wb") as file:
+        file.write(start)
         file.truncate(6 * 2**30)
     reads: list[tuple[Callable[[Any], Any], Any]] = [
-        (rl.load, huge), (rl.load, "/dev/zero"), (rl.WorkPrecision.load, huge),
-        (rl.load_many, many),
+        (rl.load, path), (rl.load, "/dev/zero"), (rl.WorkPrecision.load, path),
+        (rl.load_many, tmp_path / "many"),
     ]  # fmt: skip
     tracemalloc.start()
-    for read, path in reads:
+    for read, place in reads:
         with pytest.raises(ValueError, match=r"^path must name a file .*: it begins with b'"):
-            read(path)
+            read(place)
     assert tracemalloc.get_traced_memory()[1] < 2**24
     tracemalloc.stop()
 
@@ -303,15 +285,12 @@ def test_what_cannot_be_read_is_for_the_operating_system_to_say(name: str, tmp_p
 # ------------------------------------------------------------------------------------ saving
 
 
-def test_what_load_would_refuse_is_not_saved(
-    motions: dict[str, Trajectory], tmp_path: Path
-) -> None:
-    motion, path = motions["contact"], tmp_path / "motion.npz"
+def test_what_load_would_refuse_is_not_saved(motions: Motions, path: Path) -> None:
+    motion = motions["contact"]
     motion.save(path)
-    before = path.read_bytes()
-    contact = motion.contact
+    before, contact = path.read_bytes(), motion.contact
     assert contact is not None
-    for change, said in (
+    for change, reason in (
         ({"x": np.full(motion.t.size, math.nan)}, "x must be finite, got nan"),
         ({"contact": contact._replace(z=contact.z * math.inf)}, "z must be finite, got inf"),
         ({"method": "another"}, "method must be one of"),
@@ -320,7 +299,7 @@ def test_what_load_would_refuse_is_not_saved(
         ({"t_end": 0.0}, r"t must be within \[0\.0, 0\.0\]"),
         ({"stats": {"beats": 2}}, "stats must have no names but"),
     ):
-        with pytest.raises(ValueError, match=f"^{said}"):
+        with pytest.raises(ValueError, match=f"^{reason}"):
             dataclasses.replace(motion, **change).save(path)
         assert path.read_bytes() == before
     dataclasses.replace(motion, valid_until=1, stats={}).save(path)
@@ -328,9 +307,8 @@ def test_what_load_would_refuse_is_not_saved(
 
 
 def test_an_exception_while_saving_leaves_the_old_file(
-    motions: dict[str, Trajectory], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    motions: Motions, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "motion.npz"
     motions["rolling"].save(path)
     before = path.read_bytes()
 
@@ -339,7 +317,7 @@ def test_an_exception_while_saving_leaves_the_old_file(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(np, "savez", interrupted)
-    for target in (path, tmp_path / "new.npz"):
+    for target in (path, path.with_name("new.npz")):
         with pytest.raises(KeyboardInterrupt):
             motions["contact"].save(target)
-    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == before and list(path.parent.iterdir()) == [path]

@@ -13,7 +13,7 @@ import mpmath as mp
 import numpy as np
 import oracles.geometry
 import pytest
-from oracles.constraints import along, lead, no_slip, positions
+from oracles.constraints import along, lead, no_slip, polar, positions
 from oracles.numbers import DIGITS, EPS, ulps
 from rolling_ellipse import constraints, kinematics
 
@@ -29,15 +29,12 @@ def digits() -> None:
     mp.mp.dps = DIGITS
 
 
-# -------------------------------------------------------------------- bounds by rounding
-
-
 def position_terms(q: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
     """Sizes of the terms of f2, f3, f4."""
     _, z, theta, psi, r = q
-    polar = a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
     turned = abs(r * mp.sin(psi - theta) * (psi - theta))  # rounding of psi - theta
-    return [abs(z) + abs(r) + turned, abs(r) + polar, abs(psi - theta) + abs(lead(theta, a, b))]
+    angles = abs(psi - theta) + abs(lead(theta, a, b))
+    return [abs(z) + abs(r) + turned, abs(r) + polar(psi, a, b), angles]
 
 
 def residuals(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
@@ -66,11 +63,6 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
     ]
 
 
-def flatten(found: object) -> list[float]:
-    """position and velocity of one state, in the order of `residuals`."""
-    return [*map(float, found.position), *map(float, found.velocity)]  # type: ignore[attr-defined]
-
-
 def random_states(shape: Shape, count: int) -> np.ndarray:
     """Random (q, q_dot) of the size of the body, which break all constraints."""
     generator = np.random.default_rng(20)
@@ -79,20 +71,14 @@ def random_states(shape: Shape, count: int) -> np.ndarray:
     return generator.normal(size=(count, 10)) * spread
 
 
-def outline_right(t: mp.mpf, a: mp.mpf, b: mp.mpf, theta: mp.mpf) -> mp.mpf:
-    return oracles.geometry.boundary_point(t, theta, a, b)[0]
-
-
-# ---------------------------------------------------------------------------- at random states
-
-
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_residuals_of_inconsistent_states(shape: Shape) -> None:
     """Residuals equal their definitions, to 16 ulp of their terms: an evaluation takes products of
     a few sines, quotients and roots, and each adds half an ulp to one."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, STATES):
-        found = flatten(constraints(y[:5], y[5:], a=shape[0], b=shape[1]))
+        held = constraints(y[:5], y[5:], a=shape[0], b=shape[1])
+        found = [*map(float, held.position), *map(float, held.velocity)]
         exact = residuals([mp.mpf(value) for value in y], a, b)
         terms = residual_terms([mp.mpf(value) for value in y], a, b)
         for k in range(7):
@@ -108,29 +94,22 @@ def test_residual_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
         z, theta, x_dot, omega = (mp.mpf(y[k]) for k in (1, 2, 5, 7))
         t = oracles.geometry.lowest_point(y[2], *shape)
         up = oracles.geometry.boundary_point(t, theta, a, b)[1]
-        material = omega * mp.diff(partial(outline_right, t, a, b), theta)
-        found = constraints(y[:5], y[5:], a=shape[0], b=shape[1])
-        assert ulps(float(found.gap), z + up, abs(z) + abs(up)) <= 8
-        assert ulps(float(found.slip), x_dot + material, abs(x_dot) + abs(material)) <= 8
+        right = partial(oracles.geometry.boundary_point, t, a=a, b=b)
+        material = omega * mp.diff(lambda angle, right=right: right(angle)[0], theta)
+        held = constraints(y[:5], y[5:], a=shape[0], b=shape[1])
+        assert ulps(float(held.gap), z + up, abs(z) + abs(up)) <= 8
+        assert ulps(float(held.slip), x_dot + material, abs(x_dot) + abs(material)) <= 8
         other = y.copy()
         other[[0, 3, 4, 8, 9]] += 1.0
         moved = constraints(other[:5], other[5:], a=shape[0], b=shape[1])
-        assert float(moved.gap) == float(found.gap) and float(moved.slip) == float(found.slip)
-
-
-# ------------------------------------------------------------------------ on rolling states
+        assert float(moved.gap) == float(held.gap) and float(moved.slip) == float(held.slip)
 
 
 def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
     """q of a rolling body at an angle."""
-    h, slope = oracles.geometry.height(theta, a, b), oracles.geometry.support(theta, a, b).slope
+    h, slope, _ = oracles.geometry.support(theta, a, b)
     path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
     return [path, h, mp.mpf(theta), theta + lead(theta, a, b), mp.hypot(h, slope)]
-
-
-def polar(psi: mp.mpf, a: mp.mpf, b: mp.mpf) -> mp.mpf:
-    """r by f3, as a function of psi."""
-    return a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
@@ -144,16 +123,11 @@ def test_kinematics_against_differentiation(shape: Shape) -> None:
             a, b = map(mp.mpf, shape)
             exact = rolling_coordinates(theta, a, b)
             psi, r = exact[3], exact[4]
+            h, slope, _ = oracles.geometry.support(theta, a, b)
             rates = [
-                exact[1],
-                oracles.geometry.support(theta, a, b).slope,
-                mp.mpf(1),
-                1 + mp.diff(partial(lead, a=a, b=b), theta),
+                *(h, slope, mp.mpf(1), 1 + mp.diff(partial(lead, a=a, b=b), theta)),
                 mp.diff(
-                    lambda y, a=a, b=b: mp.hypot(
-                        oracles.geometry.height(y, a, b), oracles.geometry.support(y, a, b).slope
-                    ),
-                    theta,
+                    lambda y, a=a, b=b: mp.hypot(*oracles.geometry.support(y, a, b)[:2]), theta
                 ),
             ]
             r_slopes = mp.diffs(partial(polar, a=a, b=b), psi, 2)

@@ -8,16 +8,6 @@ from oracles.numbers import DIGITS, EPS, ulps
 from rolling_ellipse import geometry
 
 Shape = tuple[float, float]
-FUNCTIONS = [
-    geometry.support,
-    geometry.support_slope,
-    geometry.support_curvature,
-    geometry.curvature_radius,
-    geometry.contact_distance,
-    geometry.contact_angle,
-    geometry.centre_path,
-    geometry.arc_length,
-]
 
 
 @pytest.fixture(autouse=True)
@@ -34,9 +24,6 @@ def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
     """tan t = (a/b) tan theta, on the branch that stays within pi/2 of theta."""
     sine, cosine = mp.sin(theta), mp.cos(theta)
     return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
-
-
-# ------------------------------------------------------------------ self-tests of the oracles
 
 
 def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
@@ -74,9 +61,6 @@ def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
     near_end = [t - (t - 0) * mp.mpf(2) ** -k for k in range(12)]
     outline = mp.quad(lambda u: mp.hypot(a * mp.cos(u), b * mp.sin(u)), [*near_end, t])
     assert abs(outline - boundary_length(t, *shape)) < mp.mpf(10) ** -18 * outline
-
-
-# -------------------------------------------------------------------------- single functions
 
 
 def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:

@@ -21,12 +21,12 @@ ENDLESS: dict[str, Any] = {
 
 def singly(scenes: Iterable[rl.Scene], t: Any, **settings: Any) -> list[Any]:
     """The motion of each scene by `simulate`, or the exception that it raises."""
-    found: list[Any] = []
+    answers: list[Any] = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for scene in scenes:
             try:
-                found.append(rl.simulate(scene, t, **settings))
+                answers.append(rl.simulate(scene, t, **settings))
             except (ValueError, rl.IntegrationError) as error:
-                found.append(error)
-    return found
+                answers.append(error)
+    return answers

@@ -14,14 +14,15 @@ def lead(theta: Any, a: Any, b: Any) -> Any:
     return mp.atan2((a * a - b * b) * sine * cosine, (b * cosine) ** 2 + (a * sine) ** 2)
 
 
+def polar(psi: Any, a: Any, b: Any) -> Any:
+    """r of a point of the outline (f3 = 0)."""
+    return a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
+
+
 def positions(q: Sequence[Any], a: Any, b: Any) -> list[Any]:
     """f2, f3, f4 [m, m, rad]."""
     _, z, theta, psi, r = q
-    return [
-        z - r * mp.cos(psi - theta),
-        r - a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2),
-        psi - theta - lead(theta, a, b),
-    ]
+    return [z - r * mp.cos(psi - theta), r - polar(psi, a, b), psi - theta - lead(theta, a, b)]
 
 
 def no_slip(q: Sequence[Any], q_dot: Sequence[Any]) -> Any:

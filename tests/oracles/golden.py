@@ -79,11 +79,11 @@ def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
     """Blocks of records, each from a record of a kind up to the next one of that kind."""
     starts = [i for i, each in enumerate(records) if each.kind == first]
     ends = [*starts[1:], len(records)]
-    found: dict[str, list[Record]] = {}
+    named: dict[str, list[Record]] = {}
     for begin, end in zip(starts, ends, strict=True):
-        name = records[begin].words[0] if records[begin].words else str(len(found))
-        found[name] = records[begin:end]
-    return found
+        name = records[begin].words[0] if records[begin].words else str(len(named))
+        named[name] = records[begin:end]
+    return named
 
 
 def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
@@ -138,17 +138,19 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.ValidityWarning)
         warnings.simplefilter("ignore", rl.StabilityWarning)
-        found = rl.simulate(scene, times, **chosen)
+        computed = rl.simulate(scene, times, **chosen)
     solution = next(each for each in motion if each.kind == "solution")
     ending, followed_until, _ = solution.numbers  # Python has no names for these two
-    yield Record("solution", (found.model, found.method),
-                 (ending, followed_until, found.valid_until))  # fmt: skip
-    for event in found.events:
+    yield Record("solution", (computed.model, computed.method),
+                 (ending, followed_until, computed.valid_until))  # fmt: skip
+    for event in computed.events:
         yield Record("event", (event.kind.name.lower(),), (event.t, *at(event.state_after)))
-    columns = [getattr(found, name) for name in _COLUMNS[found.model]]
+    columns = [getattr(computed, name) for name in _COLUMNS[computed.model]]
     shown = [each.numbers[0] for each in motion if each.kind == "sample"]
-    for i in np.searchsorted(found.t, shown):
-        yield Record("sample", (), (float(found.t[i]), *(float(column[i]) for column in columns)))
+    for i in np.searchsorted(computed.t, shown):
+        yield Record(
+            "sample", (), (float(computed.t[i]), *(float(column[i]) for column in columns))
+        )
     proof = rl.certify(scene)
     yield Record("certificate", (proof.validity.name.lower(),), (
         or_nan(proof.ends_at), or_nan(proof.smallest_normal_force),

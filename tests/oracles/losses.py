@@ -73,15 +73,15 @@ def lost(run: Run, motion: Trajectory) -> float:
     times = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inside).ravel(), knots[-1])
     seen = motion.sol(times)
     surprise = 0.0 if "step" in run.how else 10 * run.how["rtol"]
-    found = [_energy(run.scene, seen) / max(1e-2, surprise)]
+    losses = [_energy(run.scene, seen) / max(1e-2, surprise)]
     if run.how["model"] == "multipliers":
         missed = np.abs(seen.constraint_residuals().position)
         missed[:, :2] /= max(run.scene.a, run.scene.b)
-        found.append(float(np.max(missed)) / 1e-3)
+        losses.append(float(np.max(missed)) / 1e-3)
     here = seen.theta[::SAMPLES], seen.omega[::SAMPLES]
     beside = np.abs(seen.theta[SAMPLES::SAMPLES] - _solved(run.scene, *here, np.diff(knots)))
-    found.append(float(np.max(beside / np.maximum(0.1, surprise * (1 + np.abs(here[0][:-1]))))))
-    return max(math.inf if math.isnan(value) else value for value in found)
+    losses.append(float(np.max(beside / np.maximum(0.1, surprise * (1 + np.abs(here[0][:-1]))))))
+    return max(math.inf if math.isnan(value) else value for value in losses)
 
 
 def _energy(scene: Scene, seen: Trajectory) -> float:

@@ -4,10 +4,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rolling_ellipse import benchmark
-from rolling_ellipse.benchmark._problem import states_of
+from numpy.typing import NDArray
+from rolling_ellipse import Trajectory, benchmark
 
-HEADER = "t,x,z,theta,x_dot,z_dot,omega"
+STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
+HEADER = ",".join(("t", *STATE))
+
+
+def states_of(motion: Trajectory) -> NDArray[np.float64]:
+    """States of a motion, a row for each sample."""
+    return np.stack([getattr(motion, name) for name in STATE], axis=1)
 
 
 def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Result:

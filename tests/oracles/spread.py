@@ -58,7 +58,7 @@ def path_grain(motion: Inputs) -> Floats:
 
 
 def known_to_in_two_moves(first: float, second: float, motion: dict[str, float]) -> Floats:
-    """Bound of rounding for a motion that goes on from its state after the first time: the errors
+    """Bound of rounding for a motion that continues from its state after the first time: the errors
     of that state, as the second time changes them, and of the second move."""
     theta, omega, _ = state(first, **motion)
     error = known_to(state, {"t": first} | motion)
