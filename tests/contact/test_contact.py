@@ -70,9 +70,7 @@ def test_a_sliding_disc(slope: float, inertia: float | None, speed: float, omega
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.5, 0.5), (0.7, 1.9)])
 @pytest.mark.parametrize("e", [0.5, 0.9])
 @pytest.mark.parametrize("friction", [0.0, 0.3, math.inf])
-def test_dropped_without_spin_it_comes_to_rest(
-    a: float, b: float, e: float, friction: float
-) -> None:
+def test_dropped_without_spin_a_body_rests(a: float, b: float, e: float, friction: float) -> None:
     """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
     v = 1.7
     scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
@@ -192,19 +190,14 @@ def slowed_slide(scene: Scene, side: float) -> Any:
 
 
 def slide_in_its_own_clock(
-    scene: Scene,
-    start: Any,
-    t0: float,
-    side: float,
-    least_b: float = 0.0,
-    least_c: float = -math.inf,
+    scene: Scene, start: Any, t0: float, side: float, min_b: float = 0.0, min_c: float = -math.inf
 ) -> Any:
     """theta, omega, slip and t by SciPy where the slip vanishes or B or c reaches its bound."""
     forces, rates = slowed_slide(scene, side)
     ends = [
         lambda _, y: side * y[2],
-        lambda _, y: math.exp(y[4]) - least_b,
-        lambda _, y: forces(y[0], y[1])[2] - least_c,
+        lambda _, y: math.exp(y[4]) - min_b,
+        lambda _, y: forces(y[0], y[1])[2] - min_c,
     ]
     for end in ends:
         end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
@@ -218,9 +211,7 @@ def slide_in_its_own_clock(
     ("friction", "theta"), [(1.5, 1.1954466905), (2.0, 1.334565838), (4.0, 1.46422879159)]
 )
 @pytest.mark.parametrize("omega", [1.0, -1.0])
-def test_a_slide_that_comes_out_of_a_small_response(
-    friction: float, theta: float, omega: float
-) -> None:
+def test_a_slide_comes_out_of_a_small_response(friction: float, theta: float, omega: float) -> None:
     """The slide lasts from B = 0.005, where N = c/B is large, to the lift-off at c = 0."""
     x_dot = float(support(theta, 2.0, 1.0).h) * omega + 500
     scene = Scene(2.0, 1.0, theta=theta, omega=omega, x_dot=x_dot, friction=friction)
@@ -229,7 +220,7 @@ def test_a_slide_that_comes_out_of_a_small_response(
     motion = simulate(scene, np.linspace(0.0, 1.0, 11), model="contact")
     lift, end = motion.events[0], motion.events[0].state_before
     assert lift.kind is EventKind.LIFT_OFF and forces(end.theta, end.omega)[1] > 0.025
-    expected = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0, least_c=0.0)
+    expected = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0, min_c=0.0)
     # tolerance of the reference, over dozens of steps, and of its end
     mine = [end.theta, end.omega, response(scene, end).slip, lift.t]
     assert mine == pytest.approx(list(expected), rel=1e-11)
@@ -276,9 +267,7 @@ NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
 
 
 @pytest.mark.parametrize(("a", "b", "friction", "slip"), NO_JAMS)
-def test_a_slip_that_ends_just_before_a_jam(
-    a: float, b: float, friction: float, slip: float
-) -> None:
+def test_a_slip_ends_just_before_a_jam(a: float, b: float, friction: float, slip: float) -> None:
     """Near B = 0 the impulse of N takes no time: omega and the remaining energy follow from it."""
     body = Scene(a, b, friction=friction)
     response_of = slowed_slide(body, 1.0)[0]
@@ -613,9 +602,7 @@ def test_a_flight_farther_than_doubles_reach_says_so() -> None:
 
 @pytest.mark.parametrize("theta", [1e-101, -1e-150, 1e-235, -5e-324])
 @pytest.mark.parametrize("omega", [-30.0, 30.0, 1e6])
-def test_endless_friction_next_to_the_flat_position_is_that_in_it(
-    theta: float, omega: float
-) -> None:
+def test_endless_friction_beside_the_flat_is_that_on_it(theta: float, omega: float) -> None:
     """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""
     flat = Scene(2.0, 1.0, theta=0.0, omega=omega, friction=math.inf, x_dot=0.0)
     expected, beside = (

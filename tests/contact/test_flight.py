@@ -192,9 +192,7 @@ def test_small_hops_of_a_turning_circle(omega: float) -> None:
 
 
 @pytest.mark.parametrize(("b", "restitution"), [(1e-3, 1.0), (1e-3, 0.0), (0.5, 0.5)])
-def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same(
-    b: float, restitution: float
-) -> None:
+def test_a_spin_too_fast_for_the_clock_comes_down_as_well(b: float, restitution: float) -> None:
     """Bounces down a steep slope grow until a body turns by more than half a turn between two
     doubles of time. The body lands without a gain of energy, to roundings of its two parts."""
     scene = Scene(1.0, b, theta=3.54, omega=-1e-3, slope=-1.5, restitution=restitution)

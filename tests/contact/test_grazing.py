@@ -57,9 +57,7 @@ def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("friction", [0.3, math.inf])
-def test_a_rough_ground_keeps_a_weightless_tip_as_well(
-    a: float, b: float, friction: float, ulps: int
-) -> None:
+def test_rough_ground_keeps_weightless_tips(a: float, b: float, friction: float, ulps: int) -> None:
     """The body slips or rolls on from the tip, and no event follows another too soon to resolve."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=friction, theta=tip(a, b), omega=start)
@@ -76,9 +74,7 @@ def test_a_rough_ground_keeps_a_weightless_tip_as_well(
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("from_the_tip", [True, False])
-def test_beside_the_tip_c_decides_by_where_it_goes(
-    friction: float, from_the_tip: bool, ulps: int
-) -> None:
+def test_beside_the_tip_its_way_decides(friction: float, from_the_tip: bool, ulps: int) -> None:
     away = 0.6  # angle from the tip at pi/2
     theta = math.pi / 2 - away
     omega = weightless_spin(2.0, 1.0, theta) * (1 + ulps * EPS / 2) * (-1 if from_the_tip else 1)
@@ -92,9 +88,7 @@ def test_beside_the_tip_c_decides_by_where_it_goes(
 @pytest.mark.parametrize("slope", [-1.4, -0.2, 0.2, 1.4])
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_weightless_tip_on_a_rough_slope_gains_no_energy(
-    a: float, b: float, side: int, slope: float
-) -> None:
+def test_a_tip_on_rough_slopes_gains_no_energy(a: float, b: float, side: int, slope: float) -> None:
     omega = side * weightless_spin(a, b, tip(a, b), 9.81 * math.cos(slope))
     scene = Scene(a, b, theta=tip(a, b), omega=omega, slope=slope)
     moving = simulate(scene, np.linspace(0.0, 0.2 / abs(omega), 50), model="contact")

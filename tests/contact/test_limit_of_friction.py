@@ -50,17 +50,13 @@ def test_at_the_limit_a_body_moves_as_beside_it(
 @pytest.mark.parametrize("ulps", [-2, -1, 0, 1, 2])
 @pytest.mark.parametrize("slope", [0.2, -0.9])
 @pytest.mark.parametrize("omega", [0.0, 1e-9, -1e-9])
-def test_an_equilibrium_on_a_slope_with_just_enough_friction(
-    slope: float, omega: float, ulps: int
-) -> None:
+def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, ulps: int) -> None:
     """h' = h tan(alpha): the body stays there or rocks about it, and hardly slips."""
     a, b, incline = 9.0, 1.0, math.tan(slope)
     c2 = a * a - b * b
     theta = math.atan(2 * incline * b * b / (c2 + math.sqrt(c2**2 - (2 * a * b * incline) ** 2)))
-    scene = Scene(
-        a, b, slope=slope, theta=theta, omega=omega,
-        friction=abs(incline) * (1 + ulps * EPS / 2),
-    )  # fmt: skip
+    friction = abs(incline) * (1 + ulps * EPS / 2)
+    scene = Scene(a, b, slope=slope, theta=theta, omega=omega, friction=friction)
     moving = simulate(scene, 10.0, model="contact", max_events=100)
     assert moving.status is Status.COMPLETED
     # 1e-9 rad/s over the rate of rocking, some 1/s, or 1e-9 rad/s for 10 s without any restraint
@@ -70,9 +66,7 @@ def test_an_equilibrium_on_a_slope_with_just_enough_friction(
 
 @pytest.mark.parametrize("ulps", [-2, 0, 2, 100])
 @pytest.mark.parametrize("swing", [6.6e-13, -6.6e-13])
-def test_a_body_that_hardly_rocks_is_held_by_the_friction_of_its_slope(
-    swing: float, ulps: int
-) -> None:
+def test_a_body_that_hardly_rocks_is_held_by_its_friction(swing: float, ulps: int) -> None:
     """In its swing |F|/N is tan(slope) to 2e-14, and would be far more a micro-radian away.
 
     A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
@@ -82,10 +76,8 @@ def test_a_body_that_hardly_rocks_is_held_by_the_friction_of_its_slope(
     for _ in range(9):
         h = support(lies, a, b).h
         lies = math.asin(2 * math.tan(slope) * h**2 / (a * a - b * b)) / 2
-    grip = math.tan(slope) * (1 + ulps * EPS / 2)
-    scene = Scene(
-        a, b, gravity=0.0024, inertia=127.0, slope=slope, friction=grip, theta=lies + swing
-    )
+    mu = math.tan(slope) * (1 + ulps * EPS / 2)
+    scene = Scene(a, b, gravity=0.0024, inertia=127.0, slope=slope, friction=mu, theta=lies + swing)
     held = simulate(scene, np.linspace(0.0, 80.0, 9), model="contact")
     assert set(held.mode) == {Mode.ROLLING} and not held.events
 

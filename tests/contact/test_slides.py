@@ -58,9 +58,7 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
         x = start.x + way_of_slide(scene, start, friction, theta, t)
         # a few ulp of theta and omega in h' omega, of h and h', and of the sums themselves
         turn = np.abs(ddh * omega) * (1 + np.abs(theta)) + np.abs(dh * omega)
-        speeds = (
-            np.abs(start.x_dot) + (1 + scene.friction) * (turn.max() + into * t) + abs(along) * t
-        )
+        speeds = abs(start.x_dot) + (1 + scene.friction) * (turn.max() + into * t) + abs(along) * t
         ways = abs(start.x) + h.max() * (1 + scene.friction) + speeds.max() * t
         assert np.all(np.abs(motion.x_dot - x_dot) <= 16 * EPS * speeds), scene
         ways = ways + (1 + scene.friction) * np.abs(dh) * (1 + np.abs(theta))
@@ -159,9 +157,7 @@ NEAR_A_JAM = (
 
 
 @pytest.mark.parametrize(("given", "known", "t"), NEAR_A_JAM)
-def test_a_slide_near_a_jam_keeps_its_digits(
-    given: dict[str, Any], known: dict[str, float], t: float
-) -> None:
+def test_a_slide_near_a_jam_keeps_its_digits(given: Any, known: dict[str, float], t: float) -> None:
     """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
 
     The numbers are those of reference/impulse_clock.py in 45 digits. A start in doubles has their

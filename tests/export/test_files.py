@@ -26,7 +26,8 @@ SAVED: dict[str, Callable[[], Any]] = {
     "multipliers": lambda: lifted(TIMES, method="rk4", step=0.1),
 }
 REFUSED = r"^path must name a file written by save, got '[^']*motion\.npz': "
-Motions, Contents = dict[str, Trajectory], dict[str, bytes]
+Motions = dict[str, Trajectory]
+Contents = dict[str, bytes]
 each_model = pytest.mark.parametrize("name", SAVED)
 
 
@@ -200,9 +201,7 @@ def test_wrong_arrays_are_refused(name: str, change: Any, contents: Contents, pa
 
 
 @each_model
-def test_a_file_has_the_arrays_of_its_model_and_no_others(
-    name: str, contents: Contents, path: Path
-) -> None:
+def test_a_file_has_only_arrays_of_its_model(name: str, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])
     for array in set(arrays) - {"start"}:
         rest = {key: values for key, values in arrays.items() if key != array}
@@ -233,9 +232,7 @@ class Harmful:
         return os.mkdir, ("harmed",)
 
 
-def test_nothing_is_unpickled(
-    contents: Contents, path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_unpickled(contents: Contents, path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(path.parent)
     about, arrays = taken_apart(contents["rolling"])
     wrong = np.full(12, None)

@@ -13,9 +13,8 @@ from oracles.trajectory import VECTORS
 from oracles.units import UNITS, scaled, scene_in_other_units
 
 COLUMNS = [*VECTORS[1:], "lambda1", "lambda2", "lambda3", "lambda4", "mode"]
-BLOWN = rl.Scene(
-    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=rl.Impulse(jx=1.0, jz=-4.0, dx=0.5)
-)
+BLOW = rl.Impulse(jx=1.0, jz=-4.0, dx=0.5)
+BLOWN = rl.Scene(2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=BLOW)
 SCENES = {"report": rl.scenes.report, "rocking": rl.scenes.rocking, "blown": BLOWN}
 
 

@@ -1,7 +1,6 @@
 """Single impacts by three laws agree with small steps along the impulse path; a fit finds one pair
 of coefficients from a series of impacts."""
 
-import itertools
 import math
 from typing import Any
 
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot
 from oracles.numbers import EPS
-from rolling_ellipse import EventKind, Scene, course, geometry, impacts, simulate
+from rolling_ellipse import course, geometry, impacts
 
 LAWS = impacts.LAWS
 ENERGY_KEEPING: tuple[Any, ...] = ("stronge", "poisson")
@@ -23,14 +22,9 @@ def approaching(count: int, seed: int = 1, **body: float) -> np.ndarray:
     theta, omega = rng.uniform(-4, 4, count), rng.normal(0, 3, count)
     shape = body or BODY
     h, slope = (f(theta, **shape) for f in (geometry.support, geometry.support_slope))
-    return np.stack(
-        [
-            theta,
-            h * omega + rng.normal(0, 1.5, count),
-            slope * omega - rng.uniform(0.1, 2, count),
-            omega,
-        ]
-    )
+    x_dot = h * omega + rng.normal(0, 1.5, count)
+    z_dot = slope * omega - rng.uniform(0.1, 2, count)
+    return np.stack([theta, x_dot, z_dot, omega])
 
 
 def contact(state: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -45,10 +39,8 @@ def speed(velocities: np.ndarray, k2: float = K2) -> np.ndarray:
 
 def after(state: Any, law: Any, friction: float, restitution: float, **body: Any) -> np.ndarray:
     """Velocities after an impact, shape (3, ...)."""
-    shape = BODY | body
-    return np.stack(
-        impacts.collide(*state, **shape, friction=friction, restitution=restitution, law=law)
-    )
+    given = BODY | body | {"friction": friction, "restitution": restitution, "law": law}
+    return np.stack(impacts.collide(*state, **given))
 
 
 # ----------------------------------------------------------------------------------- oracle
@@ -89,9 +81,7 @@ def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> 
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("friction", "restitution"), [(0.1, 0.9), (0.4, 0.6), (1.1, 0.3), (0, 1)])
-def test_laws_against_the_path_in_small_steps(
-    law: Any, friction: float, restitution: float
-) -> None:
+def test_laws_follow_the_path_in_small_steps(law: Any, friction: float, restitution: float) -> None:
     """The oracle is late by a step at the end of compression, which restitution at most doubles,
     and by one at its own end. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
     by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the approach."""
@@ -100,15 +90,6 @@ def test_laws_against_the_path_in_small_steps(
         true = walked(law, state, friction, restitution)
         approach = -contact(state, state[1:])[1]
         assert speed(found - true) < 2e-3 * approach
-
-
-def test_the_laws_are_told_apart() -> None:
-    """Any two laws differ by 2e-2 of the approach at least; the test above allows 2e-3."""
-    state = approaching(25, seed=3)
-    found = [after(state, law, 0.4, 0.6) for law in LAWS]
-    approach = -contact(state, state[1:])[1]
-    for one, other in itertools.combinations(found, 2):
-        assert np.max(speed(one - other) / approach) > 2e-2
 
 
 # ------------------------------------------------------------------------------- invariants
@@ -192,12 +173,8 @@ def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
     impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with some ten
     roundings."""
     state = approaching(300)
-    compression, all_of_it = (
-        impacts.collide(*state, **BODY, friction=friction, restitution=e, law="poisson")[1]
-        - state[2]
-        for e in (0.0, 0.4)
-    )
-    assert np.max(np.abs(all_of_it - 1.4 * compression)) < 1000 * EPS
+    compression, whole = (after(state, "poisson", friction, e)[1] - state[2] for e in (0.0, 0.4))
+    assert np.max(np.abs(whole - 1.4 * compression)) < 1000 * EPS
 
 
 def test_without_friction_or_restitution_the_laws_are_one() -> None:
@@ -226,20 +203,6 @@ def test_a_contact_that_leaves_is_left_alone(law: Any) -> None:
 
 
 # -------------------------------------------------------------------- law of the simulations
-
-
-def test_stronge_is_what_a_simulated_body_does() -> None:
-    """An event of a thrown ellipse has the states before and after its impact, to the bit."""
-    scene = Scene(
-        2.0, 1.0, mass=3.0, theta=0.4, z=2.5, x_dot=1.5, z_dot=0.0, omega=1.0, friction=0.3,
-        restitution=0.6,
-    )  # fmt: skip
-    hit = next(e for e in simulate(scene, 1.0).events if e.kind is EventKind.IMPACT)
-    before, then = hit.state_before, hit.state_after
-    state = (before.theta, before.x_dot, before.z_dot, before.omega)
-    found = after(state, "stronge", 0.3, 0.6, a=2.0, b=1.0)
-    # the mass is 3 kg in the scene and 1 kg in `collide`: some roundings differ
-    assert found == pytest.approx([then.x_dot, then.z_dot, then.omega], rel=64 * EPS)
 
 
 def test_the_default_body_is_a_uniform_disc() -> None:
@@ -298,9 +261,7 @@ def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
 def test_the_median_does_not_mind_wild_trials() -> None:
     before, found = series("stronge", 0.02)
     found[:, ::10] *= -3.0
-    median, rms = (
-        impacts.fit(before, found, **BODY, minimise=minimise) for minimise in ("median", "rms")
-    )
+    median, rms = (impacts.fit(before, found, **BODY, minimise=by) for by in ("median", "rms"))
     assert median.restitution == pytest.approx(E, abs=0.02)
     assert median.friction == pytest.approx(MU, abs=0.02)
     assert abs(rms.restitution - E) > 0.04
@@ -326,29 +287,17 @@ def test_errors_are_those_of_the_coefficients_found() -> None:
 def test_what_sticks_bounds_friction_from_below() -> None:
     """Any friction above the largest |J_t|/J_n of sticking impacts gives the same velocities."""
     before: Any = approaching(200, seed=9)
-    found: Any = after(before, "stronge", math.inf, 0.5)
-    normal = found[1] - before[2]
+    left: Any = after(before, "stronge", math.inf, 0.5)
+    normal = left[1] - before[2]
     kept = normal > 0.05  # friction alone may stop the approach at a smaller impulse
-    before, found = before[:, kept], found[:, kept]
-    enough = np.max(np.abs(found[0] - before[1]) / normal[kept])
-    fitted = impacts.fit(before, found, **BODY, minimise="rms")
+    before, left = before[:, kept], left[:, kept]
+    enough = np.max(np.abs(left[0] - before[1]) / normal[kept])
+    fitted = impacts.fit(before, left, **BODY, minimise="rms")
     assert fitted.restitution == pytest.approx(0.5, abs=1e-3)
     assert fitted.friction > 0.95 * enough
 
 
 # --------------------------------------------------------------------------------- bad input
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("law", LAWS)
-def test_no_impacts_come_to_nothing(law: Any) -> None:
-    """An empty array gives empty results, beside which wrong numbers are refused."""
-    given: dict[str, Any] = {"theta": 0.0, "x_dot": 0.0, "z_dot": [], "friction": 0.2, "a": 2.0}
-    given |= {"b": 1.0, "restitution": 0.5, "law": law}
-    found = impacts.collide(**given, omega=0.0)
-    assert [values.shape for values in found[:3]] == [(0,)] * 3
-    with pytest.raises(ValueError, match="omega must be a finite number"):
-        impacts.collide(**given, omega=-math.inf)
 
 
 DIE: dict[str, Any] = {"a": 0.035, "b": 0.025}
@@ -421,8 +370,8 @@ def test_neither_order_nor_side_changes_the_fit(minimise: Any) -> None:
 def test_errors_of_what_is_not_determined() -> None:
     """Where all impacts stick, infinite friction fits as well; few impacts have no halves."""
     state = approaching(200, 9)
-    found = after(state, "stronge", 0.3, 0.6) + np.random.default_rng(9).normal(0, 0.05, (3, 200))
-    fitted = impacts.fit(list(state), list(found), **BODY)
+    seen = after(state, "stronge", 0.3, 0.6) + np.random.default_rng(9).normal(0, 0.05, (3, 200))
+    fitted = impacts.fit(list(state), list(seen), **BODY)
     chart = fitted.plot()
     shown = np.array([line.get_ydata() for line in chart.residuals.values()])
     pyplot.close("all")
@@ -430,5 +379,5 @@ def test_errors_of_what_is_not_determined() -> None:
     state[1] = geometry.support(state[0], **BODY) * state[3]
     stuck = impacts.fit(list(state), list(after(state, "stronge", math.inf, 0.6)), **BODY)
     assert stuck.friction_error == math.inf and 0 < stuck.restitution_error < 1e-4
-    few = impacts.fit(list(state[:, :19]), list(found[:, :19]), **BODY)
+    few = impacts.fit(list(state[:, :19]), list(seen[:, :19]), **BODY)
     assert few.restitution_error == few.friction_error == math.inf

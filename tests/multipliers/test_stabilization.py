@@ -139,8 +139,6 @@ def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
 def test_index_2_far_from_zero() -> None:
     """A start 15 915 turns on (theta = 1e5, ulp 1.5e-11) turns as far in 1 s as the one near 0, to
     1e-10: this ulp twice, times e^1.7, the growth of errors."""
-    near, far = (
-        Scene(2.0, 1.0, theta=0.2 + turns * 2 * math.pi, omega=3.2) for turns in (0, 15_915)
-    )
+    near, far = (Scene(2.0, 1.0, theta=0.2 + k * 2 * math.pi, omega=3.2) for k in (0, 15_915))
     turned = [ggl(scene, [1.0], step=2.0**-6).theta[0] - scene.theta for scene in (near, far)]
     assert abs(turned[1] - turned[0]) <= 1e-10

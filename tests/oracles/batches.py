@@ -1,7 +1,8 @@
-"""Scenes simulated one by one, to be compared with `simulate_many`."""
+"""Scenes simulated one by one, to be compared with `simulate_many`, and the files of a folder."""
 
 import warnings
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,7 @@ NAMED = [
     rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
 ]  # fmt: skip
 # hours of work for a rolling scene, no time for a scene at rest
-ENDLESS: dict[str, Any] = {
-    "model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1,
-}  # fmt: skip
+ENDLESS: Any = {"model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1}
 
 
 def singly(scenes: Iterable[rl.Scene], t: Any, **settings: Any) -> list[Any]:
@@ -30,3 +29,13 @@ def singly(scenes: Iterable[rl.Scene], t: Any, **settings: Any) -> list[Any]:
             except (ValueError, rl.IntegrationError) as error:
                 answers.append(error)
     return answers
+
+
+def chunks(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*-*.npz"))
+
+
+def states(folder: Path) -> dict[str, tuple[int, int]]:
+    """File number and time of each chunk, which change if the file is written again."""
+    files = {path.name: path.stat() for path in chunks(folder)}
+    return {name: (of.st_ino, of.st_mtime_ns) for name, of in files.items()}

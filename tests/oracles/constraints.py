@@ -32,12 +32,8 @@ def no_slip(q: Sequence[Any], q_dot: Sequence[Any]) -> Any:
 
 def along(function: Positions, q: Sequence[Any], q_dot: Sequence[Any], a: Any, b: Any) -> list[Any]:
     """Rates of the entries of function(q, a, b) for the rates q_dot."""
-    return [
-        mp.diff(
-            lambda t, k=k: function(
-                [value + t * rate for value, rate in zip(q, q_dot, strict=True)], a, b
-            )[k],
-            0,
-        )
-        for k in range(3)
-    ]
+
+    def moved(t: Any) -> list[Any]:
+        return [value + t * rate for value, rate in zip(q, q_dot, strict=True)]
+
+    return [mp.diff(lambda t, k=k: function(moved(t), a, b)[k], 0) for k in range(3)]

@@ -94,15 +94,13 @@ def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Flo
     sine, cosine = on.sides(on.top * rng.uniform(0, 1, count))
     phi = np.arctan2(sine, cosine) * rng.choice([-1, 1], count)
     far = np.where(rng.random(count) < 0.3, 600, 2)
-    flat = np.where(moving.a >= moving.b, 0, PI / 2) + PI * np.round(
-        far * rng.uniform(-1, 1, count)
-    )
+    lies = moving.a >= moving.b
+    flat = np.where(lies, 0, PI / 2) + PI * np.round(far * rng.uniform(-1, 1, count))
     theta = (flat + phi).astype(float)
-    omega = oracles.rolling.speed(
-        moving, *oracles.geometry.reduced(theta, moving.a, moving.b)
-    ).astype(float)
+    sides = oracles.geometry.reduced(theta, moving.a, moving.b)
+    omega = oracles.rolling.speed(moving, *sides).astype(float)
     at_rest = rng.random(count)
-    theta = np.where((at_rest < 0.05) & (moving.a >= moving.b), 0.0, theta)
+    theta = np.where((at_rest < 0.05) & lies, 0.0, theta)
     return theta, np.where(at_rest < 0.1, 0.0, omega) * rng.choice([-1, 1], count)
 
 

@@ -50,12 +50,9 @@ def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
     a, b = (size, size / ratio) if ratio > 1 else (size * ratio, size)
     spread2 = max(a, b) ** 2
     shares = powers(-6, 0).map(lambda share: share * spread2)
-    return {
-        "a": a,
-        "b": b,
-        "gravity": draw(powers(-1, 2)),
-        "gyration2": draw(st.one_of(st.just((a * a + b * b) / 4), shares)),
-    }
+    gravity = draw(powers(-1, 2))
+    gyration2 = draw(st.one_of(st.just((a * a + b * b) / 4), shares))
+    return {"a": a, "b": b, "gravity": gravity, "gyration2": gyration2}
 
 
 def rate(body: dict[str, float]) -> float:

@@ -40,9 +40,8 @@ def support(body: Ellipse) -> tuple[float, float]:
 def outline(body: Ellipse, count: int = 200) -> NDArray[np.float64]:
     """Points of the outline, (count, 2)."""
     angle = np.linspace(0, 2 * np.pi, count)
-    return np.asarray(
-        body.get_patch_transform().transform(np.column_stack([np.cos(angle), np.sin(angle)]))
-    )
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.asarray(body.get_patch_transform().transform(circle))
 
 
 def figure_of(ax: Axes) -> Figure:

@@ -10,12 +10,12 @@ from typing import Any
 def run(code: str, *arguments: Any, **how: Any) -> subprocess.CompletedProcess[str]:
     """Run a program for five minutes at most."""
     command = [sys.executable, "-c", textwrap.dedent(code), *map(os.fspath, arguments)]
-    how = {"env": os.environ | {"MPLBACKEND": "agg"}, "text": True} | how
-    return subprocess.run(command, capture_output=True, timeout=300, check=False, **how)
+    how |= {"env": os.environ | {"MPLBACKEND": "agg"}, "timeout": 300}
+    return subprocess.run(command, capture_output=True, text=True, check=False, **how)
 
 
 def printed(code: str, *arguments: Any) -> str:
     """What a program prints; its exit code must be 0."""
     done = run(code, *arguments)
     assert done.returncode == 0, done.stderr
-    return str(done.stdout)
+    return done.stdout

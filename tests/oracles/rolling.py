@@ -25,11 +25,8 @@ def forces_by_differentiation(
         return 2 * (energy - gravity * h) / (gyration2 + h * h + slope * slope)
 
     h, slope, curvature = height_slopes(theta, a, b)
-    acceleration = mp.diff(speed2, theta) / 2
-    return (
-        gravity + slope * acceleration + curvature * speed2(theta),
-        h * acceleration + slope * speed2(theta),
-    )
+    acceleration, spin2 = mp.diff(speed2, theta) / 2, speed2(theta)
+    return gravity + slope * acceleration + curvature * spin2, h * acceleration + slope * spin2
 
 
 # ------------------------------------------------------- many motions at once (long double)
@@ -65,14 +62,7 @@ class Forces(NamedTuple):
         return self.normal / self.normal_error, np.where(limited, grip, np.inf)
 
 
-def motion(
-    a: ArrayLike,
-    b: ArrayLike,
-    gyration2: ArrayLike,
-    gravity: ArrayLike,
-    theta: ArrayLike,
-    omega: ArrayLike,
-) -> Motion:
+def motion(a: Any, b: Any, gyration2: Any, gravity: Any, theta: Any, omega: Any) -> Motion:
     """The motion through a state; its energy above flat is computed without cancellation."""
     fields = np.broadcast_arrays(a, b, gyration2, gravity, omega)
     a, b, gyration2, gravity, omega = (np.asarray(field, np.longdouble) for field in fields)
@@ -129,6 +119,8 @@ def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
 
 
 # ------------------------------------------------------------ extremes over a motion
+
+COLUMN = (slice(None), None)  # index that stands motions below each other
 
 
 class Chart(NamedTuple):
@@ -220,12 +212,9 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
     on = chart(moving)
     step = on.top / (samples - 1)
     v = step[:, None] * np.arange(samples)
-    column = moving.at((slice(None), None))
-    sampled = forces(column, *on.at((slice(None), None)).sides(v))
-
-    rows, columns = local_minima(
-        sampled.normal, sampled.normal.min(1) + 0.1 * np.abs(sampled.normal).max(1)
-    )
+    sampled = forces(moving.at(COLUMN), *on.at(COLUMN).sides(v))
+    keep = sampled.normal.min(1) + 0.1 * np.abs(sampled.normal).max(1)
+    rows, columns = local_minima(sampled.normal, keep)
     low, high = np.maximum(columns - 1, 0) * step[rows], columns * step[rows] + step[rows]
     high = np.minimum(high, on.top[rows])
     part, part_on = moving.at(rows), on.at(rows)
@@ -234,26 +223,21 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
     best = _least_per_row(rows, at_dip.normal, count)
     normal = at_dip.normal[best]
 
-    def unneeded(found: Forces) -> Long:
-        return np.where(found.normal > 0, -np.abs(found.friction), -np.inf) / np.where(
-            found.normal > 0, found.normal, 1
-        )
+    def unneeded(of: Forces) -> Long:
+        pressed = of.normal > 0
+        return np.where(pressed, -np.abs(of.friction), -np.inf) / np.where(pressed, of.normal, 1)
 
     offsets = np.geomspace(np.longdouble(1e-9), 1, 60)
     fine = dip[:, None] + step[rows][:, None] * np.concatenate([-offsets[::-1], [0], offsets])
     fine = np.clip(fine, 0, on.top[rows][:, None])
-    fine_values = unneeded(
-        forces(part.at((slice(None), None)), *part_on.at((slice(None), None)).sides(fine))
-    )
+    fine_values = unneeded(forces(part.at(COLUMN), *part_on.at(COLUMN).sides(fine)))
     coarse_values = unneeded(sampled)
     least = coarse_values.min(1)
     candidates = []
     for grid, values, owner in ((v, coarse_values, np.arange(count)), (fine, fine_values, rows)):
         i, j = local_minima(values, 0.7 * least[owner])
-        last = grid.shape[1] - 1
-        candidates.append(
-            (owner[i], grid[i, np.maximum(j - 1, 0)], grid[i, np.minimum(j + 1, last)])
-        )
+        ends = np.maximum(j - 1, 0), np.minimum(j + 1, grid.shape[1] - 1)
+        candidates.append((owner[i], *(grid[i, end] for end in ends)))
     rows, low, high = (np.concatenate(parts) for parts in zip(*candidates, strict=True))
     part, part_on = moving.at(rows), on.at(rows)
     peak = golden_minimum(lambda v: unneeded(forces(part, *part_on.sides(v))), low, high)
@@ -262,15 +246,12 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
     needed = -unneeded(at_peak)[worst]
     needed = np.where(normal > 0, needed, np.inf)
     support = np.where(at_peak.normal[worst] > 0, at_peak.normal[worst], 1)
-    spread = at_peak.friction_error[worst] + at_peak.normal_error[worst] * np.where(
-        normal > 0, needed, 0
-    )
+    by_normal = at_peak.normal_error[worst] * np.where(normal > 0, needed, 0)
+    spread = at_peak.friction_error[worst] + by_normal
     return Extremes(normal, at_dip.normal_error[best], needed, peak[worst], spread / support)
 
 
-def contact_loss_lift(
-    a: ArrayLike, b: ArrayLike, gyration2: ArrayLike, gravity: ArrayLike, samples: int = 300
-) -> Long:
+def contact_loss_lift(a: Any, b: Any, gyration2: Any, gravity: Any, samples: int = 300) -> Long:
     """Smallest `lift` for which N reaches 0: N is linear in the energy at each angle."""
     still = motion(a, b, gyration2, gravity, 0.0, 0.0)
     still = still._replace(lift=still.gravity * 2 * np.maximum(still.a, still.b))  # beyond the tip
@@ -288,7 +269,7 @@ def contact_loss_lift(
 
     step = on.top / (samples - 1)
     v = step[:, None] * np.arange(samples)
-    values = lift(still.at((slice(None), None)), on.at((slice(None), None)), v)
+    values = lift(still.at(COLUMN), on.at(COLUMN), v)
     rows, columns = local_minima(values, 1.2 * values.min(1))
     low, high = np.maximum(columns - 1, 0) * step[rows], columns * step[rows] + step[rows]
     high = np.minimum(high, on.top[rows])

@@ -1,11 +1,12 @@
 """Simulators for the benchmark, and their results."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rolling_ellipse import Trajectory, benchmark
+from rolling_ellipse import Scene, Trajectory, benchmark, simulate
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 HEADER = ",".join(("t", *STATE))
@@ -19,8 +20,18 @@ def states_of(motion: Trajectory) -> NDArray[np.float64]:
 def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Result:
     """States and forces of the exact motion."""
     motion = one.trajectory.sol(t)
-    forces = {"normal_force": motion.normal_force, "friction_force": motion.friction_force}
-    return benchmark.Result(states_of(motion), **forces)
+    normal, friction = motion.normal_force, motion.friction_force
+    return benchmark.Result(states_of(motion), normal_force=normal, friction_force=friction)
+
+
+def changed(**changes: Callable[[Scene], float]) -> Callable[..., Any]:
+    """A simulator that solves another scene, whose changes are functions of the scene."""
+
+    def mine(one: benchmark.Problem, t: Any, setting: Any) -> Any:
+        given: dict[str, Any] = {name: change(one.scene) for name, change in changes.items()}
+        return states_of(simulate(one.scene.replace(**given), t))
+
+    return mine
 
 
 def score_of(one: benchmark.Problem, result: Any, **more: Any) -> benchmark.Score:

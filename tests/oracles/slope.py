@@ -47,12 +47,8 @@ def rolled_by_series(
         s, c = np.where(odd, c, s), np.where(odd, -s, c)
         shape = ORDER + 1, a.size
         u, p, q, h, dh, cube, rho, w, w2, pull, inertia, turning = np.zeros((12, *shape), a.dtype)
-        u[0], p[0], q[0], w[0] = (
-            (a * s) ** 2 + (b * c) ** 2,
-            c2 * s * c,
-            c2 * (c - s) * (c + s),
-            now[1],
-        )
+        u[0], w[0] = (a * s) ** 2 + (b * c) ** 2, now[1]
+        p[0], q[0] = c2 * s * c, c2 * (c - s) * (c + s)
         for k in range(ORDER + 1):
             h[k] = np.sqrt(u[0]) if k == 0 else (u[k] - product(h, h, k)) / (2 * h[0])
             dh[k], cube[k] = quotient(p[k], h, dh, k), product(u, h, k)
