@@ -88,6 +88,12 @@ def test_memory_that_is_not_there_is_a_memory_error() -> None:
 
 
 LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
+
+
+def rolled(t: float, **how: Any) -> Any:
+    return simulate(scenes.rolling, [t], **{"model": "rolling", **LONG, **how})
+
+
 MANY = np.linspace(0.0, 1e3, 40_000_000)
 LOOPS: dict[str, Callable[[], Any]] = {
     "times of flow": lambda: flow(MANY, a=2.0, b=1.0, theta=0.1, omega=3.2),
@@ -99,18 +105,10 @@ LOOPS: dict[str, Callable[[], Any]] = {
     },
     "samples of rolling": lambda: TIMES.samples(MANY / 1e3),
     "samples of contact": lambda: SLIDES.samples(MANY / 1e3),
-    "steps of a fixed size": lambda: simulate(
-        scenes.rolling, [1e4], model="rolling", method="rk4", step=1e-5, **LONG
-    ),
-    "steps of controlled error": lambda: simulate(
-        scenes.rolling, [1e6], model="rolling", method="dop853", rtol=1e-13, **LONG
-    ),
-    "steps with constraints": lambda: simulate(
-        scenes.rolling, [1e5], model="multipliers", method="dop853", **LONG
-    ),
-    "implicit steps": lambda: simulate(
-        scenes.rolling, [1e4], model="rolling", method="radau", step=1e-4, **LONG
-    ),
+    "steps of a fixed size": lambda: rolled(1e4, method="rk4", step=1e-5),
+    "steps of controlled error": lambda: rolled(1e6, method="dop853", rtol=1e-13),
+    "steps with constraints": lambda: rolled(1e5, model="multipliers", method="dop853"),
+    "implicit steps": lambda: rolled(1e4, method="radau", step=1e-4),
     "a slide": lambda: simulate(
         Scene(2.0, 1.0, friction=0.0, omega=3.0, x_dot=1.0), [1e6], model="contact", **LONG
     ),
@@ -170,9 +168,8 @@ def test_help_states_units() -> None:
     for name, text in properties.items():
         assert text, name
         assert re.search(r"\[.+\]", text) or name in WITHOUT_UNITS, (name, text)
-    assert properties["normal_force"] == (
-        "Contact force on the body away from the ground [N], shape (n,)."
-    )
+    force = "Contact force on the body away from the ground [N], shape (n,)."
+    assert properties["normal_force"] == force
     for name in rl.scenes.__all__:
         assert f"``{name}``" in (rl.scenes.__doc__ or ""), name
 

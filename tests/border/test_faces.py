@@ -176,12 +176,7 @@ def test_values_are_equal_by_what_they_say(make: Callable[[], Any]) -> None:
 
 
 def test_a_changed_value_is_another() -> None:
-    things: list[Any] = [
-        rl.certify(rl.scenes.jump),
-        rl.thresholds(2.0, 1.0),
-        sliding()[3],
-        fitted(),
-    ]
+    things: Any = (rl.certify(rl.scenes.jump), rl.thresholds(2.0, 1.0), sliding()[3], fitted())
     for made in things:
         for field in filter(lambda each: each.init, dataclasses.fields(made)):
             if field.name in ("measured", "predicted"):
@@ -329,11 +324,8 @@ def drawn(motion: rl.Trajectory) -> tuple[list[float], list[tuple[float, ...]], 
     ellipse = re.search(r'<ellipse rx="(\S+)" ry="(\S+)"', html)
     assert view and ellipse
     places = re.findall(r'"translate\((\S+) (\S+)\) rotate\((\S+)\)"', html)
-    return (
-        [float(each) for each in view.groups()],
-        [tuple(map(float, each)) for each in places],
-        [float(each) for each in ellipse.groups()],
-    )
+    size, axes = (list(map(float, match.groups())) for match in (view, ellipse))
+    return size, [tuple(map(float, each)) for each in places], axes
 
 
 @pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)

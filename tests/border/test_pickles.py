@@ -9,7 +9,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -60,7 +60,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "sample": lambda: MOTIONS["contact"]().at(0.3),
     "constraints": lambda: MOTIONS["rolling"]().constraint_residuals(),
     "integration error": integration_error,
-    **{kind.__name__: lambda kind=kind: kind("why") for kind in (
+    **{kind.__name__: partial(kind, "why") for kind in (
         rl.ValidityWarning, rl.CompletenessWarning, rl.ExtrapolationWarning, rl.StabilityWarning,
         rl.WorkerError, rl.report.InconsistentStartWarning)},
     "work-precision": raced,

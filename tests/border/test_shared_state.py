@@ -86,9 +86,7 @@ def test_threads_leave_what_they_share_as_it_was(tmp_path: Path) -> None:
     [lambda path: explorer(path / "page.html"), lambda _: rl.plot_error(COARSE), lambda _: race()],
     ids=["explorer", "error", "race"],
 )
-def test_warnings_are_not_caught(
-    deed: Callable[[Path], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_warnings_are_not_caught(deed: Any, tmp_path: Path, monkeypatch: Any) -> None:
     """`warnings.catch_warnings` would silence all threads."""
 
     def caught(*_: Any, **__: Any) -> None:

@@ -88,19 +88,11 @@ def elementary_weight(a: Long, b: Long) -> Callable[[Tree], Long]:
 
 def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> None:
     """The weights b, sums of terms of these sizes, give the solution at the fraction s of a step to
-    the given order."""
+    the given order. For s = 0 they vanish up to it, as the difference of two such weights does."""
     phi, size = elementary_weight(a, b), elementary_weight(np.abs(a), sizes)
     for nodes in range(1, order + 1):
         for tree in trees(nodes):
             require(phi(tree), long(s) ** nodes / gamma(tree), size(tree), nodes)
-
-
-def require_no_effect(a: Long, weights: Long, sizes: Long, order: int) -> None:
-    """The weights, a difference of two results of the given order, vanish up to this order."""
-    phi, size = elementary_weight(a, weights), elementary_weight(np.abs(a), sizes)
-    for nodes in range(1, order + 1):
-        for tree in trees(nodes):
-            require(phi(tree), 0, size(tree), nodes)
 
 
 def test_trees_are_counted_right() -> None:
@@ -157,21 +149,17 @@ def dense_weights(method: Explicit, s: float) -> tuple[Long, Long]:
     return nested(terms), nested(sizes)
 
 
-def check_explicit(method: Explicit, error_orders: tuple[int, ...], dense_order: int) -> None:
+def check_explicit(name: str, **changed: Long) -> None:
+    method = explicit(name)._replace(**changed)
     a, b = method.a, method.b
     require(a.sum(axis=1), method.c, np.abs(a).sum(axis=1) + method.c, 1)
     require_order(a, b, np.abs(b), method.order)
-    for weights, order in zip(method.error, error_orders, strict=True):
-        require_no_effect(a, weights, np.abs(weights) + np.abs(b), order)
+    for weights, order in zip(method.error, ERROR_ORDERS[name], strict=True):
+        require_order(a, weights, np.abs(weights) + np.abs(b), order, 0.0)
     for weights in method.dense:  # cubic polynomials need no more terms
-        require_no_effect(a, weights, np.abs(weights), 3)
+        require_order(a, weights, np.abs(weights), 3, 0.0)
     for s in (0.1, 0.37, 0.5, 0.83, 1.0):
-        require_order(a, *dense_weights(method, s), dense_order, s)
-
-
-@pytest.mark.parametrize("name", EXPLICIT)
-def test_explicit_methods_have_their_orders(name: str) -> None:
-    check_explicit(explicit(name), ERROR_ORDERS[name], DENSE_ORDERS[name])
+        require_order(a, *dense_weights(method, s), DENSE_ORDERS[name], s)
 
 
 @pytest.mark.parametrize("name", EXPLICIT)
@@ -200,18 +188,6 @@ def test_the_error_estimate_of_dopri5_compares_with_its_fourth_order_weights() -
     lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
     method = explicit("dopri5")
     require(method.error[0], method.b - lower, np.abs(method.b) + np.abs(lower), 1)
-
-
-@pytest.mark.parametrize("name", EXPLICIT)
-def test_a_wrong_digit_in_an_explicit_method_is_seen(name: str) -> None:
-    """Each coefficient in turn is changed by 1e-12, and some condition breaks."""
-    check_explicit(explicit(name), ERROR_ORDERS[name], DENSE_ORDERS[name])
-    for field in ("c", "a", "error", "dense"):
-        for index in zip(*np.nonzero(getattr(explicit(name), field)), strict=True):
-            method = explicit(name)
-            getattr(method, field)[index] += 1e-12
-            with pytest.raises(Violation):
-                check_explicit(method, ERROR_ORDERS[name], DENSE_ORDERS[name])
 
 
 # ----------------------------------------------------------------- collocation: Gauss, Radau
@@ -281,13 +257,36 @@ def collocation(name: str) -> dict[str, Long]:
     return {key: long(values) for key, values in TABLEAUS[name].items()}
 
 
-CHECKS: dict[str, Callable[..., None]] = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
+def check(name: str, **changed: Long) -> None:
+    """Require the order of a method, some of whose coefficients may be changed: 2s for Gauss, from
+    B(2s), C(s), D(s); 5 for Radau IIA, from B(5), C(3), D(2)."""
+    if name in EXPLICIT:
+        check_explicit(name, **changed)
+    else:
+        (check_gauss if name in GAUSS else check_radau)(**collocation(name) | changed)
 
 
-@pytest.mark.parametrize("name", CHECKS)
-def test_collocation_methods_have_their_orders(name: str) -> None:
-    """Order 2s for Gauss, from B(2s), C(s), D(s); order 5 for Radau IIA, from B(5), C(3), D(2)."""
-    CHECKS[name](**collocation(name))
+def coefficients(name: str) -> Iterator[tuple[str, Long, Any]]:
+    """The name of an array, the array and a place in it, for each number that a method uses."""
+    if name in EXPLICIT:
+        arrays = {field: getattr(explicit(name), field) for field in ("c", "a", "error", "dense")}
+    else:
+        arrays = collocation(name)
+    for field, values in arrays.items():
+        for index in np.ndindex(values.shape):
+            if values[index] or name not in EXPLICIT:
+                yield field, values, index
+
+
+@pytest.mark.parametrize("name", TABLEAUS)
+def test_methods_have_their_orders_and_a_wrong_digit_is_seen(name: str) -> None:
+    """Each coefficient in turn is changed by 1e-12, and some condition breaks."""
+    check(name)
+    for field, values, index in coefficients(name):
+        wrong = values.copy()
+        wrong[index] += 1e-12
+        with pytest.raises(Violation):
+            check(name, **{field: wrong})
 
 
 @pytest.mark.parametrize("name", GAUSS)
@@ -307,14 +306,3 @@ def test_gauss_weights_are_symmetric(name: str) -> None:
     assert np.array_equal(method["b"], method["b"][::-1])
     require(method["c"] + method["c"][::-1], 1, np.ones_like(method["c"]), 1)
     require(method["mu"] + method["mu"][::-1, ::-1], 1, np.abs(method["mu"]) + 1, 1)
-
-
-@pytest.mark.parametrize("name", CHECKS)
-def test_a_wrong_digit_in_a_collocation_method_is_seen(name: str) -> None:
-    CHECKS[name](**collocation(name))
-    for key, values in collocation(name).items():
-        for index in np.ndindex(values.shape):
-            method = collocation(name)
-            method[key][index] += 1e-12
-            with pytest.raises(Violation):
-                CHECKS[name](**method)

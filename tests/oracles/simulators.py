@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rolling_ellipse import Scene, Trajectory, benchmark, simulate
+from rolling_ellipse import Trajectory, benchmark, simulate
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 HEADER = ",".join(("t", *STATE))
@@ -24,7 +24,7 @@ def exact(one: benchmark.Problem, t: Any, setting: Any = None) -> benchmark.Resu
     return benchmark.Result(states_of(motion), normal_force=normal, friction_force=friction)
 
 
-def changed(**changes: Callable[[Scene], float]) -> Callable[..., Any]:
+def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
     """A simulator that solves another scene, whose changes are functions of the scene."""
 
     def mine(one: benchmark.Problem, t: Any, setting: Any) -> Any:

@@ -23,8 +23,8 @@ MIXED = [scenes.jump, scenes.report, scenes.slip]
 FLOW: dict[str, Any] = {"b": 1.0, "theta": 0.0, "omega": 1.0}
 
 
-def many(scenes: Any, **options: Any) -> Callable[[Path], Any]:
-    return lambda _: rl.simulate_many(scenes, TIMES, **options)
+def many(scenes: Any, run: Any = rl.simulate_many, **options: Any) -> Callable[[Path], Any]:
+    return lambda _: run(scenes, TIMES, **options)
 
 
 class Broken(ThreadPoolExecutor):
@@ -142,7 +142,11 @@ REFUSALS: list[Row] = [
         ("['z'][1]", {"z": [2.0, math.nan]}), ("['z'][1]", {"z": [2, 0.5]}),
         ("['inertia']", {"inertia": math.nan}), ("['impulse']", {"impulse": 1}),
         ("[1]", {"a": [2.0, 1e5]}), ("[1]", {"impulse": rl.Impulse(jx=0, jz=-1, dx=[0, 4])}))),
-    ("scenes['theta']", many({"a": 1.0, "b": 1.0, "omega": [], "theta": math.inf})),
+    *((f"scenes['{name}'", many({**MANY, "omega": np.empty((0, 1)), name: value}, run))
+      for run in (rl.simulate_many, rl.ends) for name, value in (
+        ("a", -1.0), ("b", [1.0, math.nan]), ("mass", 0.0), ("gravity", -9.81), ("inertia", -1.0),
+        ("inertia", 1e9), ("slope", 2.0), ("friction", -0.1), ("restitution", 1.1),
+        ("theta", math.inf), ("z", [math.nan]))),
     ("scenes['inertia']", many({"a": [], "b": 1.0, "inertia": -1.0})),
     ("scenes[0]", many([1])), ("scenes[3]", many([SCENE] * 3 + ["rocking"])),
     ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),

@@ -37,7 +37,12 @@ def reads(content: bytes) -> Callable[[Path], Any]:
 
 def pipe(load: Callable[[Path], Any]) -> Callable[[Path], Any]:
     """Load a pipe that nobody writes to, which would be waited for."""
-    return lambda folder: [os.mkfifo(folder / "pipe"), load(folder / "pipe")]
+
+    def call(folder: Path) -> Any:
+        os.mkfifo(folder / "pipe")
+        return load(folder / "pipe")
+
+    return call
 
 
 def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
