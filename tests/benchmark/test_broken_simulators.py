@@ -12,10 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from oracles.simulators import score_of, write_states
+from oracles.simulators import changed, score_of, states_of, write_states
 from rolling_ellipse import benchmark, simulate
 from rolling_ellipse.__main__ import main
-from rolling_ellipse.benchmark._problem import states_of
 from rolling_ellipse.geometry import support
 
 IDS = {one.id for one in benchmark.problems()}
@@ -48,7 +47,7 @@ def times(*factors: float) -> Change:
     return lambda one, states: states * factors
 
 
-def all_rows(row: Callable[[Any, Any], Any]) -> Change:
+def all_rows(row: Change) -> Change:
     return lambda one, states: np.tile(row(one, states), (len(states), 1))
 
 
@@ -73,26 +72,22 @@ def events_later(by: float) -> Change:
     )
 
 
-zeros = all_rows(lambda one, states: np.zeros(6))
+zeros = all_rows(lambda *_: np.zeros(6))
+SAME, ZERO = "all rows are the same", "all rows are zero"
+REVERSED, SHIFTED = "rows look reversed in time", "rows look shifted by one"
 BROKEN = {
-    "the start for ever": Break(
-        all_rows(lambda one, states: states[0]), LIES, "all rows are the same"
-    ),
-    "ones": Break(all_rows(lambda one, states: np.ones(6)), {}, "all rows are the same"),
-    "zeros": Break(zeros, {}, "all rows are zero"),
+    "the start for ever": Break(all_rows(lambda _, states: states[0]), LIES, SAME),
+    "ones": Break(all_rows(lambda *_: np.ones(6)), {}, SAME),
+    "zeros": Break(zeros, {}, ZERO),
     "zeros beside the right events": Break(
-        lambda one, states: benchmark.Result(zeros(one, states), events=known_events(one)), {},
-        "all rows are zero",
+        lambda one, states: benchmark.Result(zeros(one, states), events=known_events(one)), {}, ZERO
     ),
     "a body at rest on its flat side": Break(
-        all_rows(lambda one, states: [0, one.scene.b, 0, 0, 0, 0.0]), LIES, "all rows are the same"
+        all_rows(lambda one, _: [0, one.scene.b, 0, 0, 0, 0.0]), LIES, SAME
     ),
-    "time reversed": Break(
-        lambda one, states: states[::-1], LIES, "rows look reversed in time"
-    ),
+    "time reversed": Break(lambda _, states: states[::-1], LIES, REVERSED),
     "time reversed, and the velocities": Break(
-        lambda one, states: states[::-1] * [1, 1, 1, -1, -1, -1], LIES,
-        "rows look reversed in time",
+        lambda _, states: states[::-1] * [1, 1, 1, -1, -1, -1], LIES, REVERSED
     ),
     "theta counter-clockwise": Break(
         times(1, 1, -1, 1, 1, -1), NO_ANGLE, "theta looks counter-clockwise"
@@ -103,15 +98,10 @@ BROKEN = {
     ),
     "centimetres": Break(times(100, 100, 1, 100, 100, 1), {}, "z looks like centimetres"),
     "z from the ground to the lowest point": Break(gap, {}, "z looks like the gap to the ground"),
-    "rows one too late": Break(
-        lambda one, states: np.roll(states, 1, axis=0), LIES, "rows look shifted by one"
-    ),
-    "rows one too early": Break(
-        lambda one, states: np.roll(states, -1, axis=0), LIES, "rows look shifted by one"
-    ),
+    "rows one too late": Break(lambda _, states: np.roll(states, 1, axis=0), LIES, SHIFTED),
+    "rows one too early": Break(lambda _, states: np.roll(states, -1, axis=0), LIES, SHIFTED),
     "events a thousand seconds late": Break(events_later(1000.0), NO_EVENTS, ", right"),
-    "events five seconds early": Break(events_later(-5.0), NO_EVENTS, ", right"),
-}  # fmt: skip
+}
 
 
 def right(scores: benchmark.Scores) -> set[str]:
@@ -168,7 +158,7 @@ OTHERS: dict[str, tuple[Change, str, list[str]]] = {
         ["z looks off by -1 at all times: it is the height of the centre above the ground"],
     ),
     "two rows": (
-        lambda one, states: np.roll(states, 2, axis=0), "hit.bounce", ["rows look shifted by two"]
+        lambda _, states: np.roll(states, 2, axis=0), "hit.bounce", ["rows look shifted by two"]
     ),
 }  # fmt: skip
 
@@ -185,12 +175,9 @@ def test_other_mistakes_are_named(name: str) -> None:
 @pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
 def test_no_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
     """Errors of another scene are no mistakes of output."""
-
-    def mine(one: Any, t: Any, _: Any) -> Any:
-        return states_of(simulate(one.scene.replace(**{field: getattr(one.scene, field) * by}), t))
-
     for by in (1 - off, 1 + off):
         if field != "restitution" or by < 1:
+            mine = changed(**{field: lambda scene, by=by: getattr(scene, field) * by})
             assert not any(" look" in score.reason for score in benchmark.run(mine))
 
 
@@ -221,9 +208,8 @@ def test_bounces_beyond_any_cut_are_right(count: int, sticks: bool) -> None:
 def test_any_threshold_of_rest_is_right(rest_speed: float) -> None:
     def mine(one: Any, t: Any, _: Any) -> Any:
         motion = simulate(one.scene, t, rest_speed=rest_speed)
-        return benchmark.Result(
-            states_of(motion), events=[(event.kind, event.t) for event in motion.events]
-        )
+        events = [(event.kind, event.t) for event in motion.events]
+        return benchmark.Result(states_of(motion), events=events)
 
     scores = benchmark.run(mine)
     assert right(scores) == IDS and all(score.passed for score in scores)

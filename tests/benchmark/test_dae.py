@@ -111,19 +111,6 @@ def test_solve_dae(form: str) -> None:
     assert np.max(abs(dae.states(found.y.T) - one.exact(times)) / one.scales) < 1e-8
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_a_column_of_a_matrix_has_the_bits_of_its_copy(form: str) -> None:
-    """Also a row of many; einsum took its order of summation from the strides."""
-    dae, rng = benchmark.problem("roll.roll").dae(form), np.random.default_rng(4)
-    y, yp = rng.normal(size=(2, 300, len(dae.names)))
-    columns = np.asfortranarray(y).T, np.asfortranarray(yp).T
-    many = dae.residual(0.0, y, yp)
-    for k in range(300):
-        alone = dae.residual(0.0, y[k], yp[k])
-        assert np.array_equal(alone, dae.residual(0.0, *(each[:, k] for each in columns)))
-        assert np.array_equal(alone, many[k])
-
-
 def test_ida() -> None:
     """The page's program; its table has all problems, which take minutes."""
     errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)

@@ -16,17 +16,17 @@ def solved(one: benchmark.Problem) -> tuple[NDArray[np.float64], list[tuple[str,
     arc, states = one.ode(), np.empty_like(one.states)
     events: list[tuple[str, float]] = []
     while True:
-        found: Any = solve_ivp(
+        part: Any = solve_ivp(
             arc.rhs, (arc.t0, one.t_end), arc.y0, "DOP853", events=arc.events, dense_output=True,
             rtol=1e-12, atol=1e-14,
         )  # fmt: skip
-        inside = (one.times >= arc.t0) & (one.times <= found.t[-1])
+        inside = (one.times >= arc.t0) & (one.times <= part.t[-1])
         if inside.any():
-            states[inside] = found.sol(one.times[inside]).T
-        fired = [k for k, times in enumerate(found.t_events) if times.size]
+            states[inside] = part.sol(one.times[inside]).T
+        fired = [k for k, times in enumerate(part.t_events) if times.size]
         if not fired:
             return states, events
-        arc = arc.jump(found.t[-1], found.y[:, -1], fired[0])
+        arc = arc.jump(part.t[-1], part.y[:, -1], fired[0])
         events.append((arc.kind, arc.t0))
 
 

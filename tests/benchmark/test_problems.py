@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from oracles.paths import ROOT
+from oracles.simulators import STATE, states_of
 from rolling_ellipse import Scene, Status, Trajectory, impacts, simulate
 
 FOLDER = ROOT / "python" / "rolling_ellipse" / "benchmark" / "problems"
 PROBLEMS: dict[str, Any] = {
     path.stem: json.loads(path.read_text(encoding="utf-8")) for path in FOLDER.glob("*.json")
 }
-STATE = ["x", "z", "theta", "x_dot", "z_dot", "omega"]
 COLUMNS = [*STATE, "normal_force", "friction_force"]
 ULP, ULPS = 2.2e-16, 4
 each_problem = pytest.mark.parametrize("name", sorted(PROBLEMS))
@@ -48,8 +48,8 @@ def test_states_forces_and_events_are_the_known_ones(name: str) -> None:
     data, of = PROBLEMS[name], motion(name)
     rows, condition = np.array(data["states"]), np.array(data["condition"])
     samples = of.sol(rows[:, 0])
-    found = np.stack([getattr(samples, column) for column in COLUMNS], axis=1)
-    error = errors(data, found, rows[:, 1:])
+    mine = np.column_stack([states_of(samples), samples.normal_force, samples.friction_force])
+    error = errors(data, mine, rows[:, 1:])
     assert np.all(error <= ULPS * (condition + 1)) and error.max() * ULP < 1e-12
     assert (of.status is Status.JAMMED) == (data["answer"] == {"status": "JAMMED"})
     assert [event.kind.name for event in of.events] == [event["kind"] for event in data["events"]]
@@ -61,8 +61,8 @@ def test_states_forces_and_events_are_the_known_ones(name: str) -> None:
             [getattr(each, column) for column in STATE]
             for each in (event.state_before, event.state_after)
         ]
-        found = np.column_stack([states, near.normal_force, near.friction_force])
-        assert errors(data, found, [known["before"], known["after"]]).max() <= most
+        mine = np.column_stack([states, near.normal_force, near.friction_force])
+        assert errors(data, mine, [known["before"], known["after"]]).max() <= most
 
 
 def test_other_laws_of_restitution_are_the_known_ones() -> None:
@@ -74,13 +74,10 @@ def test_other_laws_of_restitution_are_the_known_ones() -> None:
         x_dot, z_dot, omega = impacts.collide(theta, *velocity, **body, law=law)
         for (t, *exact), condition in zip(rows, data["condition"], strict=True):
             if (after := t - hit["t"]) > 0:
-                place = (
-                    x + x_dot * after,
-                    z + (z_dot - g * after / 2) * after,
-                    theta + omega * after,
-                )
-                found = [*place, x_dot, z_dot - g * after, omega]
-                assert errors(data, [found], [exact[:6]]) <= ULPS * (condition + 1)
+                rise = z_dot - g * after / 2
+                place = x + x_dot * after, z + rise * after, theta + omega * after
+                state = [*place, x_dot, z_dot - g * after, omega]
+                assert errors(data, [state], [exact[:6]]) <= ULPS * (condition + 1)
         assert not np.allclose(rows, data["states"], rtol=0.05)
 
 
@@ -96,9 +93,8 @@ def test_twins_have_the_same_events(name: str) -> None:
         size = {key: 1e-12 * (abs(old) or sizes.get(key, 0)) for key, old in scene.items()}
         changed = {key: old + rng.choice([-1, 1]) * size[key] for key, old in scene.items()}
         changed["restitution"] = min(changed["restitution"], 2 - changed["restitution"])
-        twin = simulate(
-            Scene(**changed | dict.fromkeys(follow)), data["t_end"] or 1.0, model="contact"
-        )
+        beside = Scene(**changed | dict.fromkeys(follow))
+        twin = simulate(beside, data["t_end"] or 1.0, model="contact")
         assert [each.kind for each in twin.events] == [each.kind for each in motion(name).events]
 
 

@@ -10,11 +10,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from oracles.simulators import exact, score_of
+from oracles.simulators import STATE, changed, exact, score_of, states_of
 from rolling_ellipse import EventKind, Mode, benchmark, impacts, simulate
 from rolling_ellipse.__main__ import main
-from rolling_ellipse.benchmark._events import gap_and_slip, read_off
-from rolling_ellipse.benchmark._problem import STATE, states_of
+from rolling_ellipse.benchmark._events import gap_and_slip, read_off  # scores only compare them
 from rolling_ellipse.geometry import support_slope
 
 IDS = [one.id for one in benchmark.problems()]
@@ -26,16 +25,6 @@ WITH_SLIP = {
     "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which", "leave.slip_then_lift",
     "slide.reverse", "slide.slope", "slide.stick",
 }  # fmt: skip
-
-
-def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
-    """A simulator that solves another scene, whose changes are functions of the scene."""
-
-    def mine(one: Any, t: Any, setting: Any) -> Any:
-        given = {name: change(one.scene) for name, change in changes.items()}
-        return states_of(simulate(one.scene.replace(**given), t))
-
-    return mine
 
 
 def colliding(hit: Callable[..., Any]) -> Callable[..., Any]:
@@ -137,15 +126,15 @@ def test_the_exact_motion_is_perfect() -> None:
 
     Two such units are allowed for the rounding of the motion and of the known answer.
     """
-    found = benchmark.run(exact)
-    assert [score.problem for score in found] == IDS and len(IDS) == 18
-    for score in found:
+    scores = benchmark.run(exact)
+    assert [score.problem for score in scores] == IDS and len(IDS) == 18
+    for score in scores:
         assert score.passed and score.answer == "right" and score.digits > 12, score.problem
         assert score.over_condition < 4.4e-16, score.problem
         assert max(score.energy_gained, score.energy_lost, score.penetration, score.hop) < 1e-12
         forces = score.cone_excess, score.normal_force_error, score.friction_force_error
         assert 0 <= max(forces) < 1e-12 and "degrees" not in score.reason
-    assert found.wrong == [] and "18 of 18 answers are right. 18 pass" in found.verdict()
+    assert scores.wrong == [] and "18 of 18 answers are right. 18 pass" in scores.verdict()
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")  # held by the sticky ground
@@ -202,12 +191,12 @@ def test_own_events_are_compared_with_the_exact_ones() -> None:
 def test_a_ladder_has_an_order_and_a_trend() -> None:
     chosen = [benchmark.problem("roll.rock")]
     ladder = [1e-2, 5e-3, 1e-3]
-    found = benchmark.run(lambda one, t, h: one.exact(t) + h**2, problems=chosen, ladder=ladder)
-    order, trend = found.order("roll.rock")
+    scores = benchmark.run(lambda one, t, h: one.exact(t) + h**2, problems=chosen, ladder=ladder)
+    order, trend = scores.order("roll.rock")
     assert order == pytest.approx(2, abs=1e-6) and trend == "yes"
-    assert "1 become better" in found.verdict()
-    found = benchmark.run(lambda one, t, h: one.exact(t) + 1e-3, problems=chosen, ladder=ladder)
-    assert found.order("roll.rock")[1].startswith("plateau at")
+    assert "1 become better" in scores.verdict()
+    scores = benchmark.run(lambda one, t, h: one.exact(t) + 1e-3, problems=chosen, ladder=ladder)
+    assert scores.order("roll.rock")[1].startswith("plateau at")
 
 
 def test_what_is_not_supported_is_not_wrong() -> None:
@@ -234,8 +223,8 @@ def test_the_picture_says_what_is_right(tmp_path: Path) -> None:
         drawn = mark.get_xdata()[0], mark.get_ydata()[0]
         place = rows.index(score.problem)
         assert drawn == pytest.approx((score.over_condition, place), nan_ok=True)
-        told = "digits" if score.answer == "right" else score.answer
-        assert score.setting == 0.1 or beside[place].endswith(told)
+        word = "digits" if score.answer == "right" else score.answer
+        assert score.setting == 0.1 or beside[place].endswith(word)
     assert chart.ax.get_title("left").replace("\n", " ") == scores.verdict().split(". ")[0] + "."
     ax = Figure().add_subplot()  # for a problem that is not supported
     flies = [benchmark.problem("hit.settle")]
@@ -258,16 +247,16 @@ def test_rows_that_are_not_finite_are_missing() -> None:
 
 
 def test_gradients_are_those_of_the_exact_motion() -> None:
-    found = benchmark.gradients()
-    assert len(found) == 8
-    for known in found:
+    gradients = benchmark.gradients()
+    assert len(gradients) == 8
+    for known in gradients:
         scene = benchmark.problem(known.problem).scene
         if known.problem.startswith(("roll", "leave")):
             scene = scene.replace(z=None, x_dot=None, z_dot=None)
         (derivatives,) = simulate(scene, [known.t]).sensitivity(known.wrt).state
         assert known.error(derivatives[:, 0]) < 1e-10, known
         assert known.error(1.01 * known.value) == pytest.approx(0.01)
-    (ball,) = [known for known in found if known.problem == "hit.ball"]
+    (ball,) = [known for known in gradients if known.problem == "hit.ball"]
     assert ball.value[1] == 0.5435575344560164
 
 
