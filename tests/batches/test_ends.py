@@ -20,21 +20,21 @@ TIMES = np.linspace(0.0, 6.0, len(SCENES))
 @pytest.mark.parametrize("most", [10_000, 2])
 def test_ends_have_the_bits_of_simulate(most: int) -> None:
     """A motion with more events ends before its time; they are counted up to then."""
-    found = rl.ends(SCENES, TIMES, max_events=most)
+    ends = rl.ends(SCENES, TIMES, max_events=most)
     for k, (scene, t) in enumerate(zip(SCENES, TIMES.tolist(), strict=True)):
         motion = rl.simulate(scene, [t], max_events=most, raise_on_failure=False)
-        assert found.status[k] == motion.status.name and found.events[k] == len(motion.events)
-        assert found.first[k] == (motion.events[0].kind.value if motion.events else -1)
+        assert ends.status[k] == motion.status.name and ends.events[k] == len(motion.events)
+        assert ends.first[k] == (motion.events[0].kind.value if motion.events else -1)
         there = motion.t.size == 1
-        assert found.mode[k] == (motion.mode[0] if there else -1)
+        assert ends.mode[k] == (motion.mode[0] if there else -1)
         for name in STATE:
-            value = getattr(found, name)[k]
+            value = getattr(ends, name)[k]
             assert value == getattr(motion, name)[0] if there else np.isnan(value), (k, name)
-    assert set(found.mode) == {-1, 0, 1, 2, 3} and {"COMPLETED", "JAMMED"} <= set(found.status)
-    over = np.flatnonzero(found.status == "MAX_EVENTS").tolist()
-    assert (len(over) > 5) == (most == 2) and all(found.events[over] == most)
+    assert set(ends.mode) == {-1, 0, 1, 2, 3} and {"COMPLETED", "JAMMED"} <= set(ends.status)
+    over = np.flatnonzero(ends.status == "MAX_EVENTS").tolist()
+    assert (len(over) > 5) == (most == 2) and all(ends.events[over] == most)
     for k in over:
-        error = found.errors[k,]
+        error = ends.errors[k,]
         assert isinstance(error, rl.IntegrationError) and len(error.trajectory.events) == most
 
 
@@ -46,12 +46,12 @@ def test_workers_change_no_bit(workers: Any) -> None:
 def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
     """One motion has the shape ()."""
     body: dict[str, Any] = {"a": 2.0, "b": 1.0, "z": 3.0, "restitution": 0.3}
-    found = rl.ends(body | {"omega": [[1.0], [2.0]]}, [0.5, 1.0, 2.0])
+    ends = rl.ends(body | {"omega": [[1.0], [2.0]]}, [0.5, 1.0, 2.0])
     each = [rl.ends([rl.Scene(**body, omega=w)] * 3, [0.5, 1.0, 2.0]) for w in (1.0, 2.0)]
     for name in STATE:
-        assert np.array_equal(getattr(found, name), [getattr(one, name) for one in each])
+        assert np.array_equal(getattr(ends, name), [getattr(one, name) for one in each])
     assert rl.ends(body, 1.0).theta.shape == () and rl.ends([], 1.0).theta.shape == (0,)
-    assert "6 COMPLETED" in repr(found)
+    assert "6 COMPLETED" in repr(ends)
 
 
 def test_a_motion_without_its_end_has_its_exception() -> None:
@@ -79,13 +79,13 @@ def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
 
 def test_a_table_of_ends_has_the_scenes_and_times() -> None:
     grid = {"a": 2.0, "b": 1.0, "omega": [[1.0], [3.2]]}
-    found = rl.ends(grid, [0.5, 1.0, 1.5])
-    table, rows = found.to_xarray(), found.to_dataframe()
-    assert found.axes == ("omega0", "t") == table.x.dims and table.attrs["a"] == 2.0
-    assert np.array_equal(table.x, found.x) and table.t.values.tolist() == [0.5, 1.0, 1.5]
-    assert len(rows) == 6 and rows.theta[3.2, 1.0] == found.theta[1, 1]
+    ends = rl.ends(grid, [0.5, 1.0, 1.5])
+    table, rows = ends.to_xarray(), ends.to_dataframe()
+    assert ends.axes == ("omega0", "t") == table.x.dims and table.attrs["a"] == 2.0
+    assert np.array_equal(table.x, ends.x) and table.t.values.tolist() == [0.5, 1.0, 1.5]
+    assert len(rows) == 6 and rows.theta[3.2, 1.0] == ends.theta[1, 1]
     listed = rl.ends([rl.scenes.jump, rl.scenes.report], [0.5, 1.0])
     assert listed.axes == ("scene",) and listed.to_xarray().mass.values.tolist() == [1.0, 10.0]
-    assert pickle.loads(pickle.dumps(found)).to_xarray().equals(table)
+    assert pickle.loads(pickle.dumps(ends)).to_xarray().equals(table)
     assert len(rl.ends({"a": 2.0, "b": 1.0}, 1.0).to_dataframe()) == 1
     assert len(rl.ends([], 1.0).to_dataframe()) == 0

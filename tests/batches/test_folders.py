@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.batches import ENDLESS, NAMED, TIMES, chunks, singly, states
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from oracles.programs import run
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
-from rolling_ellipse._verbs.batches import folders
+from rolling_ellipse._verbs.batches import folders  # whose version and schema are changed
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
 
@@ -28,16 +28,6 @@ GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
     return tmp_path / "motions"
-
-
-def chunks(folder: Path) -> list[Path]:
-    return sorted(folder.glob("*-*.npz"))
-
-
-def states(folder: Path) -> dict[str, tuple[int, int]]:
-    """File number and time of each chunk, which change if the file is written again."""
-    files = {path.name: path.stat() for path in chunks(folder)}
-    return {name: (of.st_ino, of.st_mtime_ns) for name, of in files.items()}
 
 
 def require_equal(loaded: Any, expected: Any) -> None:
@@ -113,7 +103,7 @@ def test_scenes_one_by_one_and_as_arrays_are_the_same(out: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "reason"),
     [
         ({"t": [1.0]}, "with other times, 60 from 0.0 to 2.0 s"),
         ({"t": TIMES * (1 + 2**-52)}, "with other times"),
@@ -127,14 +117,14 @@ def test_scenes_one_by_one_and_as_arrays_are_the_same(out: Path) -> None:
                      scenes.report]}, "scenes 49 to 49"),
     ],
 )  # fmt: skip
-def test_another_request_is_refused(changes: dict[str, Any], said: str, out: Path) -> None:
-    asked: dict[str, Any] = {"scenes": GRID, "t": TIMES}
-    simulate_many(**asked, out=out)
+def test_another_request_is_refused(changes: dict[str, Any], reason: str, out: Path) -> None:
+    request: dict[str, Any] = {"scenes": GRID, "t": TIMES}
+    simulate_many(**request, out=out)
     before = states(out)
-    with pytest.raises(ValueError, match=f"^out must be a folder of the same .*motions'.*{said}"):
-        simulate_many(**(asked | changes), out=out)
+    with pytest.raises(ValueError, match=f"^out must be a folder of the same .*motions'.*{reason}"):
+        simulate_many(**(request | changes), out=out)
     assert states(out) == before
-    simulate_many(**asked, out=out)
+    simulate_many(**request, out=out)
 
 
 def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,7 +183,7 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # warnings about the headers of NumPy's files
             try:
-                found = list(load_many(small))
+                loaded = list(load_many(small))
             except ValueError as error:
                 assert path.name in str(error) and "simulate_many with the same" in str(error)
                 refused += 1
@@ -202,7 +192,7 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
                         remake(small)
                     path.unlink()
             else:
-                require_equal(found, expected)
+                require_equal(loaded, expected)
             remake(small)
         require_equal(load_many(small), expected)
     assert refused > len(whole) / stride / 2
@@ -240,20 +230,20 @@ def test_an_end_that_counts_other_scenes_is_refused(count: Any, small: Path) -> 
     ids=["times", "settings", "scenes"],
 )  # fmt: skip
 def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path) -> None:
-    asked: dict[str, Any] = {"scenes": GRID, "t": np.array([2.0, 6.0])}
-    simulate_many(**asked, out=out)
-    simulate_many(**(asked | changes), out=tmp_path / "other")
+    request: dict[str, Any] = {"scenes": GRID, "t": np.array([2.0, 6.0])}
+    simulate_many(**request, out=out)
+    simulate_many(**(request | changes), out=tmp_path / "other")
     theirs = {path.name for path in chunks(tmp_path / "other")} - {p.name for p in chunks(out)}
     shutil.copytree(tmp_path / "other", out, dirs_exist_ok=True)
     with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
-    for call in (asked, asked | changes):
+    for call in (request, request | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
             simulate_many(**call, out=out)
     for name in (*theirs, "request.npz", "end.json"):  # the error text asks for this removal
         (out / name).unlink()
-    simulate_many(**asked, out=out)
-    require_equal(load_many(out), simulate_many(**asked))
+    simulate_many(**request, out=out)
+    require_equal(load_many(out), simulate_many(**request))
 
 
 def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
 from rolling_ellipse._ask.settings import Options
 from rolling_ellipse._verbs.batches.asked import sizes
-from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # of an older folder
 
 ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
 WAYS: dict[str, dict[str, Any]] = {
@@ -37,10 +37,8 @@ WAYS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
     """Fields, events and messages of exceptions are equal, and no warning appears."""
-    answers, expected = (
-        simulate_many(NAMED, TIMES, workers=workers, **way),
-        singly(NAMED, TIMES, **way),
-    )
+    expected = singly(NAMED, TIMES, **way)
+    answers = simulate_many(NAMED, TIMES, workers=workers, **way)
     require_same(answers, expected)
     for one, other in zip(answers, expected, strict=True):
         if isinstance(one, rl.Trajectory):
@@ -49,12 +47,12 @@ def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
 
 def test_the_ways_lead_everywhere() -> None:
     """The settings in WAYS give motions, refusals and both kinds of early stops."""
-    found = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
-    kinds = {name: {type(each) for each in answers} for name, answers in found.items()}
+    every = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
+    kinds = {name: {type(each) for each in answers} for name, answers in every.items()}
     assert kinds["rolling"] == {rl.Trajectory, ValueError}
     assert kinds["raised"] == {rl.Trajectory, rl.IntegrationError}
     assert kinds["auto"] == kinds["not raised"] == {rl.Trajectory}
-    statuses = {each.status for answers in found.values() for each in answers
+    statuses = {each.status for answers in every.values() for each in answers
                 if isinstance(each, rl.Trajectory)}  # fmt: skip
     assert {rl.Status.COMPLETED, rl.Status.VALIDITY_LOST, rl.Status.MAX_EVENTS} <= statuses
 
@@ -64,18 +62,18 @@ def test_arrays_have_the_bits_of_the_list(way: dict[str, Any]) -> None:
     """Samples that a motion has not reached, or whose scene is refused, are NaN."""
     names = ("x", "theta", "omega", "z", "friction_force", "mode")
     listed = simulate_many(NAMED * 3, TIMES, **way)
-    found = simulate_many(NAMED * 3, TIMES, returns=names, **way)
+    arrays = simulate_many(NAMED * 3, TIMES, returns=names, **way)
     for i, each in enumerate(listed):
         motion = getattr(each, "trajectory", each)
         reached = motion.t.size if isinstance(motion, rl.Trajectory) else 0
         for name in names:
-            assert np.array_equal(found[name][i, :reached], getattr(motion, name, []))
-            assert np.isnan(found[name][i, reached:]).all()
-        assert found.status[i] == (motion.status.name if reached else "REFUSED")
+            assert np.array_equal(arrays[name][i, :reached], getattr(motion, name, []))
+            assert np.isnan(arrays[name][i, reached:]).all()
+        assert arrays.status[i] == (motion.status.name if reached else "REFUSED")
     errors = {(i,): str(each) for i, each in enumerate(listed) if isinstance(each, Exception)}
-    assert {place: str(each) for place, each in found.errors.items()} == errors
+    assert {place: str(each) for place, each in arrays.errors.items()} == errors
     for name, values in simulate_many(NAMED * 3, TIMES, returns=names[:2], **way).items():
-        assert np.array_equal(values, found[name], equal_nan=True)  # without any trajectory
+        assert np.array_equal(values, arrays[name], equal_nan=True)  # without any trajectory
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
@@ -141,15 +139,16 @@ def test_every_argument_of_a_scene_has_its_place() -> None:
         "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(jx=0.1, jz=-0.2, dx=0.3, dz=0.4),
     }  # fmt: skip
     assert [*arguments, "unknown"] == list(inspect.signature(Scene).parameters)
-    for asked in (arguments, [Scene(**arguments)]):
-        require_same(simulate_many(asked, TIMES), [simulate(Scene(**arguments), TIMES)])
+    for given in (arguments, [Scene(**arguments)]):
+        require_same(simulate_many(given, TIMES), [simulate(Scene(**arguments), TIMES)])
 
 
 def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> None:
     theta = np.zeros(200_000)
     theta[170_001] = math.nan
     with pytest.raises(ValueError, match=r"^scenes\['theta'\]\[170001\] must be"):
-        simulate_many({"a": 2, "b": 1, "theta": theta}, 1.0, progress=pytest.fail)
+        scenes = {"a": 2, "b": 1, "theta": theta}
+        simulate_many(scenes, 1.0, progress=lambda *_: pytest.fail("something was computed"))
 
 
 @pytest.mark.parametrize("nothing", [[], {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
@@ -157,21 +156,6 @@ def test_no_scenes(nothing: Any, tmp_path: Path) -> None:
     assert simulate_many(nothing, 1.0) == [] == simulate_many(iter(()), 1.0)
     found = rl.load_many(simulate_many(nothing, [1.0], out=tmp_path / "none")).arrays()
     assert found.status.size == found["x"].size == found.to_xarray()["x"].size == 0
-
-
-@pytest.mark.parametrize(
-    ("name", "wrong"),
-    [
-        ("a", -1.0), ("b", [1.0, math.nan]), ("mass", 0.0), ("gravity", -9.81), ("inertia", -1.0),
-        ("inertia", 1e9), ("slope", 2.0), ("friction", -0.1), ("restitution", 1.1),
-        ("theta", math.inf), ("z", [math.nan]),
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("run", [simulate_many, rl.ends])
-def test_arguments_of_no_scenes_are_checked(run: Any, name: str, wrong: Any) -> None:
-    none = {"a": 2.0, "b": 1.0, "omega": np.empty((0, 1))}
-    with pytest.raises(ValueError, match=r"^scenes\['" + name):
-        run(none | {name: wrong}, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -214,14 +198,12 @@ def test_progress_is_reported_after_each_chunk() -> None:
 
 
 @pytest.mark.parametrize("bar", [True, False])
-def test_progress_is_shown(
-    bar: bool, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_progress_is_shown(bar: bool, capfd: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     if not bar:
         monkeypatch.setattr("rolling_ellipse._ask.progress.find_spec", lambda name: None)
     simulate_many([scenes.rocking] * 20, 1.0, progress=True)
-    said = capfd.readouterr().err
-    assert ("20/20" if bar else "\r20 of 20 scenes\n") in said
+    shown = capfd.readouterr().err
+    assert ("20/20" if bar else "\r20 of 20 scenes\n") in shown
 
 
 def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:

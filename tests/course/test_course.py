@@ -239,23 +239,23 @@ def test_marks(number: str) -> None:
         given = answer(number, made)
         least = next(m for k in range(3) for m in combinations(made, k)
                      if math.isclose(answer(number, m), given, rel_tol=1e-9))  # fmt: skip
-        said = course.mark(number, given).mistake
+        mistake = course.mark(number, given).mistake
         if made == least:
-            print(f"{number:5}{' and '.join(made):20}{given:11.4g}  {said}")
-        named = [set(names.split(" and ")) for names in said.split(" or ")]
+            print(f"{number:5}{' and '.join(made):20}{given:11.4g}  {mistake}")
+        named = [set(names.split(" and ")) for names in mistake.split(" or ")]
         if abs(given - right) < 0.7 * near:
-            assert said == "none"
+            assert mistake == "none"
         elif least == ("angle",) and number in ("2.2", "2.4"):  # a rest, which is not marked
-            assert said == "other"
+            assert mistake == "other"
         elif number in ("10.1", "10.2", "10.3") and "inertia" in least:
-            assert "inertia" not in said  # noise, or an estimate by hand, leads as far
+            assert "inertia" not in mistake  # noise, or an estimate by hand, leads as far
         else:
             assert {*map(str.lower, least)} in named
             for names in named:
                 ways = [names, names - {"degrees"} | {"DEGREES"}, names | {"DEGREES"}]
-                found = [answer(number, tuple(way)) for way in ways]
+                numbers = [answer(number, tuple(way)) for way in ways]
                 assert names == {"per mille"} or any(
-                    math.isclose(v, given, rel_tol=0.01) for v in found), said  # fmt: skip
+                    math.isclose(v, given, rel_tol=0.01) for v in numbers), mistake  # fmt: skip
 
 
 def test_the_film_has_real_noise() -> None:
@@ -274,9 +274,9 @@ def test_the_film_has_real_noise() -> None:
 def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows, names = np.vstack(course.measured_impacts()).T, ",".join(course._DATA["impacts"])
     np.savetxt(tmp_path / "seen.csv", rows[::-2], delimiter=",", header=names, comments="")
-    for said in ("(Made impacts.)", "(Measured impacts.)"):
+    for ending in ("(Made impacts.)", "(Measured impacts.)"):
         mark = course.mark("8.2", TRUE["8.2"](Given("8.2")))
-        assert mark and mark.sentence.endswith(said)
+        assert mark and mark.sentence.endswith(ending)
         monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))
 
 
