@@ -6,7 +6,6 @@
 #include <pybind11/stl.h>
 
 #include <array>
-#include <initializer_list>
 #include <string>
 
 #include "bindings/arrays.hpp"
@@ -28,13 +27,12 @@ py::class_<T> bind_class(py::module_& m, const char* name) {
     return bound;
 }
 
-// Binds an enum by the names of its values, which count from 0.
-template <class Enum, class Names = std::initializer_list<const char*>>
-void bind_enum(py::module_& m, const char* name, const char* base, const char* doc,
-               const Names& names) {
+// Binds an enum by the names of its values.
+template <class Enum>
+void bind_enum(py::module_& m, const char* name, const char* base, const char* doc) {
     py::native_enum<Enum> bound(m, name, base, doc);
     int code = 0;
-    for (const char* each : names) bound.value(each, static_cast<Enum>(code++));
+    for (const char* each : names<Enum>) bound.value(each, static_cast<Enum>(code++));
     bound.finalize();
 }
 

@@ -101,11 +101,9 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
 }  // namespace
 
 void bind_certificate(py::module_& m) {
-    bind_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?",
-                        {"VALID", "INVALID", "EDGE", "NO_PROOF"});
+    bind_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?");
     bind_enum<Outcome>(m, "Outcome", "enum.IntEnum",
-                       "The first thing that happens to a rolling body.",
-                       {"RESTS", "ROCKS", "ROLLS_OVER", "SLIPS", "LOSES_CONTACT", "JAMS", "EDGE"});
+                       "The first thing that happens to a rolling body.");
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
     m.def(

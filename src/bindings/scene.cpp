@@ -100,10 +100,8 @@ Settings settings_of(const py::dict& fields) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    bind_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.",
-                    {"ROLLING", "SLIDING", "FLIGHT", "REST"});
-    bind_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?",
-                        {"DETERMINED", "NO_MOTION", "TWO_MOTIONS"});
+    bind_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.");
+    bind_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?");
     bind_class<Impulse>(m, "Impulse")
         .def(py::init([](double jx, double jz, double dx, double dz) {
                  const Impulse impulse{jx, jz, dx, dz};
@@ -115,8 +113,7 @@ void bind_scene(py::module_& m) {
         return s.body().gyration2;
     });
     m.def("scene_of", SceneMaker(), "numbers"_a, "impulse"_a, "reached"_a);
-    bind_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.",
-                           {"STRONGE", "POISSON", "NEWTON"});
+    bind_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.");
     m.attr("FIELDS") =
         py::dict("Scene"_a = units_of(scene_fields), "Impulse"_a = units_of(impulse_fields),
                  "State"_a = units_of(state_fields),

@@ -261,12 +261,9 @@ void ContactColumns::store(const ContactSample* samples, py::ssize_t begin, py::
 }
 
 void bind_solution(py::module_& m) {
-    bind_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.",
-                         {"SLIP", "STICK", "REVERSE", "LIFT_OFF", "IMPACT", "REST", "JAM"});
-    bind_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.",
-                      {"COMPLETED", "MAX_STEPS", "STEP_TOO_SMALL", "STEP_TOO_LARGE", "MAX_EVENTS",
-                       "JAMMED", "UNDETERMINED", "VALIDITY_LOST"});
-    bind_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.", names<Quantity>);
+    bind_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.");
+    bind_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.");
+    bind_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.");
     bind_class<Solution>(m, "Solution")
         .def_property_readonly("ending",
                                [](const Solution& s) { return static_cast<int>(s.ending); })

@@ -20,6 +20,10 @@ namespace rolling_ellipse {
 
 enum class EventKind : std::int8_t { slip, stick, reverse, lift_off, impact, rest, jam };
 
+template <>
+inline constexpr std::array names<EventKind>{"SLIP",   "STICK", "REVERSE", "LIFT_OFF",
+                                             "IMPACT", "REST",  "JAM"};
+
 struct Event {
     double t;
     EventKind kind;

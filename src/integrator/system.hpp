@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "numerics/names.hpp"
 #include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
@@ -100,6 +101,11 @@ enum class Ending {
     undetermined,  // a slide has two continuations
     validity_lost
 };
+
+template <>
+inline constexpr std::array names<Ending>{"COMPLETED",      "MAX_STEPS",    "STEP_TOO_SMALL",
+                                          "STEP_TOO_LARGE", "MAX_EVENTS",   "JAMMED",
+                                          "UNDETERMINED",   "VALIDITY_LOST"};
 
 // A motion that was integrated, and the time up to which it is known.
 template <class Motion>

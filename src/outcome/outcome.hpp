@@ -21,6 +21,10 @@ enum class Outcome : std::int8_t {
     edge,           // undecided between two outcomes within rounding
 };
 
+template <>
+inline constexpr std::array names<Outcome>{"RESTS",         "ROCKS", "ROLLS_OVER", "SLIPS",
+                                           "LOSES_CONTACT", "JAMS",  "EDGE"};
+
 // The outcome for a body that rolls (or rests) on level ground with the given angle and angular
 // velocity, from signs of polynomials alone.
 Outcome classify(const Body& body, double friction, double theta, double omega);

@@ -11,6 +11,9 @@ namespace rolling_ellipse {
 // edge: the margin of the law is 0 but for rounding. no_proof: the start does not roll.
 enum class Validity { valid, invalid, edge, no_proof };
 
+template <>
+inline constexpr std::array names<Validity>{"VALID", "INVALID", "EDGE", "NO_PROOF"};
+
 // The end of rolling, forwards in time: theta and the sign of omega there. The angle is empty if
 // rolling does not end.
 struct EndOfRolling {

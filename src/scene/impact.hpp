@@ -12,6 +12,9 @@ namespace rolling_ellipse {
 // 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
 
+template <>
+inline constexpr std::array names<Restitution>{"STRONGE", "POISSON", "NEWTON"};
+
 // The state just after the applied impulse, or the scene's own state without one. Its mode follows
 // from its velocities; contact/sliding.hpp has the mode that the forces allow.
 struct InitialState {

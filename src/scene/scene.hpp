@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "geometry/ellipse.hpp"
+#include "numerics/names.hpp"
 #include "scene/field.hpp"
 
 namespace rolling_ellipse {
@@ -116,6 +117,9 @@ Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& i
 Scene level_scene(const Body& body, double friction);
 
 enum class Mode : std::int8_t { rolling, sliding, flight, rest };
+
+template <>
+inline constexpr std::array names<Mode>{"ROLLING", "SLIDING", "FLIGHT", "REST"};
 
 // The state of a body on or over the ground.
 struct State {

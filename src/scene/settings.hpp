@@ -4,9 +4,10 @@
 #include <array>
 #include <functional>
 #include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
+
+#include "numerics/names.hpp"
 
 namespace rolling_ellipse {
 
@@ -19,9 +20,6 @@ enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 // Gear, Gupta and Leimkuhler.
 enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
-// The names of the choices, in the order of their values.
-template <class Choice>
-inline constexpr std::array<const char*, 0> names{};
 template <>
 inline constexpr std::array names<Model>{"auto", "rolling", "multipliers", "contact"};
 template <>
@@ -30,11 +28,6 @@ inline constexpr std::array names<Method>{"auto", "exact", "dop853", "dopri5",
 template <>
 inline constexpr std::array names<Stabilization>{"none", "baumgarte", "projection",
                                                  "projection+energy", "ggl"};
-
-template <class Choice>
-std::string name(Choice choice) {
-    return names<Choice>[static_cast<std::size_t>(choice)];
-}
 
 struct Settings {
     Model model;

@@ -1,0 +1,18 @@
+// Names of the values of an enum, which count from 0; they stand below the enum.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace rolling_ellipse {
+
+template <class Enum>
+inline constexpr std::array<const char*, 0> names{};
+
+template <class Enum>
+std::string name(Enum value) {
+    return names<Enum>[static_cast<std::size_t>(value)];
+}
+
+}  // namespace rolling_ellipse
