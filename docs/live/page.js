@@ -1,19 +1,17 @@
 // A page on which every number of the scene can be moved; each frame shows the motion of its own
 // numbers. It needs all modules of the player before it.
 
-const CELLS = [48, 32]; // columns and rows of the map
-const COARSE = [8, 4, 2, 1]; // sizes of its cells, one after the other
-const BUDGETS = [10, 6]; // time of a frame up to which cells of the map are begun, and while a
-// slider moves [ms]
 const FULL = 6; // half turns of the strongest colours
 const SETTLED = 300; // time without a change after which the address has the scene [ms]
 const NOT_NAMED = ["jx", "jz", "dx", "dz", "t"]; // among the arguments of Scene
 
-export class Workbench extends Live {
+export class Workbench extends Explorer {
   constructor(host, film) {
-    const live = { ...film.live, ...film.page }, linked = live.linked ?? inAddress(location.hash);
-    const language = linked.lang in live.languages ? linked.lang : film.words.lang;
-    super(host, { ...film, ...live.languages[language], live: { ...live, linked } });
+    const { page } = film, linked = film.linked ?? inAddress(location.hash);
+    const language = linked.lang in page.languages ? linked.lang : film.words.lang;
+    const own = { ...page.given, friction: page.given.friction ?? Infinity };
+    super(host, { ...film, ...page.languages[language], own, axes: ["dx", "jz"],
+      given: { ...own, ...known(linked, own) } });
     addEventListener("hashchange", () => {
       const { lang, ...numbers } = inAddress(location.hash);
       if (!host.isConnected || this.address === location.hash) return;
@@ -23,26 +21,17 @@ export class Workbench extends Live {
   }
 
   begin() {
-    const { strips: [strip], live, words } = this.film;
-    Object.assign(this, { strip, fine: 2, axes: ["dx", "jz"] });
-    this.own = { ...live.given, friction: live.given.friction ?? Infinity };
-    this.given = { ...this.own, ...known(live.linked, this.own) };
-    const long = () => Math.max(strip.a, strip.b);
-    this.length = (J) => (0.5 + (1.7 * J) / live.strongest) * long();
-    this.strength = (length) => Math.max(0, length / long() - 0.5) * (live.strongest / 1.7);
-    const [width, height] = CELLS;
-    this.image = Object.assign(document.createElement("canvas"), { width, height });
+    const { words, own } = this.film;
     document.documentElement.lang = words.lang;
     document.title = document.querySelector("h1").textContent = words.live_title;
+    super.begin();
+    if (this.found) return;
+    this.given = { ...own }; // the address has a scene that cannot be
     this.renew();
-    if (!this.told) { // the address has a scene that cannot be
-      this.given = { ...this.own };
-      this.renew();
-    }
   }
 
   hands(find) {
-    this.rows = this.film.live.inputs.map((input) => this.row(input));
+    this.rows = this.film.page.inputs.map((input) => this.row(input));
     for (const group of new Set(this.rows.map((each) => each.group))) {
       const set = document.createElement("fieldset"), legend = document.createElement("legend");
       legend.textContent = this.say(`live_${group}`);
@@ -56,7 +45,7 @@ export class Workbench extends Live {
         select.add(new Option(this.say(`in_${name}`), name, false, name === this.axes[k]));
       select.onchange = () => { this.axes[k] = select.value; this.describe(); this.draw(); };
     });
-    find(".reset").onclick = () => this.change(this.own);
+    find(".reset").onclick = () => this.change(this.film.own);
     find(".link").onclick = ({ currentTarget }) => {
       this.settle();
       this.copy(currentTarget, location.href);
@@ -94,13 +83,9 @@ export class Workbench extends Live {
 
   /** Take other numbers; they are computed in the next frame. */
   change(numbers) {
-    Object.assign(this.given, known(numbers, this.own));
-    this.pause();
-    this.t = 0;
-    this.stale = true;
+    super.change(known(numbers, this.film.own));
     clearTimeout(this.settling);
     this.settling = setTimeout(() => this.settle(), SETTLED);
-    this.draw();
   }
 
   /** Write the scene into the address of the page. */
@@ -113,14 +98,13 @@ export class Workbench extends Live {
 
   /** Go on in another language, in a new host. */
   speak(language) {
-    const { live } = this.film;
-    if (!(language in live.languages)) return;
+    if (!(language in this.film.page.languages)) return;
     this.pause();
     clearTimeout(this.settling);
     const host = this.host.cloneNode();
     this.host.replaceWith(host);
     const linked = { ...this.given, lang: language };
-    const next = new Workbench(host, { ...this.film, live: { ...live, linked } });
+    const next = new Workbench(host, { ...this.film, linked });
     next.settle();
     next.box.querySelector("button[lang]:not([hidden])").focus();
   }
@@ -132,7 +116,7 @@ export class Workbench extends Live {
     film.end = t;
     Object.assign(strip, { a, b, slope, weight: mass * gravity, start: x });
     try {
-      this.compute(sceneOf(given));
+      super.renew();
       Object.assign(this, { refusal: "", parts: [[0, t]], long: t });
       const { kinetic: T, potential: V, theta } = this.columns;
       this.energies = [T, V, T.map((kinetic, i) => kinetic + V[i])].map((values) =>
@@ -169,8 +153,17 @@ export class Workbench extends Live {
       last: total.points.at(-1)[1] }));
   }
 
+  /** Absent are the height and velocity of a body that touches and rolls, too. */
+  sceneOf({ k, height, slip, ...given }) {
+    const { a, b, mass, theta, omega, jx, jz } = given, [h] = support(theta, a, b);
+    const flies = height > 0, x_dot = flies ? slip : slip ? h * omega + slip : null;
+    return { ...given, inertia: k === 1 ? null : (k * mass * (a * a + b * b)) / 4, x_dot,
+      z: flies ? h + height : null, z_dot: flies ? given.z_dot : null,
+      jx: jx || jz ? jx : null };
+  }
+
   code() {
-    const { a, b, ...others } = sceneOf(this.given), usual = this.film.live.usual;
+    const { a, b, ...others } = this.sceneOf(this.given), { usual } = this.film.page;
     const numbers = Object.entries(others).filter(([name, value]) => !NOT_NAMED.includes(name)
       && value !== null && value !== Infinity && value !== usual[name])
       .map(([name, value]) => `, ${name}=${value}`).join("");
@@ -210,80 +203,32 @@ export class Workbench extends Live {
     return this.rows.find(({ name }) => name === this.axes[k]);
   }
 
-  move(...steps) {
-    this.change(Object.fromEntries(steps.flatMap((count, k) => {
-      const { name, least, most, step } = this.axis(k);
-      const wide = Math.max(1, Math.round((most - least) / step / CELLS[k]));
-      const value = this.given[name] + count * wide * step;
-      return count ? [[name, rounded(Math.min(most, Math.max(least, value)))]] : [];
-    })));
-  }
-
-  pointed({ offsetX, offsetY }) {
-    const { left, top, across, up } = cellsOf(this.map);
-    const parts = [(offsetX - left) / across, 1 - (offsetY - top) / up];
-    this.change(Object.fromEntries(parts.map((part, k) => {
-      const { name, least, most, step } = this.axis(k);
-      const value = least + Math.min(1, Math.max(0, part)) * (most - least);
-      return [name, rounded(least + Math.round((value - least) / step) * step)];
-    })));
-  }
-
-  /** Colour cells of the map, coarse ones first, until a time; begin anew for another map. */
-  fill(until) {
-    const axes = [this.axis(0), this.axis(1)], others = { ...this.given };
-    for (const name of this.axes) delete others[name];
-    const key = JSON.stringify([this.axes, others, others.friction === Infinity,
-      this.colours.paper]);
-    if (key !== this.mapped) Object.assign(this, { mapped: key, cells: cellsInTurn() });
-    const ink = this.image.getContext("2d");
-    while (performance.now() < until) {
-      const { value: cell, done } = this.cells.next();
-      if (done) return;
-      const [i, j, size] = cell;
-      const numbers = axes.map(({ name, least, most }, k) =>
-        [name, least + ((k ? CELLS[1] - j - size / 2 : i + size / 2) / CELLS[k]) * (most - least)]);
-      const [colour, alpha] = this.outcome({ ...this.given, ...Object.fromEntries(numbers) });
-      ink.globalAlpha = 1;
-      ink.fillStyle = this.colours.paper;
-      ink.fillRect(i, j, size, size);
-      ink.globalAlpha = alpha;
-      ink.fillStyle = this.colours[colour];
-      ink.fillRect(i, j, size, size);
-    }
-    this.draw();
+  labelOf(k) {
+    const { name, unit } = this.axis(k);
+    return `${this.say(`in_${name}`)}${unit ? ` [${unit}]` : ""}`;
   }
 
   /** Colour and strength for half turns until the end, or for a motion that jams, or none. */
-  outcome(given) {
+  colourOf(given) {
+    const { film: { core }, colours } = this;
     try {
-      const { ending, columns } = this.film.live.core.motion(sceneOf(given), given.t, [given.t]);
-      if (ending !== COMPLETED) return ["plum", 1];
-      const n = halfTurns(columns.theta[0], given.theta);
-      return n ? [n > 0 ? "orange" : "blue", 0.2 + (0.8 * Math.min(FULL, Math.abs(n))) / FULL]
-        : ["faint", 0.5];
+      const { ending } = core.ask(this.sceneOf(given), given.t, false);
+      if (ending !== "COMPLETED") return [colours.plum, 1];
+      const n = halfTurns(core.samples([given.t]).theta[0], given.theta);
+      if (!n) return [colours.faint, 0.5];
+      return [n > 0 ? colours.orange : colours.blue,
+        0.2 + (0.8 * Math.min(FULL, Math.abs(n))) / FULL];
     } catch {
-      return ["paper", 1];
+      return [colours.paper, 1];
     }
   }
 
   // ------------------------------------------------------------------------------- pictures
 
-  paint() {
-    const { box } = this, { clientWidth: width } = box, begun = performance.now();
-    if (!width) return;
-    const budget = BUDGETS[this.stale ? 1 : 0];
-    if (this.stale) {
-      this.renew();
-      this.describe();
-      this.marks();
-      this.stale = false;
-    }
+  fit(width) {
     this.lowest = width < 600 ? 0.6 : 0.33;
-    Object.assign(this.strip, windowOf(this.strip, this.film.live.size, this.lowest, width));
-    super.paint();
-    this.paintEnergy(sized(this.energy, this.energy.clientHeight));
-    this.fill(Math.max(begun + budget, performance.now() + 1));
+    Object.assign(this.strip, windowOf(this.strip, this.film.page.size, this.lowest, width));
+    super.fit(width);
   }
 
   over(ink) {
@@ -291,17 +236,9 @@ export class Workbench extends Live {
     disc(ink, this.colours.paper, this.colours.plum, this.hand(this.views[0]).point, 4);
   }
 
-  paintMap(ink) {
-    const area = cellsOf(this.map), { left, top, across, up } = area;
-    ink.imageSmoothingEnabled = false;
-    ink.drawImage(this.image, left, top, across, up);
-    const axes = [this.axis(0), this.axis(1)];
-    const [x, y] = axes.map(({ name, least, most }) =>
-      (Math.min(most, Math.max(least, this.given[name])) - least) / (most - least));
-    paintCursor(ink, this.colours, left + x * across - 5, top + (1 - y) * up - 5, 10, 10);
-    const ends = ({ least, most }) => [[0, least], [0.5, (least + most) / 2], [1, most]];
-    paintSides(ink, this.colours, area, ends(axes[0]), ends(axes[1]), axes.map(({ name, unit }) =>
-      `${this.say(`in_${name}`)}${unit ? ` [${unit}]` : ""}`));
+  paintPlot(ink) {
+    super.paintPlot(ink);
+    this.paintEnergy(sized(this.energy, this.energy.clientHeight));
   }
 
   paintEnergy(ink) {
@@ -338,22 +275,6 @@ function known(numbers, own) {
   const pairs = Object.entries(numbers).filter(([name]) => name in own)
     .map(([name, value]) => [name, value === null ? null : numberIn(`${value}`)]);
   return Object.fromEntries(pairs.filter(([, value]) => !Number.isNaN(value)));
-}
-
-/** The scene for the core: absent numbers are null, as those of a body that touches and rolls. */
-function sceneOf({ k, height, slip, ...given }) {
-  const { a, b, mass, theta, omega, jx, jz } = given, [h] = support(theta, a, b);
-  const flies = height > 0, x_dot = flies ? slip : slip ? h * omega + slip : null;
-  return { ...given, inertia: k === 1 ? null : (k * mass * (a * a + b * b)) / 4, x_dot,
-    z: flies ? h + height : null, z_dot: flies ? given.z_dot : null,
-    jx: jx || jz ? jx : null };
-}
-
-/** The cells of the map with their sizes, all large ones first. */
-function* cellsInTurn() {
-  for (const size of COARSE)
-    for (let j = 0; j < CELLS[1]; j += size)
-      for (let i = 0; i < CELLS[0]; i += size) yield [i, j, size];
 }
 
 /** The window of a strip: it stays for bodies down to half a size, and a high start fits in. */

@@ -1,8 +1,7 @@
 """Write the page with the core itself: python docs/makers/live.py [page.html]
 
-It is the page of `explore(scenes.report, live=True)` with sliders for the whole scene, a map of
-half turns and the energies, by the files of docs/live; where WebAssembly is forbidden, it is
-that of `explore`. It needs no other file and no network.
+It is the page of `explore(scenes.report)` with sliders for the whole scene, a map of half turns and
+the energies, by the files of docs/live. It needs no other file and no network.
 """
 
 import json
@@ -13,13 +12,14 @@ from typing import Any
 
 from rolling_ellipse import Explorer, Scene, explore, geometry, scenes
 from rolling_ellipse._ask.words import LANGUAGES
+from rolling_ellipse._player.blows import axes
 from rolling_ellipse._player.page import document, escaped, with_player, words
 
 FOLDER = Path(__file__).resolve().parents[1] / "live"
 
 
 def write(target: Path) -> None:
-    target.write_text(page(explore(scenes.report, live=True)), encoding="utf-8")
+    target.write_text(page(explore(scenes.report)), encoding="utf-8")
 
 
 def page(explorer: Explorer) -> str:
@@ -31,7 +31,6 @@ def page(explorer: Explorer) -> str:
         "given": given,
         "inputs": inputs(explorer, given),
         "size": max(given["a"], given["b"]),
-        "strongest": float(explorer.strengths[-1]),
         "languages": languages,
         "usual": {name: getattr(usual, name) for name in ("mass", "gravity", "slope",
                   "restitution", "theta", "omega", "x")},
@@ -66,7 +65,8 @@ def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
     """Group, name, unit, range and step of each slider, in sizes of the body."""
     size = max(given["a"], given["b"])
     rate = math.sqrt(given["gravity"] / size)
-    blow = float(explorer.strengths[-1])
+    _, strength = axes(explorer.scene)
+    blow = strength["most"]
     rows = [
         ("body", "a", "m", 0.1 * size, 1.5 * size), ("body", "b", "m", 0.1 * size, 1.5 * size),
         ("body", "k", "", 0.1, 2.0), ("ground", "slope", "rad", -0.6, 0.6),

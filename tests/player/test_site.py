@@ -114,7 +114,7 @@ def test_formulas_fit_and_films_and_search_work_from_files(
     page.wait_for_function(blow)
     before = page.evaluate(blow)
     page.locator(".hard").press("ArrowDown")
-    assert page.evaluate(blow) != before
+    page.wait_for_function(f"{blow} !== '{before}'")
     page.goto((site / "search.html").as_uri() + "?q=restitution")
     page.wait_for_selector("#search-results li a")
     context.close()

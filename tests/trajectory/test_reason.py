@@ -107,6 +107,17 @@ def test_the_reason_is_the_same_from_any_samples_and_model() -> None:
     assert before.reason == motion.reason.replace(" at t = 0.143801 s", "")
 
 
+def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
+    drop, bounce = rl.scenes.drop, rl.scenes.bounce
+    for force, place, says in ((6.17, 1.36, "It rocks."), (11.0, 1.36, "It rolls over.")):
+        motion = simulate(drop.replace(impulse=rl.Impulse.press(force, place)), 5.4)
+        lands = f"It flies and lands at t = {motion.events[0].t:.6g} s. {says}"
+        assert motion.reason.startswith(lands)
+    bounces = simulate(bounce.replace(impulse=rl.Impulse.press(11.0, -1.36)), 5.4, max_events=200,
+                       raise_on_failure=False)  # fmt: skip
+    assert bounces.reason.startswith("It bounces.")
+
+
 def test_a_start_from_coordinates_has_the_proof_of_its_scene() -> None:
     scene = Scene(2.0, 1.0, omega=5.2)
     start = simulate(scene, [0.05])

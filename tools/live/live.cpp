@@ -1,25 +1,31 @@
-// The core for a web page: one function from the numbers of a scene and times to samples, events
-// and the facts that sentences about the motion need. tools/live/build.sh compiles it.
-#include "outcome/outcome.hpp"
-#include "simulate.hpp"
+// The core for a web page: a scene is asked for its motion and for sentences about it, then for
+// samples at any times. tools/live/build.sh compiles it.
+#include "describe.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-// The settings of `simulate`, with the limits of the table of `explore`.
-const Settings settings{Model::automatic,          Method::automatic, 1e-10,  1e-12, {}, {},
-                        Stabilization::projection, {10.0, 10.0},      20'000, 200,   {}};
-constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<double> numbers;  // the answer to a call, which stays until the next one
-
-template <class... Numbers>
-void add(Numbers... values) {
-    (numbers.push_back(static_cast<double>(values)), ...);
+// The settings of `simulate`, with the limits of a page.
+Settings settings_of_page() {
+    Settings settings{};
+    settings.rtol = 1e-10;
+    settings.atol = 1e-12;
+    settings.stabilization = Stabilization::projection;
+    settings.baumgarte = {10.0, 10.0};
+    settings.max_steps = 20'000;
+    settings.max_events = 200;
+    return settings;
 }
 
-// The next numbers asked for; without a jx there is no blow.
-Scene asked_scene(const double*& asked) {
+// The last scene with its motion, and the last answers, which stay until the next call.
+Scene scene;
+Solution solution;
+std::string answer;
+std::vector<double> numbers;
+
+// The scene of numbers in the order of their names; an absent one is NaN, and so is the jx of a
+// scene without a blow.
+Scene scene_from(const double* asked) {
     SceneNumbers known;
     for (auto& number : known) {
         const double value = *asked++;
@@ -30,85 +36,94 @@ Scene asked_scene(const double*& asked) {
     return scene_of(known, std::isnan(blow.jx) ? std::nullopt : std::optional(blow));
 }
 
-void add_start(const Scene& scene) {
-    const InitialState start = initial_state(scene);
-    const Continuation next = first_continuation(scene, start.state);
-    add(start.touching, start.state.mode, next.mode, next.paradox, next.may_fly, start.slip_removed,
-        start.energy_lost, start.reaction_x, start.reaction_z, start.free_omega);
+// ------------------------------------------------------------------------------------------- JSON
+
+std::string json(const std::string& name) { return '"' + name + '"'; }
+
+std::string json(double value) { return value == infinity ? "1e999" : text(value); }
+
+// The values in brackets, each as `write` has it.
+template <class Values, class Write>
+std::string json(const char* brackets, const Values& values, const Write& write) {
+    std::string found(1, brackets[0]);
+    for (const auto& each : values) found += (found.size() > 1 ? "," : "") + write(each);
+    return found + brackets[1];
 }
 
-// The scene from which the motion goes on after an event on the ground.
-Scene scene_after(Scene scene, const State& state) {
-    scene.impulse.reset();
-    for (auto* number : {&scene.z, &scene.x_dot, &scene.z_dot}) number->reset();
-    if (state.mode == Mode::sliding) scene.x_dot = state.x_dot;
-    scene.theta = state.theta;
-    scene.omega = state.omega;
-    scene.x = state.x;
-    return scene;
+std::string json(const Event& event) {
+    const double place = event.after.x + geometry(scene.axes(), event.after.theta).dh;
+    return '[' + json(event.t) + ',' + json(name(event.kind)) + ',' + json(place) + ']';
 }
 
-// The start, the time from which a body in the air stays on the ground, or NaN, and the start,
-// the outcome and the proof on the ground.
-void add_facts(Scene scene, const Motion& motion) {
-    add_start(scene);
-    double landed = 0.0;
-    if (!initial_state(scene).touching) {
-        const auto lands = [](const Event& each) { return each.after.mode != Mode::flight; };
-        const auto at = std::find_if(motion.events.begin(), motion.events.end(), lands);
-        landed = at == motion.events.end() ? absent : at->t;
-        if (landed >= 0) scene = scene_after(scene, at->after);
-    }
-    const Certificate c = certify(scene);
-    add(landed);
-    add_start(scene);
-    add(outcome(scene, [] {}), c.end.validity, c.smallest_normal_force.value_or(absent),
-        c.smallest_normal_force_angle.value_or(absent), c.largest_friction_needed.value_or(absent),
-        c.end.angle.value_or(absent));
+std::string json(const Sentence& sentence) {
+    const auto number = [](const auto& each) {
+        return json(std::string(each.first)) + ':' + json(each.second);
+    };
+    return '[' + json(sentence.key) + ',' + json("{}", sentence.numbers, number) + ']';
 }
 
-// Times after the end of the motion have its last state.
-void add_samples(const Scene& scene, const Solution& solution, const double* asked, int n) {
-    std::vector<double> times(asked, asked + n);
-    for (double& t : times) t = std::min(t, solution.followed_until);
-    std::vector<ContactSample> samples(n);
-    Sampler(solution.motion, n)(times.data(), n, samples.data());
-    const auto [into, along] = scene.ground_gravity();
-    for (const auto& [s, force] : samples) {
-        const double moved = scene.mass * (s.x_dot * s.x_dot + s.z_dot * s.z_dot);
-        add(s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, force.normal, force.friction, s.mode,
-            (moved + scene.inertia * s.omega * s.omega) / 2,
-            scene.mass * (into * s.z - along * s.x));
-    }
+template <class Values>
+std::string json(const Values& values) {
+    return json("[]", values, [](const auto& each) { return json(each); });
 }
 
-// Asked are a scene, its blow, the end of the motion, whether facts are wanted, and n times.
-void answer(const double* asked, int n) {
-    const Scene scene = asked_scene(asked);
-    validate(scene);
-    const Solution solution = simulate(scene, settings, asked[0], [] {});
-    add(solution.ending, solution.followed_until, solution.motion.events.size());
-    for (const Event& each : solution.motion.events) {
-        const double lead = geometry(scene.axes(), each.after.theta).dh;
-        add(each.t, each.kind, each.after.x + lead);
-    }
-    if (asked[1] == 1) add_facts(scene, solution.motion);
-    add_samples(scene, solution, asked + 2, n);
+std::string json_of_description() {
+    const Description found = describe(scene, solution, [] {});
+    Sentences reasons{found.effect};
+    reasons.insert(reasons.end(), found.reasons.begin(), found.reasons.end());
+    return ",\"first\":" + json(found.first ? name(*found.first) : "IN_THE_AIR") +
+           ",\"headline\":" + json(found.headline) + ",\"reasons\":" + json(reasons);
 }
 
 }  // namespace
 
-// The answer begins with its length. One that begins with NaN then is a refusal, in letters.
-extern "C" const double* live(const double* asked, int n) {
-    numbers = {0.0};
+// The names of the numbers of a scene and of a sample, in their order.
+extern "C" const char* columns() {
+    std::vector<std::string> of_scene, of_sample;
+    for (const auto& field : scene_fields) of_scene.push_back(field.name);
+    for (const auto& field : impulse_fields) of_scene.push_back(field.name);
+    for (const auto& field : state_fields) of_sample.push_back(field.name);
+    for (const auto& field : force_fields) of_sample.push_back(field.name);
+    of_sample.insert(of_sample.end(), {"mode", "kinetic", "potential"});
+    answer = "{\"scene\":" + json(of_scene) + ",\"sample\":" + json(of_sample) + '}';
+    return answer.c_str();
+}
+
+// Simulates a scene up to an end, the last of the numbers. The answer is JSON, with sentences if
+// they are wanted, or the text of a refusal.
+extern "C" const char* ask(const double* asked, int in_words) {
     try {
-        answer(asked, n);
+        scene = scene_from(asked);
+        validate(scene);
+        const double end = asked[std::size(scene_fields) + std::size(impulse_fields)];
+        solution = simulate(scene, settings_of_page(), end, [] {});
+        answer = "{\"ending\":" + json(name(solution.ending)) +
+                 ",\"until\":" + json(solution.followed_until) +
+                 ",\"events\":" + json(solution.motion.events);
+        if (in_words) answer += json_of_description();
+        answer += '}';
     } catch (const std::exception& error) {
-        const std::string letters = error.what();
-        numbers = {0.0, absent};
-        numbers.insert(numbers.end(), letters.begin(), letters.end());
+        answer = error.what();
     }
-    numbers[0] = static_cast<double>(numbers.size());
+    return answer.c_str();
+}
+
+// Samples of the last motion; after its end they have its last state.
+extern "C" const double* samples(const double* asked, int n) {
+    std::vector<double> times(asked, asked + n);
+    for (double& t : times) t = std::min(t, solution.followed_until);
+    std::vector<ContactSample> found(n);
+    Sampler(solution.motion, n)(times.data(), n, found.data());
+    const auto [into, along] = scene.ground_gravity();
+    numbers.clear();
+    for (const auto& [state, force] : found) {
+        for (const auto& field : state_fields) numbers.push_back(state.*field.number);
+        for (const auto& field : force_fields) numbers.push_back(force.*field.number);
+        const double speed2 = square(state.x_dot) + square(state.z_dot);
+        numbers.push_back(static_cast<double>(state.mode));
+        numbers.push_back((scene.mass * speed2 + scene.inertia * square(state.omega)) / 2);
+        numbers.push_back(scene.mass * (into * state.z - along * state.x));
+    }
     return numbers.data();
 }
 

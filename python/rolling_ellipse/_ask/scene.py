@@ -14,8 +14,9 @@ from .check import number, positive, shown
 from .habits import meant
 from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
-from .reason import WHERE, blow_in_words, reason_of_start
+from .reason import blow_in_words, in_words
 from .records import FieldsOnly, cached_property
+from .words import table
 from .xml import to_mjcf, to_sdf
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
@@ -242,7 +243,7 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
-        return InitialState(**known, reason=reason_of_start(self, start))
+        return InitialState(**known, reason=in_words(_core.describe_start(self.core)))
 
     to_mjcf, to_sdf = to_mjcf, to_sdf
 
@@ -267,7 +268,7 @@ class Scene(FieldsOnly, Listed):
         if impulse is not None:
             rows.append(("impulse", blow_in_words(impulse)))
             after = f", omega = {brief(start.omega)} rad/s after the blow"
-        return [*rows, ("start", WHERE[start.mode] + after)]
+        return [*rows, ("start", table("en")[f"{start.mode.name}_where"] + after)]
 
 
 def _doubt(name: str, value: float) -> str:

@@ -21,11 +21,6 @@ def table(language: str) -> dict[str, str]:
     return found
 
 
-def numbers_in(key: str) -> list[str]:
-    """Return the names in braces of an English text."""
-    return BRACES.findall(table("en")[key])
-
-
 def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
     """Return a number as the language writes it."""
     text = f"{value:.{digits}g}".replace("inf", "∞").replace("-", "−")

@@ -12,6 +12,7 @@ from .. import _core
 from .._ask.printing import Row, brief, html_table, printable, required, text_table
 from .._ask.records import FieldsOnly, find_late, trusted
 from .._ask.scene import STATE_UNITS, InitialState, Scene
+from .._ask.words import table
 from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
@@ -19,16 +20,6 @@ if TYPE_CHECKING:
 
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
 MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
-_SENTENCES = {
-    EventKind.SLIP: "friction cannot hold the contact any more",
-    EventKind.STICK: "the slip has come to an end; the body rolls",
-    EventKind.REVERSE: "the slip has come to an end and goes on the other way",
-    EventKind.LIFT_OFF: "the body leaves the ground",
-    EventKind.IMPACT: "the body hits the ground",
-    EventKind.REST: "the body has come to rest",
-    EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
-}
-_PULLED = "the ground would have to pull: the body slides, not pressed (infinite friction)"
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
 _FIRST, _LAST = 12, 4  # numbers of events shown first and last in a long table
 
@@ -179,9 +170,9 @@ def energies(scene: Scene, of: Any) -> tuple[Any, Any, Any]:
 
 def _state(event: Any, *, after: bool) -> InitialState:
     state: dict[str, Any] = _core.event_state(event._scene.core, event._numbers, after)
-    reason = _SENTENCES[event.kind] if after else "just before"
-    if after and event.kind is EventKind.SLIP and math.isinf(event._scene.friction):
-        reason = _PULLED
+    pulled = event.kind is EventKind.SLIP and math.isinf(event._scene.friction)
+    why = "SLIP_pulled" if pulled else f"{event.kind.name}_why"
+    reason = table("en")[why] if after else "just before"
     return trusted(InitialState, state | {"mode": MODES[state["mode"]], "reason": reason})
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, finite
+from .._ask.reason import in_words
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, GIVEN
 from .._core import Mode, Solution
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 _Made = TypeVar("_Made", bound="Trajectory")
 _NEAR = 5  # samples of a local polynomial
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
-_SAID = "Samples from arrays: nothing is proved of them."
 
 
 def from_arrays(
@@ -70,7 +70,8 @@ def from_arrays(
     samples = _Samples(body, times, np.stack(held, axis=1))
     return kind(
         **fields_of(samples.samples(times)), scene=body, model="contact",
-        method=GIVEN, status=COMPLETED, message=COMPLETED.value, reason=_SAID, settings=DEFAULTS,
+        method=GIVEN, status=COMPLETED, message=COMPLETED.value, settings=DEFAULTS,
+        reason=in_words([("from_arrays", {})]),
         valid_until=math.inf, t_end=float(times[-1]), span=float(times[-1]), kept_events=(),
     )  # fmt: skip
 

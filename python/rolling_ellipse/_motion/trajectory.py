@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .. import _core
 from .._ask.check import FloatArray, array, choice, number, require, shown
 from .._ask.habits import MEANT, meant
+from .._ask.reason import in_words
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
@@ -39,7 +40,6 @@ from .samples import (
     vector,
 )
 from .status import STATUSES, Status
-from .told import reason
 
 if TYPE_CHECKING:
     import os
@@ -56,6 +56,8 @@ if TYPE_CHECKING:
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
+# What a blow does to the contact that only `initial_state` explains
+_NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
 def _derived(
@@ -415,6 +417,14 @@ def _require_counts(stats: Any) -> None:
             raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
+def _reason(self: Trajectory) -> str:
+    """What happens in a motion, and then what is proved of rolling."""
+    if self.start is not None:
+        return in_words([("off_constraints", {})])
+    _, headline, effect, reasons = _core.describe(self.scene.core, self._solution)
+    return in_words([*headline, *([effect] if effect[0] not in _NOT_NEW else []), *reasons])
+
+
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
     """Return a function that reads a fact of a motion from its solution, with a docstring."""
     read.__doc__ = meaning
@@ -423,7 +433,7 @@ def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajecto
 
 find_late(
     Trajectory,
-    reason=reason,
+    reason=_reason,
     stats=_fact(
         f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats
     ),

@@ -1,7 +1,4 @@
-"""A table of the motions of one scene after many blows, small enough for a page.
-
-Outcomes and reasons are keys of the table of words with their numbers.
-"""
+"""The blows that a page lets its reader try on a scene, and what it says about both."""
 
 from __future__ import annotations
 
@@ -11,93 +8,59 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray
-from .._ask.reason import Sentence
 from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._ask.settings import DEFAULTS
 from .._ask.words import filled, written
-from .._core import Outcome
 from .._motion.samples import even_times
-from .._motion.told import told
 from .._motion.trajectory import Trajectory
-from .._pictures.phase_map import COLOURS
 from .._verbs.classify import thresholds
 from ..geometry import support
 from .film import body, columns, events, sample_times
 
-IN_THE_AIR = len(Outcome)  # the code of a body that does not come to the ground
-NAMES = [*(outcome.name for outcome in Outcome), "IN_THE_AIR"]
-PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # width of the view [longer semi-axes]
+_STRENGTHS = 16  # the strongest blow over the weakest
 _PIXEL = 2.5e-4  # tolerance over the width of the view
 _SAMPLES = 100  # of a motion; up to ten times as many if places or forces need them
-CUT, LEAST = (-3.0, 5.0), (-0.5, 1.5)  # largest and least range of the plot of forces [weights]
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
+_SLIDES = 240  # steps of a slider
 
 
-def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """Return the places d [m] and strengths F [N s] of the blows.
+def axes(scene: Scene) -> list[dict[str, Any]]:
+    """Return the ranges of the place d [m] and of the strength F [N s] of blows, and their steps.
 
     Places cover the width of the body as it lies. The strongest blow, at the rim, gives some three
-    times the speed that carries the body over its tip. The scene's own press replaces the nearest
-    place and strength.
+    times the speed that carries the body over its tip.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
     over = thresholds(scene.a, scene.b, gravity=scene.gravity, gyration2=scene.gyration2)
     speed = max(over.roll_over_speed, math.sqrt(scene.gravity / longer))
     strongest = 3 * speed * scene.mass * (scene.gyration2 + shorter**2) / reach
-    digits = 2 - math.floor(math.log10(strongest / STRENGTHS))
-    step = round(strongest / STRENGTHS, digits)
-    strengths = [round(step * i, digits) for i in range(1, STRENGTHS + 1)]
-    half = PLACES // 2
-    places, strong = reach * np.arange(-half, half + 1) / half, np.array(strengths)
-    own = scene.impulse
-    if own is not None and own.jx == 0 and strong[0] / 2 < -own.jz < strong[-1] + strong[0] / 2:
-        places[np.argmin(np.abs(places - own.dx))] = own.dx
-        strong[np.argmin(np.abs(strong + own.jz))] = -own.jz
-    return places, strong
+    weakest = float(f"{strongest / _STRENGTHS:.3g}")
+    ranges = {"d": (-reach, reach), "F": (weakest, float(f"{_STRENGTHS * weakest:.12g}"))}
+    return [
+        {"name": name, "least": least, "most": most, "step": (most - least) / _SLIDES}
+        for name, (least, most) in ranges.items()
+    ]
 
 
-def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
-    """Return all blows in types of JSON, place by place."""
-    tolerance = _PIXEL * WIDE * max(scene.a, scene.b)
-    blows = [Impulse.press(force, place) for place in d for force in F]
-    motions = [struck(scene, blow, t_end) for blow in blows]
-    known = [told(motion) for motion in motions]
-    sampled = [_sampled(motion, tolerance) for motion in motions]
-    return {
-        "columns": columns(sampled, tolerance),
-        "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
-        "d": d.tolist(),
-        "F": F.tolist(),
-        "outcomes": [IN_THE_AIR if each.first is None else int(each.first) for each in known],
-        "headlines": [[*map(_rounded, each.headline)] for each in known],
-        "reasons": [[*map(_rounded, each.reasons)] for each in known],
-        "events": [events(motion, motion.t_end) for motion in motions],
-        "names": NAMES,
-        "colours": [*(COLOURS[outcome] for outcome in Outcome), COLOURS[Outcome.LOSES_CONTACT]],
-        "code": code(scene, t_end),
-    }
+def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) -> Impulse:
+    """Return the scene's own press, or a strong one at its place, in the ranges of two axes."""
+    own: Any = scene.impulse
+    d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
+    if F <= 0:
+        F = (strength["least"] + strength["most"]) / 2
+    force, at = (
+        float(np.clip(value, axis["least"], axis["most"]))
+        for value, axis in ((F, strength), (d, place))
+    )
+    return Impulse.press(force, at)
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
     """Return the motion of a scene after a blow; its message replaces warnings."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
-
-
-def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
-    """Return the motion at the times for the player; at even times if these are too many."""
-    times = sample_times(motion, motion.t_end, tolerance, most=10 * _SAMPLES)
-    return motion.sol(even_times(0.0, motion.t_end, _SAMPLES) if times is None else times)
-
-
-def _rounded(sentence: Sentence) -> list[Any]:
-    """Return a sentence with its numbers in four digits: JSON has no infinity."""
-    key, numbers = sentence
-    values = {k: "∞" if v == math.inf else float(f"{v:.4g}") + 0.0 for k, v in numbers.items()}
-    return [key, values] if values else [key]
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
@@ -124,13 +87,17 @@ def code(scene: Scene, t_end: float) -> str:
 
 def numbers(scene: Scene) -> dict[str, float | None]:
     """Return the numbers of a scene in types of JSON: infinite friction is None."""
-    found = {name: getattr(scene, name) for name in SCENE_UNITS}
-    found |= {name: getattr(scene.impulse, name, None) for name in ("jx", "jz", "dx", "dz")}
-    return found | {"friction": scene.friction if scene.friction < math.inf else None}
+    values = {name: getattr(scene, name) for name in SCENE_UNITS}
+    values |= {name: getattr(scene.impulse, name, None) for name in ("jx", "jz", "dx", "dz")}
+    return values | {"friction": scene.friction if scene.friction < math.inf else None}
 
 
-def view(scene: Scene) -> dict[str, Any]:
-    """Return the strip of the body before the blow, and its window."""
+def strip(motion: Trajectory) -> dict[str, Any]:
+    """Return a motion for the player in a window for the body before the blow.
+
+    A motion that needs too many samples has them at even times.
+    """
+    scene = motion.scene
     longer, start = max(scene.a, scene.b), scene.initial_state
     high = max(2.3 * longer, start.z + 2.4 * longer)
     wide = max(WIDE * longer, (high + longer) / 0.45)
@@ -138,15 +105,18 @@ def view(scene: Scene) -> dict[str, Any]:
     edge = min(0.35 * wide, longer / sine) if sine else 0.35 * wide
     foot = scene.x * math.cos(scene.slope), -scene.x * math.sin(scene.slope)
     low = -0.35 * longer - 0.035 * wide
-    window = (foot[0] - wide / 2, foot[0] + wide / 2, foot[1] + low, foot[1] + high)
+    tolerance = _PIXEL * WIDE * longer
+    times = sample_times(motion, motion.t_end, tolerance, most=10 * _SAMPLES)
+    if times is None:
+        times = even_times(0.0, motion.t_end, _SAMPLES)
     return {
         **body(scene),
-        "blow": None,
         "label": "",
         "share": 1.0,
-        "window": window,
+        "window": (foot[0] - wide / 2, foot[0] + wide / 2, foot[1] + low, foot[1] + high),
         "start": scene.x,
         "edge": edge,
-        "events": [],
+        "track": {"columns": columns([motion.sol(times)], tolerance), "starts": [0]},
+        "events": events(motion, motion.t_end),
         "valid": None,
     }

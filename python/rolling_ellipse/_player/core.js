@@ -1,19 +1,7 @@
-// The exact core as WebAssembly: a scene and times in; samples, events and facts out. All numbers
-// are in SI units. It needs track.js.
+// The exact core as WebAssembly: a scene in; samples, events and sentences out. All numbers are in SI
+// units. It needs no other module.
 
-const SCENE = ["a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega",
-  "x", "inertia", "z", "x_dot", "z_dot", "jx", "jz", "dx", "dz"]; // an absent one is null
-const START = ["touching", "by_velocity", "mode", "paradox", "may_fly", "slip_removed", "energy",
-  "along", "up", "omega"];
-const PROOF = ["outcome", "validity", "N", "angle", "ratio", "ends"];
-const SAMPLE = ["x", "z", "theta", "x_dot", "z_dot", "omega", "normal_force", "friction_force",
-  "mode", "kinetic", "potential"];
-const KINDS_OF_EVENT = ["slip", "stick", "reverse", "lift off", "impact", "rest", "jam"];
-const OUTCOMES = ["RESTS", "ROCKS", "ROLLS_OVER", "SLIPS", "LOSES_CONTACT", "JAMS", "EDGE"];
-export const [COMPLETED, JAMMED, UNDETERMINED] = [0, 5, 6]; // codes of Ending
-const ENDS = { slip: "SLIPS", "lift off": "LOSES_CONTACT", jam: "JAMS" }; // of rolling
-const [ROLLING, REST] = [0, 3]; // of Mode, beside those of strip.js
-const [VALID, EDGE] = [0, 2]; // of Validity
+const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
 
 export class Core {
   /** The core from its bytes; an error where the page may not use WebAssembly. */
@@ -22,105 +10,78 @@ export class Core {
     const { instance } = await WebAssembly.instantiate(bytes,
       { env: nothing, wasi_snapshot_preview1: nothing });
     instance.exports._initialize();
-    return Object.assign(new Core(), { exports: instance.exports });
+    return new Core(instance.exports);
   }
 
-  /** The motion of a scene up to an end, with samples at some times, and facts if wanted. */
-  motion(scene, end, times = [], facts = false) {
-    const { memory, malloc, free, live } = this.exports;
-    const asked = [...SCENE.map((name) => scene[name] ?? NaN), end, facts ? 1 : 0, ...times];
-    const place = malloc(8 * asked.length);
-    new Float64Array(memory.buffer, place, asked.length).set(asked);
-    const answer = live(place, times.length); // each call may make memory grow
+  constructor(exports) {
+    this.exports = exports;
+    this.names = JSON.parse(this.text(exports.columns()));
+  }
+
+  text(place) {
+    const bytes = new Uint8Array(this.exports.memory.buffer, place);
+    return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
+  }
+
+  /** Call a function of the core with an array of numbers. */
+  call(name, numbers, more) {
+    const { malloc, free } = this.exports, place = malloc(8 * numbers.length);
+    new Float64Array(this.exports.memory.buffer, place, numbers.length).set(numbers);
+    const answer = this.exports[name](place, more); // each call may make memory grow
     free(place);
-    const [length] = new Float64Array(memory.buffer, answer, 1);
-    const numbers = new Float64Array(memory.buffer, answer, length).slice(1);
-    if (Number.isNaN(numbers[0])) throw new RangeError(wordsOf(numbers.subarray(1)));
-    return read(numbers, facts, times.length);
+    return answer;
+  }
+
+  /** Simulate a scene up to an end, with sentences if wanted; an error says why it cannot be. */
+  ask(scene, end, inWords = true) {
+    const numbers = this.names.scene.map((name) => scene[name] ?? NaN);
+    const answer = this.text(this.call("ask", [...numbers, end], inWords));
+    if (!answer.startsWith("{")) throw new RangeError(answer);
+    const found = JSON.parse(answer);
+    for (const event of found.events) event[1] = event[1].toLowerCase().replace("_", " ");
+    return found;
+  }
+
+  /** The columns of samples of the last motion at some times. */
+  samples(times) {
+    const { sample: names } = this.names, place = this.call("samples", times, times.length);
+    const rows = new Float64Array(this.exports.memory.buffer, place, names.length * times.length);
+    return Object.fromEntries(names.map((name, k) =>
+      [name, Float64Array.from(times, (_, i) => rows[i * names.length + k])]));
+  }
+
+  /** The motion of a scene up to an end: what happens, times, columns of samples, and a track. */
+  motion(scene, end) {
+    const found = this.ask(scene, end), times = this.timesOf(found, scene.theta);
+    const columns = this.samples(times);
+    return { found, times, columns, track: trackOf(times, columns) };
+  }
+
+  /** Ends of intervals and their middles in turn; events, and the doubles before them, are ends. */
+  timesOf({ until, events }, theta) {
+    if (!until) return Float64Array.of(0);
+    const turn = Math.abs(this.samples([until]).theta[0] - theta);
+    const count = Math.max(FEWEST, Math.min(MOST, Math.ceil(turn / TURN)));
+    const even = Array.from({ length: count + 1 }, (_, i) => (i / count) * until);
+    const jumps = events.map(([t]) => t).filter((t) => t > 0 && t < until);
+    const ends = Float64Array.of(...even, ...jumps, ...jumps.map((t) => t * (1 - Number.EPSILON)))
+      .sort().filter((t, i, sorted) => t !== sorted[i - 1]);
+    return Float64Array.from({ length: 2 * ends.length - 1 }, (_, i) =>
+      (ends[Math.floor(i / 2)] + ends[Math.ceil(i / 2)]) / 2);
   }
 }
 
-const wordsOf = (letters) => new TextDecoder().decode(Uint8Array.from(letters));
-
-function read(numbers, facts, samples) {
-  let next = 0;
-  const named = (names) => Object.fromEntries(names.map((name) => [name, numbers[next++]]));
-  const found = { ...named(["ending", "until"]), events: [] };
-  for (let left = numbers[next++]; left > 0; left--) {
-    const [t, kind, x] = numbers.subarray(next, (next += 3));
-    found.events.push([t, KINDS_OF_EVENT[kind], x]);
+/** Columns for a track; between a jump and the double before it a force has their mean. */
+function trackOf(times, columns) {
+  const isEnd = (_, i) => i % 2 === 0, track = { t: times.filter(isEnd) };
+  for (const name in columns) track[name] = columns[name].filter(isEnd);
+  for (const name of ["normal_force", "friction_force"]) {
+    const values = columns[name], last = values.length - 1, end = times[last];
+    track[`${name}_middle`] = track[name].map((value, n) => {
+      const [middle, next] = [Math.min(2 * n + 1, last), Math.min(2 * n + 2, last)];
+      const jumps = times[next] - times[2 * n] <= 1e-9 * end;
+      return jumps ? (value + values[next]) / 2 : values[middle];
+    });
   }
-  if (facts) {
-    found.start = named(START);
-    Object.assign(found, named(["landed"]), { ground: named(START), proof: named(PROOF) });
-  }
-  found.columns = Object.fromEntries(SAMPLE.map((name) => [name, new Float64Array(samples)]));
-  for (let i = 0; i < samples; i++)
-    for (const name of SAMPLE) found.columns[name][i] = numbers[next++];
-  return found;
-}
-
-/** The first outcome, its headline and its reasons, as keys of words with their numbers. */
-export function told(motion, scene) {
-  const { start, landed, ground, proof, events, ending, until } = motion;
-  const { friction: mu } = scene, effect = effectOf(start, scene);
-  const headline = [], reasons = [[effect, { ...start, mu }]];
-  if (Number.isNaN(landed))
-    return { name: "IN_THE_AIR", reasons, headline: [[events.length ? "bounces" : "flies_on"]] };
-  if (!start.touching) headline.push(["lands", { t: landed }]);
-  const name = OUTCOMES[proof.outcome];
-  const rolls = ground.mode === ROLLING || ground.mode === REST;
-  headline.push(rolls ? endOf(events, name, landed)
-    : [`${name}_${start.touching ? "now" : "then"}`]);
-  const after = motionAfter(ground, mu);
-  if (after) reasons.push([after, { mu }]);
-  if (rolls) {
-    const why = whyOf(proof, ground.mode, mu), angle = Number.isNaN(proof.ends) ? proof.angle
-      : proof.ends;
-    reasons.push([why, { ...proof, mu, angle: (angle * 180) / Math.PI }]);
-    if (why !== "ends_grip") reasons.push([mu === Infinity ? "unlimited" : "friction", { mu }]);
-    const needed = effect === "sticks" ? neededBy(start, scene) : 0;
-    if (needed > 0 && needed < Infinity) reasons.push(["blow_needs", { needed }]);
-  }
-  if (ending !== COMPLETED && (name !== "JAMS" || until > landed))
-    reasons.push([{ [JAMMED]: "jammed", [UNDETERMINED]: "undetermined" }[ending] ?? "given_up",
-      { t: until }]);
-  return { name, headline, reasons };
-}
-
-function effectOf(start, { jx, friction }) {
-  if (start.slip_removed) return "stopped";
-  if (jx === null) return "no_blow";
-  if (!start.touching) return "in_the_air";
-  const slides = friction === Infinity ? "lifted" : "slides_off";
-  return { [FLIGHT]: "thrown", [SLIDING]: slides }[start.by_velocity] ?? "sticks";
-}
-
-/** How rolling ends, and when if the motion was followed so far. */
-function endOf(events, name, since) {
-  const end = events.find(([t, kind]) => t > since && kind in ENDS);
-  if (end) return [`${name === "JAMS" ? name : ENDS[end[1]]}_at`, { t: end[0] }];
-  return [`${name}_${Object.values(ENDS).includes(name) ? "later" : "now"}`];
-}
-
-/** Why the motion is not the one that the velocities at the start suggest. */
-function motionAfter({ may_fly, paradox, mode, by_velocity }, friction) {
-  if (may_fly) return "wedged";
-  if (paradox) return ["", "no_motion", "two_motions"][paradox];
-  if (mode === by_velocity || mode === REST) return "";
-  return mode === SLIDING && friction < Infinity ? "no_grip" : "pulled";
-}
-
-/** What proves that the body rolls for ever, or ends its rolling. */
-function whyOf({ validity, ends, angle, ratio }, mode, friction) {
-  if (!Number.isNaN(ends))
-    return validity === EDGE ? "on_edge" : friction === Infinity ? "ends_pull" : "ends_grip";
-  if (mode === REST) return "stays";
-  return Number.isNaN(angle) || validity !== VALID || ratio === Infinity ? "rolls" : "proved";
-}
-
-/** Friction for a blow whose contact sticks, and for a slip that it stops not to start again. */
-function neededBy({ along, up }, { a, b, mass, inertia, theta }) {
-  const [h, lead] = support(theta, a, b), k2 = inertia ? inertia / mass : (a * a + b * b) / 4;
-  return Math.max(Math.abs(along) / up, Math.abs(h * lead) / (k2 + h * h));
+  return track;
 }

@@ -1,23 +1,34 @@
-// The player with a blow to move over the body: a table of motions, one for each place and
-// strength. It needs track.js, strip.js, player.js and charts.js.
+// The player with a blow to move over the body, computed in the page by the core, and a map of what
+// all blows do. It needs all modules before it.
 
 const STROBES = 8;
-const STEPS = { // of place and strength, by a key on the map
+const STEPS = { // in columns and rows of the map, by a key on it
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
-const PARTS = 8; // lines between two samples of the forces
+const CELLS = [48, 32]; // columns and rows of the map
+const COARSE = [8, 4, 2, 1]; // sizes of its cells, one after the other
+const BUDGETS = [10, 6]; // time of a frame up to which cells of the map are begun, and while
+// numbers change [ms]
 
 export class Explorer extends Player {
+  /** Start with the core; where WebAssembly is missing or forbidden, only the film plays. */
+  static async on(host, film) {
+    host.dataset.ready = "";
+    try {
+      film.core = await Core.of(await unzipped(film.wasm).arrayBuffer());
+    } catch {
+      return new Player(host, { ...film, waits: false }).box.classList.add("film-only");
+    }
+    return new this(host, film);
+  }
+
   begin() {
-    const { table, strips: [strip], first, shape } = this.film;
-    this.strip = strip;
-    this.lowest = shape;
-    table.numbers = unpacked(table.columns);
-    const most = table.F.at(-1), long = Math.max(strip.a, strip.b);
-    this.length = (F) => (0.5 + (1.7 * F) / most) * long;
-    this.strength = (length) => ((length / long - 0.5) / 1.7) * most;
-    this.choose(...first);
+    const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
+    strip.blow = null; // the hand shows it
+    Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
+    this.image = Object.assign(document.createElement("canvas"), { width, height });
+    this.renew();
   }
 
   build(shadow) {
@@ -32,26 +43,22 @@ export class Explorer extends Player {
     this.describe();
   }
 
-  /** Connect the sliders of the page. */
+  /** Connect the sliders of the page, each to an axis of the map. */
   hands(find) {
-    [this.where, this.hard] = [find(".where"), find(".hard")];
-    this.where.oninput = () => this.strike(Number(this.where.value), this.j);
-    this.hard.oninput = () => this.strike(this.i, Number(this.hard.value));
+    this.sliders = [find(".where"), find(".hard")];
+    this.sliders.forEach((slider, k) => {
+      slider.oninput = () => this.changeParts({ [k]: slider.value / slider.max });
+    });
   }
 
   /** Move on the map by keys. */
   key(event) {
-    const { key, target } = event, step = STEPS[key];
-    if (!step || target !== this.map || event.ctrlKey || event.altKey || event.metaKey)
+    const { key, target } = event, steps = STEPS[key];
+    if (!steps || target !== this.map || event.ctrlKey || event.altKey || event.metaKey)
       return super.key(event);
     event.preventDefault();
-    this.move(...step);
-  }
-
-  move(places, strengths) {
-    const { d, F } = this.film.table, within = (i, { length }) =>
-      Math.min(length - 1, Math.max(0, i));
-    this.strike(within(this.i + places, d), within(this.j + strengths, F));
+    const moved = [0, 1].filter((k) => steps[k]);
+    this.changeParts(Object.fromEntries(moved.map((k) => [k, this.part(k) + steps[k] / CELLS[k]])));
   }
 
   /** Call `moved` for a pointer from a press that `holds` accepts to its release, and for a tap. */
@@ -80,9 +87,68 @@ export class Explorer extends Player {
     canvas.addEventListener("pointercancel", let_go);
   }
 
+  // ---------------------------------------------------------------------------- the numbers
+
+  /** Take other numbers; they are computed in the next frame. */
+  change(numbers) {
+    Object.assign(this.given, numbers);
+    this.pause();
+    this.t = 0;
+    this.stale = true;
+    this.draw();
+  }
+
+  /** The number on an axis of the map, with its name and range. */
+  axis(k) {
+    return this.axes[k];
+  }
+
+  /** The part of an axis at which the given number is. */
+  part(k) {
+    const { name, least, most } = this.axis(k);
+    return Math.min(1, Math.max(0, (this.given[name] - least) / (most - least)));
+  }
+
+  /** Take the numbers at parts of the axes. */
+  changeParts(parts) {
+    this.change(Object.fromEntries(Object.entries(parts).map(([k, part]) => {
+      const { name, least, most, step } = this.axis(k), count = (part * (most - least)) / step;
+      return [name, within(this.axis(k), least + Math.round(count) * step)];
+    })));
+  }
+
+  /** The scene of given numbers, for the core: absent numbers are null. */
+  sceneOf({ d, F }) {
+    const { scene } = this.film;
+    return { ...scene, friction: scene.friction ?? Infinity, jx: 0, jz: -F, dx: d, dz: 0 };
+  }
+
+  /** Compute the motion of the given numbers; an error says why there is none. */
+  renew() {
+    const { strip, film: { end, core } } = this;
+    const { found, times, columns, track } = core.motion(this.sceneOf(this.given), end);
+    const { normal_force: N, friction_force: F } = columns, { weight } = strip;
+    const curve = (values) => curveOf(Array.from(times, (t, i) => [t, values[i] / weight]));
+    Object.assign(this, { found, times, columns, curves: [curve(N), curve(F)] });
+    strip.events = found.events;
+    this.take(strip, track);
+  }
+
+  // ------------------------------------------------------------------------------- the hand
+
+  /** How far the hand is from the point of a blow [m]. */
+  length(F) {
+    return (0.5 + (1.7 * F) / this.film.strongest) * Math.max(this.strip.a, this.strip.b);
+  }
+
+  strength(length) {
+    const { strip: { a, b }, film: { strongest } } = this;
+    return Math.max(0, length / Math.max(a, b) - 0.5) * (strongest / 1.7);
+  }
+
   /** Hand and point of the blow, in pixels. */
   hand(view) {
-    const { x, z } = this.strip.motion.at(0), { d, F } = this.blow();
+    const { x, z } = this.strip.motion.at(0), { d, F } = this.given;
     return { F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
   }
 
@@ -96,66 +162,25 @@ export class Explorer extends Player {
   dragged({ offsetX, offsetY }) {
     const { x, z } = this.strip.motion.at(0), { clientWidth } = this.box;
     const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
-    const { d, F } = this.film.table;
-    this.strike(this.placeOf(px - x, d), this.placeOf(this.strength(pz - z), F));
+    this.change({ d: within(this.axis(0), px - x), F: within(this.axis(1), this.strength(pz - z)) });
   }
 
   pointed({ offsetX, offsetY }) {
-    const { d, F } = this.film.table, { left, top, across, up } = cellsOf(this.map);
-    this.strike(this.cellAt((offsetX - left) / across, d.length),
-      this.cellAt(1 - (offsetY - top) / up, F.length));
+    const { left, top, across, up } = cellsOf(this.map);
+    this.changeParts([(offsetX - left) / across, 1 - (offsetY - top) / up]);
   }
 
-  /** The place in a table of the value nearest to one. */
-  placeOf(value, values) {
-    return values.reduce((best, each, i) =>
-      (Math.abs(each - value) < Math.abs(values[best] - value) ? i : best), 0);
-  }
-
-  /** The cell at a part of the map's width or height. */
-  cellAt(part, count) {
-    return Math.min(count - 1, Math.max(0, Math.floor(part * count)));
-  }
-
-  blow() {
-    const { d, F } = this.film.table;
-    return { d: d[this.i], F: F[this.j] };
-  }
-
-  choose(i, j) {
-    const { table } = this.film, n = i * table.F.length + j;
-    Object.assign(this, { i, j, n });
-    const columns = Object.fromEntries(Object.entries(table.numbers).map(([name, values]) =>
-      [name, values.subarray(table.ends[n - 1] ?? 0, table.ends[n])]));
-    this.take(this.strip, columns);
-    this.strip.events = table.events[n];
-    this.told = { headline: table.headlines[n], reasons: table.reasons[n],
-      name: table.names[table.outcomes[n]] };
-    const { weight } = this.strip, states = this.strip.motion.states(PARTS);
-    this.curves = ["N", "F"].map((name) => curveOf(states.map((at) => [at.t, at[name] / weight])));
-  }
-
-  /** Show the motion after a blow, from its beginning. */
-  strike(i, j) {
-    this.pause();
-    this.t = 0;
-    if (i !== this.i || j !== this.j) {
-      this.choose(i, j);
-      this.marks();
-      this.describe();
-    }
-    this.draw();
-  }
+  // ------------------------------------------------------------------------------ the words
 
   /** Write what happens, and speak it when another reason holds. */
   tell() {
-    const { headline, reasons } = this.told;
-    const told = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
+    const { headline, reasons } = this.found;
+    const inWords = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
     const events = this.strip.events.map(([t, kind]) =>
       this.say("event", { event: this.say(kind), t }));
     if (events.length > 8) events.splice(8, events.length, this.say("more", {
       count: events.length - 8 }));
-    const lines = [told(headline), told(reasons), events.join(", ")];
+    const lines = [inWords(headline), inWords(reasons), events.join(", ")];
     const said = this.box.querySelectorAll(".said p");
     lines.forEach((text, k) => { said[k].textContent = text; });
     const spoken = this.box.querySelector(".spoken");
@@ -173,22 +198,24 @@ export class Explorer extends Player {
 
   /** Write what the blow does, and speak where it is. */
   describe() {
-    const { d, F } = this.blow();
+    const { d, F } = this.given;
     this.tell();
-    [this.where.value, this.hard.value] = [this.i, this.j];
-    this.where.nextElementSibling.value = this.say("place", { d });
-    this.hard.nextElementSibling.value = this.say("strength", { F });
-    const [place, strength] = [this.say("place_spoken", { d }), this.say("strength_spoken", { F })];
-    this.where.setAttribute("aria-valuetext", place);
-    this.hard.setAttribute("aria-valuetext", strength);
-    this.map.setAttribute("aria-valuenow", this.n + 1);
-    this.map.setAttribute("aria-valuetext", `${place}, ${strength}: ${this.say(this.told.name)}`);
+    const spoken = [this.say("place_spoken", { d }), this.say("strength_spoken", { F })];
+    [this.say("place", { d }), this.say("strength", { F })].forEach((text, k) => {
+      const slider = this.sliders[k];
+      slider.value = this.part(k) * slider.max;
+      slider.setAttribute("aria-valuetext", spoken[k]);
+      slider.nextElementSibling.value = text;
+    });
+    this.map.setAttribute("aria-valuenow", Math.round(100 * this.part(0)));
+    this.map.setAttribute("aria-valuetext",
+      `${spoken.join(", ")}: ${this.say(this.found.first)}`);
     this.host.dataset.blow = `${d} ${F}`;
   }
 
   code() {
-    const { d, F } = this.blow();
-    return this.film.table.code.replace("{F}", F).replace("{d}", d);
+    const { d, F } = this.given;
+    return this.film.code.replace("{F}", F).replace("{d}", d);
   }
 
   async copy(button, lines) {
@@ -202,6 +229,62 @@ export class Explorer extends Player {
       getSelection().selectAllChildren(shown);
     }
   }
+
+  // ------------------------------------------------------------------------------- the map
+
+  /** Paint the map with more of its cells, and go on in later frames until it has all of them. */
+  paintMap(until) {
+    const done = this.fill(until), ink = sized(this.map, this.map.clientHeight);
+    const area = cellsOf(this.map), { left, top, across, up } = area;
+    ink.imageSmoothingEnabled = false;
+    ink.drawImage(this.image, left, top, across, up);
+    const [x, y] = [this.part(0), this.part(1)];
+    paintCursor(ink, this.colours, left + x * across - 5, top + (1 - y) * up - 5, 10, 10);
+    const ends = ({ least, most }) => [[0, least], [0.5, (least + most) / 2], [1, most]];
+    paintSides(ink, this.colours, area, ends(this.axis(0)), ends(this.axis(1)),
+      [this.labelOf(0), this.labelOf(1)]);
+    if (!done) this.filling ||= requestAnimationFrame(() => {
+      this.filling = 0; // a picture in this frame paints the map, too
+      if (!this.waiting) this.paintMap(performance.now() + BUDGETS[0]);
+    });
+  }
+
+  /** Colour cells of the map, coarse ones first, until a time; true if there are no more. */
+  fill(until) {
+    const axes = [this.axis(0), this.axis(1)], others = { ...this.given };
+    for (const { name } of axes) delete others[name];
+    const key = JSON.stringify([axes.map(({ name }) => name), others,
+      others.friction === Infinity, this.colours.paper]);
+    if (key !== this.mapped) Object.assign(this, { mapped: key, cells: cellsInTurn() });
+    const ink = this.image.getContext("2d");
+    while (performance.now() < until) {
+      const { value: cell, done } = this.cells.next();
+      if (done) return true;
+      const [i, j, size] = cell;
+      const numbers = axes.map(({ name, least, most }, k) =>
+        [name, least + ((k ? CELLS[1] - j - size / 2 : i + size / 2) / CELLS[k]) * (most - least)]);
+      const [colour, alpha] = this.colourOf({ ...this.given, ...Object.fromEntries(numbers) });
+      for (const [style, part] of [[this.colours.paper, 1], [colour, alpha]]) {
+        Object.assign(ink, { fillStyle: style, globalAlpha: part });
+        ink.fillRect(i, j, size, size);
+      }
+    }
+    return false;
+  }
+
+  /** Colour and its strength for a cell: that of the first outcome, whose name then is shown. */
+  colourOf(given) {
+    const { core, end, outcomes } = this.film, { first } = core.ask(this.sceneOf(given), end);
+    this.box.querySelector(`[data-outcome=${first}]`).hidden = false;
+    return [outcomes[first], 1];
+  }
+
+  /** The name of an axis of the map. */
+  labelOf(k) {
+    return this.say(["map_places", "map_strengths"][k]);
+  }
+
+  // ------------------------------------------------------------------------------- pictures
 
   /** Draw over the body: the path of the motion, and the hand. */
   over(ink) {
@@ -223,28 +306,26 @@ export class Explorer extends Player {
     text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
   }
 
-  paint() {
-    const { clientWidth: width } = this.box, [left, right, , top] = this.strip.window;
-    // The numbers of the ruler are 34 pixels high.
+  /** Let the picture fit a width: the numbers of the ruler are 34 pixels high. */
+  fit(width) {
+    const [left, right, , top] = this.strip.window;
     this.film.shape = Math.max(this.lowest, top / (right - left) + 34 / width);
-    super.paint();
-    if (!width || !this.map) return;
-    this.paintMap(sized(this.map, this.map.clientHeight));
-    this.paintPlot(sized(this.plot, this.plot.clientHeight));
   }
 
-  paintMap(ink) {
-    const { table } = this.film, { d, F } = table, area = cellsOf(this.map);
-    const [wide, tall] = [area.across / d.length, area.up / F.length];
-    const corner = (i, j) => [area.left + i * wide, area.top + area.up - (j + 1) * tall];
-    table.outcomes.forEach((code, n) => {
-      ink.fillStyle = table.colours[code];
-      ink.fillRect(...corner(Math.floor(n / F.length), n % F.length), wide + 0.7, tall + 0.7);
-    });
-    paintCursor(ink, this.colours, ...corner(this.i, this.j), wide, tall);
-    const along = (values, places) => places.map((i) => [(i + 0.5) / values.length, values[i]]);
-    paintSides(ink, this.colours, area, along(d, [0, (d.length - 1) / 2, d.length - 1]),
-      along(F, [0, F.length - 1]), [this.say("map_places"), this.say("map_strengths")]);
+  paint() {
+    const { clientWidth: width } = this.box, begun = performance.now();
+    if (!width || !this.map) return;
+    const budget = BUDGETS[this.stale ? 1 : 0];
+    if (this.stale) {
+      this.renew();
+      this.describe();
+      this.marks();
+      this.stale = false;
+    }
+    this.fit(width);
+    super.paint();
+    this.paintPlot(sized(this.plot, this.plot.clientHeight));
+    this.paintMap(Math.max(begun + budget, performance.now() + 1));
   }
 
   paintPlot(ink) {
@@ -258,4 +339,17 @@ export class Explorer extends Player {
       impacts: events.filter(([, kind]) => kind === "impact").map(([time]) => time),
     });
   }
+}
+
+/** A number in the range of an axis, rounded to a hundredth of its step or less. */
+function within({ least, most, step }, value) {
+  const decimals = Math.max(0, 2 - Math.floor(Math.log10(step)));
+  return Math.min(most, Math.max(least, Number(value.toFixed(decimals)))) + 0;
+}
+
+/** The cells of the map with their sizes, all large ones first. */
+function* cellsInTurn() {
+  for (const size of COARSE)
+    for (let j = 0; j < CELLS[1]; j += size)
+      for (let i = 0; i < CELLS[0]; i += size) yield [i, j, size];
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -10,15 +11,23 @@ from typing import Any, overload
 
 import numpy as np
 
-from .._ask.check import FloatArray, file_name, flag, positive, require_near
+from .. import _core
+from .._ask.check import file_name, flag, positive, require_near
 from .._ask.records import FieldsOnly, cached_property
-from .._ask.scene import Impulse, Scene, require_scene
+from .._ask.scene import Scene, require_scene
 from .._ask.words import filled
+from .._core import Outcome
 from .._motion.export.atomic import replacing
+from .._motion.trajectory import Trajectory
+from .._pictures.phase_map import COLOURS
 from . import blows
 from .page import core, document, escaped, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
+_CUT, _LEAST = (-3.0, 5.0), (-0.5, 1.5)  # largest and least range of the plot of forces [weights]
+# Of the map, by the first outcome; a body may stay in the air, too
+_COLOURS = {outcome.name: COLOURS[outcome] for outcome in Outcome}
+_COLOURS["IN_THE_AIR"] = COLOURS[Outcome.LOSES_CONTACT]
 
 
 def explore(
@@ -26,30 +35,29 @@ def explore(
     *,
     t_end: float | None = None,
     language: str | Mapping[str, str] = "en",
-    live: bool = False,
+    live: bool | None = None,
 ) -> Explorer:
     """Let the reader strike the body: where and how hard, by dragging a hand over it.
 
     The page shows the motion with its forces, its first outcome with the reason, its events, and a
-    map of the outcomes of all blows. It carries a table of them, 25 places by 16 strengths, so that
-    it works without a kernel and without a network; the nearest one is shown. A button copies the
-    lines of Python that simulate it. All of it can be used with a keyboard alone.
+    map of the outcomes of all blows. It carries the core, compiled to WebAssembly, and computes
+    each blow with the numbers of `simulate`: without a kernel and without a network. A button
+    copies the lines of Python that simulate it. All of it can be used with a keyboard alone. Where
+    a browser or a policy forbids WebAssembly, or this installation came without the file, it plays
+    the film of the first blow, and says so.
 
     Parameters
     ----------
     scene : Scene
         The body before the blow, on the ground or in the air; if it has an impulse, that is only
-        where the hand begins.
+        the first blow: its vertical part, and its place.
     t_end : float, optional
         How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); without
         it 12 times that root.
     language : str or mapping of str to str, optional
         "en" or "de"; or all texts, as `explore(scene).words` has them, with numbers in braces.
     live : bool, optional
-        Whether the page carries the core itself, compiled to WebAssembly (0.4 MB more), so that it
-        computes any blow between those of the table, too, with the numbers of `simulate`. Where a
-        browser or a policy forbids WebAssembly, or this installation came without the file, it
-        shows the nearest blow of its table, and says so.
+        Deprecated and without effect: every page carries the core.
 
     Returns
     -------
@@ -88,7 +96,11 @@ def explore(
     chosen = float(f"{12 * unit:.2g}") if t_end is None else positive("t_end", t_end)
     if chosen > longest:
         raise ValueError(f"t_end must be at most {longest:.6g} s for this body, got {t_end!r}")
-    return Explorer(scene, chosen, words(language), flag("live", live))
+    if live is not None:
+        flag("live", live)
+        text = "live has no effect and will be removed: every page carries the core"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+    return Explorer(scene, chosen, words(language))
 
 
 @dataclass(frozen=True)
@@ -103,24 +115,11 @@ class Explorer(FieldsOnly):
         How long each motion is followed [s].
     words : dict of str to str
         All texts of the page.
-    live : bool
-        Whether it carries the core itself, if this installation has it as WebAssembly.
     """
 
     scene: Scene
     t_end: float
     words: dict[str, str] = field(hash=False, repr=False, default_factory=lambda: words("en"))
-    live: bool = False
-
-    @cached_property
-    def distances(self) -> FloatArray:
-        """Places of the blows in the table, from the centre along the ground, (25,) [m]."""
-        return blows.ranges(self.scene)[0]
-
-    @cached_property
-    def strengths(self) -> FloatArray:
-        """Strengths of the blows in the table, downwards, (16,) [N s]."""
-        return blows.ranges(self.scene)[1]
 
     @overload
     def to_html(self) -> str: ...
@@ -157,61 +156,59 @@ class Explorer(FieldsOnly):
 
     @cached_property
     def _html(self) -> str:
-        return self._fragment("Live" if self.live else "Explorer")
+        return self._fragment("Explorer")
 
     def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
-        """Return the page's content; a class of a module may start it, with more data."""
-        strip = blows.view(self.scene)
+        """Return the page's content; a class of a module may start it, with more data.
+
+        It has the film of the first blow, for pages without the core.
+        """
+        axes = blows.axes(self.scene)
+        blow = blows.first_blow(self.scene, *axes)
+        motion = blows.struck(self.scene, blow, self.t_end)
+        strip = blows.strip(motion)
         left, right, bottom, top = strip["window"]
-        shape = (top - bottom) / (right - left)
-        at = self._first_blow()
-        table = blows.table(self.scene, self.t_end, self.distances, self.strengths)
         data = {
             "end": self.t_end,
             "fps": 60,
             "speed": 1,
             "decimals": 2,
-            "shape": shape,
+            "shape": (top - bottom) / (right - left),
             "follows": "edge",
             "waits": True,
             "strips": [strip],
-            "first": at,
             "words": self.words,
-            "table": table,
-            "cut": blows.CUT,
-            "least": blows.LEAST,
+            "cut": _CUT,
+            "least": _LEAST,
+            "wasm": core(),
+            "scene": blows.numbers(self.scene),
+            "axes": axes,
+            "given": {"d": blow.dx, "F": -blow.jz},
+            "strongest": axes[1]["most"],
+            "outcomes": _COLOURS,
+            "code": blows.code(self.scene, self.t_end),
             **more,
         }
-        if self.live:
-            data["live"] = {"wasm": core(), "scene": blows.numbers(self.scene)}
-        blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
-        motion = blows.struck(self.scene, blow, self.t_end)
-        motion = motion.sol(np.linspace(0.0, motion.t_end, 61))
+        shown = motion.sol(np.linspace(0.0, motion.t_end, 61))
         text = filled(self.words, "poster", F=-blow.jz, d=blow.dx)
-        return fragment(data, [motion], text, starts, self._markup(table), module)
+        return fragment(data, [shown], text, starts, self._markup(motion), module)
 
-    def _markup(self, table: dict[str, Any]) -> str:
-        """Return the parts around the player with their texts."""
-        texts, count = escaped(self.words), self.strengths.size
+    def _markup(self, motion: Trajectory) -> str:
+        """Return the parts around the player with their texts, and what happens in the film."""
+        texts = escaped(self.words)
+        _, headline, effect, reasons = _core.describe(motion.scene.core, motion._solution)
+        sentences = {"headline": headline, "reasons": [effect, *reasons]}
+        texts |= {
+            name: " ".join(filled(texts, key, 3, **numbers) for key, numbers in each)
+            for name, each in sentences.items()
+        }
         texts |= {
             "player": "{player}",
             "card": blows.card(self.scene, texts),
-            "last_place": str(self.distances.size - 1),
-            "last_strength": str(count - 1),
-            "blows": str(self.distances.size * count),
-            "nearest": filled(texts, "nearest", places=self.distances.size, strengths=count),
             "legend": "".join(
-                f'<span><i style="background: {table["colours"][code]}"></i>'
-                f"{texts[blows.NAMES[code]]}</span>\n"
-                for code in sorted(set(table["outcomes"]))
+                f'<span data-outcome="{name}" hidden><i style="background: {colour}"></i>'
+                f"{texts[name]}</span>\n"
+                for name, colour in _COLOURS.items()
             ),
         }
         return packaged("explorer.html").format(**texts)
-
-    def _first_blow(self) -> tuple[int, int]:
-        """Return place and strength of the first blow: the scene's own, or a strong one."""
-        own: Any = self.scene.impulse
-        d, F = (own.dx, -own.jz) if own is not None else (0.75 * self.distances[-1], 0.0)
-        if F <= 0:
-            F = self.strengths[self.strengths.size // 2]
-        return int(np.argmin(abs(self.distances - d))), int(np.argmin(abs(self.strengths - F)))

@@ -22,8 +22,7 @@ from .._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 _FILM = ("track", "strip", "player")
 SCRIPTS = {  # modules and style sheets by the class that starts the page
     "Player": (_FILM, ("player",)),
-    "Explorer": ((*_FILM, "charts", "explorer"), ("player", "explorer")),
-    "Live": ((*_FILM, "charts", "explorer", "core", "live"), ("player", "explorer")),
+    "Explorer": ((*_FILM, "charts", "core", "explorer"), ("player", "explorer")),
 }
 LIGHT = {
     "paper": "#ffffff", "ink": INK, "blue": BLUE, "orange": ORANGE, "grey": GREY, "earth": EARTH,
@@ -51,7 +50,7 @@ def fragment(
     JavaScript with the class that `starts` names, if the package has no such class. No key leaves
     the `div`, and JupyterLab finds its mark there: a notebook would take keys as its own.
     """
-    scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Live"])
+    scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")
     data = data | {
         "colours": {"light": LIGHT, "dark": DARK},

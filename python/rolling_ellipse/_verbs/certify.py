@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from .. import _core
 from .._ask.printing import Listed
-from .._ask.reason import proved, reason_of_proof
+from .._ask.reason import in_words
 from .._ask.records import FieldsOnly, find_late, trusted
 from .._ask.scene import Scene, require_scene
 from .._core import Validity
+
+_VALIDITIES = tuple(Validity)  # members, at the places of their codes
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +82,10 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    return trusted(Certificate, {"_scene": scene, **proved(require_scene(scene))})
+    core = require_scene(scene).core
+    found = _core.certify(core)
+    validity = _VALIDITIES[found["validity"]]
+    return trusted(Certificate, {"_core": core, **found, "validity": validity})
 
 
-find_late(Certificate, reason=lambda proof: reason_of_proof(vars(proof)["_scene"], vars(proof)))
+find_late(Certificate, reason=lambda proof: in_words(_core.describe_proof(vars(proof)["_core"])))
