@@ -16,61 +16,62 @@ struct Start : InitialState {
     Continuation next;
 };
 
+void append(Sentences& to, const Sentences& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+// What the blow does to the contact.
 Sentence effect_of(const Scene& scene, const Start& start) {
     const std::pair along{"along", start.reaction_x}, up{"up", start.reaction_z};
     if (start.slip_removed != 0) return {"stopped", {along, up, {"energy", start.energy_lost}}};
-    if (!scene.impulse) return {"no_blow"};
-    if (!start.touching) return {"in_the_air"};
-    if (start.state.mode == Mode::flight) return {"thrown"};
+    if (!scene.impulse) return {"no_blow", {}};
+    if (!start.touching) return {"in_the_air", {}};
+    if (start.state.mode == Mode::flight) return {"thrown", {}};
     if (start.state.mode != Mode::sliding)
         return {"sticks", {along, up, {"omega", start.free_omega}}};
     if (std::isinf(scene.friction)) return {"lifted", {along, up}};
     return {"slides_off", {along, up, {"mu", scene.friction}}};
 }
 
-// Why the motion is not the one that the velocities of the start suggest; none if it is.
-std::optional<Sentence> surprise(const Scene& scene, const Start& start) {
+// Why the motion is not the one that the velocities of the start suggest; empty if it is.
+Sentences surprise(const Scene& scene, const Start& start) {
     const Continuation& next = start.next;
-    if (next.may_fly) return Sentence{"wedged"};
-    if (next.paradox == Painleve::no_motion) return Sentence{"no_motion"};
-    if (next.paradox == Painleve::two_motions) return Sentence{"two_motions"};
+    if (next.may_fly) return {{"wedged", {}}};
+    if (next.paradox == Painleve::no_motion) return {{"no_motion", {}}};
+    if (next.paradox == Painleve::two_motions) return {{"two_motions", {}}};
     if (next.mode == start.state.mode || next.mode == Mode::rest) return {};
-    if (next.mode != Mode::sliding || std::isinf(scene.friction)) return Sentence{"pulled"};
-    return Sentence{"no_grip", {{"mu", scene.friction}}};
-}
-
-void add_surprise(Sentences& to, const Scene& scene, const Start& start) {
-    if (const auto sentence = surprise(scene, start)) to.push_back(*sentence);
+    if (next.mode != Mode::sliding || std::isinf(scene.friction)) return {{"pulled", {}}};
+    return {{"no_grip", {{"mu", scene.friction}}}};
 }
 
 Sentence proof_of(const Scene& scene, const Start& start, const Certificate& proof) {
-    const auto in_degrees = [](double angle) {
-        return std::pair{"angle", angle == 0 ? 0.0 : angle * (180 / pi)};
-    };
+    const auto& normal = proof.smallest_normal_force;
+    const auto& needed = proof.largest_friction_needed;
+    const double at =
+        proof.end.angle ? *proof.end.angle : proof.smallest_normal_force_angle.value_or(0.0);
+    const std::pair angle{"angle", at == 0 ? 0.0 : at * (180 / pi)};
     if (proof.end.angle) {
-        const auto angle = in_degrees(*proof.end.angle);
         if (proof.end.validity == Validity::edge) return {"on_edge", {angle}};
         if (std::isinf(scene.friction)) return {"ends_pull", {angle}};
         return {"ends_grip", {angle, {"mu", scene.friction}}};
     }
-    const auto& normal = proof.smallest_normal_force;
-    const auto& needed = proof.largest_friction_needed;
     if (start.next.mode == Mode::rest) return {"stays", {{"N", *normal}, {"ratio", *needed}}};
-    const auto& angle = proof.smallest_normal_force_angle;
-    if (!angle || proof.end.validity != Validity::valid || *needed == infinity) return {"rolls"};
-    return {"proved", {{"N", *normal}, in_degrees(*angle), {"ratio", *needed}}};
+    const bool known = proof.smallest_normal_force_angle && *needed < infinity;
+    if (!known || proof.end.validity != Validity::valid) return {"rolls", {}};
+    return {"proved", {{"N", *normal}, angle, {"ratio", *needed}}};
 }
 
 // What is proved of rolling, by which friction, and the friction that the blow needs.
-void add_proof(Sentences& to, const Scene& scene, const Start& start, const Certificate& proof) {
-    to.push_back(proof_of(scene, start, proof));
-    if (to.back().key != "ends_grip") {
-        to.push_back(std::isinf(scene.friction) ? Sentence{"unlimited"}
-                                                : Sentence{"friction", {{"mu", scene.friction}}});
+Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certificate& proof) {
+    Sentences found{proof_of(scene, start, proof)};
+    if (std::isinf(scene.friction)) {
+        found.push_back({"unlimited", {}});
+    } else if (found.back().first != "ends_grip") {
+        found.push_back({"friction", {{"mu", scene.friction}}});
     }
-    if (effect_of(scene, start).key != "sticks") return;
     const double needed = sticking_friction(scene);
-    if (needed > 0 && needed < infinity) to.push_back({"blow_needs", {{"needed", needed}}});
+    if (effect_of(scene, start).first == "sticks" && needed > 0 && needed < infinity) {
+        found.push_back({"blow_needs", {{"needed", needed}}});
+    }
+    return found;
 }
 
 // The scene that continues on the ground after an event.
@@ -94,18 +95,18 @@ std::optional<Outcome> outcome_of(EventKind kind) {
 
 // How the rolling of the scene ends that began at a time, and when, if the motion shows it.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
+    const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
     for (const Event& each : solution.motion.events) {
         const auto end = outcome_of(each.kind);
-        if (!end || each.t <= begin) continue;
-        return {name(first == Outcome::jams ? first : *end) + "_at", {{"t", each.t}}};
+        if (end && each.t > begin) return at(first == Outcome::jams ? first : *end, each.t);
     }
     const bool ends =
         first == Outcome::slips || first == Outcome::loses_contact || first == Outcome::jams;
     if (solution.model != Model::contact && first != Outcome::edge) {
         const double until = valid_until(scene, solution);
-        if (until < infinity) return {name(ends ? first : Outcome::slips) + "_at", {{"t", until}}};
+        if (until < infinity) return at(ends ? first : Outcome::slips, until);
     }
-    return {name(first) + (ends ? "_later" : "_now")};
+    return {name(first) + (ends ? "_later" : "_now"), {}};
 }
 
 const char* key_of_early_end(Ending ending) {
@@ -118,7 +119,7 @@ const char* key_of_early_end(Ending ending) {
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint) {
     const std::vector<Event>& events = solution.motion.events;
     Start start(scene);
-    Description found{{}, {}, effect_of(scene, start), {}};
+    Description found{{}, {}, {effect_of(scene, start)}};
     Scene ground = scene;
     double landed = 0.0;
     const bool flies = !start.touching;
@@ -127,7 +128,7 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
             return each.after.mode != Mode::flight;
         });
         if (landing == events.end()) {
-            found.headline.push_back({events.empty() ? "flies_on" : "bounces"});
+            found.headline.push_back({events.empty() ? "flies_on" : "bounces", {}});
             return found;
         }
         landed = landing->t;
@@ -137,12 +138,12 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
     }
     const Outcome first = outcome(ground, checkpoint);
     found.first = first;
-    add_surprise(found.reasons, ground, start);
+    append(found.reasons, surprise(ground, start));
     if (start.holds()) {
         found.headline.push_back(end_of_rolling(scene, solution, first, landed));
-        add_proof(found.reasons, ground, start, certify(ground));
+        append(found.reasons, proof_of_rolling(ground, start, certify(ground)));
     } else {
-        found.headline.push_back({name(first) + (flies ? "_then" : "_now")});
+        found.headline.push_back({name(first) + (flies ? "_then" : "_now"), {}});
     }
     const Ending ending = solution.ending;
     const double end = solution.followed_until;
@@ -156,26 +157,24 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
 Sentences describe_start(const Scene& scene) {
     const Start start(scene);
     Sentences found{effect_of(scene, start)};
-    add_surprise(found, scene, start);
-    // Of a paradox the surprise has described the motion.
-    if (!start.next.may_fly && start.next.paradox == Painleve::determined) {
-        found.push_back({name(start.next.mode) + "_starts"});
-    }
+    append(found, surprise(scene, start));
+    const bool is_described = start.next.may_fly || start.next.paradox != Painleve::determined;
+    if (!is_described) found.push_back({name(start.next.mode) + "_starts", {}});
     return found;
 }
 
 Sentences describe_proof(const Scene& scene) {
     const Start start(scene);
     const Certificate proof = certify(scene);
-    Sentences found{effect_of(scene, start)};
-    if (found.back().key != "stopped") found.clear();
+    Sentences found;
+    if (start.slip_removed != 0) found.push_back(effect_of(scene, start));
     if (proof.end.validity == Validity::no_proof) {
-        found.push_back({"no_proof"});
+        found.push_back({"no_proof", {}});
         return found;
     }
-    if (!start.holds()) found.push_back({"cannot_start"});
-    add_surprise(found, scene, start);
-    if (start.holds()) add_proof(found, scene, start, proof);
+    if (!start.holds()) found.push_back({"cannot_start", {}});
+    append(found, surprise(scene, start));
+    if (start.holds()) append(found, proof_of_rolling(scene, start, proof));
     return found;
 }
 

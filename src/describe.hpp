@@ -12,18 +12,14 @@
 namespace rolling_ellipse {
 
 // The key of a text in the tables of words, and the numbers for its braces by their names.
-struct Sentence {
-    std::string key;
-    std::vector<std::pair<const char*, double>> numbers = {};
-};
+using Sentence = std::pair<std::string, std::vector<std::pair<const char*, double>>>;
 using Sentences = std::vector<Sentence>;
 
 struct Description {
     // The first outcome, after the flight of a body in the air; none if it stays there.
     std::optional<Outcome> first;
     Sentences headline;  // what happens
-    Sentence effect;     // what the blow does to the contact
-    Sentences reasons;   // why it happens
+    Sentences reasons;   // what the blow does to the contact, then why the motion is as it is
 };
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint);

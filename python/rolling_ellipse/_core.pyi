@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from ._ask import settings as _settings
 from ._ask.check import FloatArray
+from ._ask.words import Sentence as _Sentence
 
 _Two = tuple[FloatArray, FloatArray]
 _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
 _Tables = dict[str, npt.NDArray[Any]]
 _Columns = list[FloatArray]  # of arguments, as `broadcast` returns them
-_Sentence = tuple[str, dict[str, float]]  # a key of the words, and the numbers for its text
 _Passages = tuple[list[FloatArray], list[str]]  # times of each value, and why some are missing
 
 class _Named:
@@ -34,11 +34,6 @@ class Restitution(enum.Enum):
     STRONGE = 0
     POISSON = 1
     NEWTON = 2
-
-class Painleve(enum.Enum):
-    DETERMINED = 0
-    NO_MOTION = 1
-    TWO_MOTIONS = 2
 
 class Validity(_Named, enum.Enum):
     VALID = 0
@@ -127,8 +122,7 @@ def event_state(scene: Scene, row: Sequence[float], after: bool) -> dict[str, fl
 def certify(scene: Scene) -> dict[str, Any]: ...
 def describe(
     scene: Scene, solution: Solution
-) -> tuple[Outcome | None, list[_Sentence], _Sentence, list[_Sentence]]: ...
-def describe_start(scene: Scene) -> list[_Sentence]: ...
+) -> tuple[Outcome | None, list[_Sentence], list[_Sentence]]: ...
 def describe_proof(scene: Scene) -> list[_Sentence]: ...
 def validate_length(name: str, value: float) -> None: ...
 def classify_array(n: int, arguments: _Columns, workers: int) -> npt.NDArray[np.int8]: ...

@@ -55,28 +55,14 @@ py::dict certificate(const Scene& scene) {
     return fields;
 }
 
-// Sentences as their keys, each with the dictionary of its numbers.
-py::tuple in_python(const Sentence& sentence) {
-    py::dict numbers;
-    for (const auto& [name, value] : sentence.numbers) numbers[name] = value;
-    return py::make_tuple(sentence.key, numbers);
-}
-
-py::list in_python(const Sentences& sentences) {
-    py::list found;
-    for (const Sentence& each : sentences) found.append(in_python(each));
-    return found;
-}
-
-// The first outcome of a motion, headline, effect of the blow, and reasons.
+// The first outcome of a motion, headline and reasons.
 py::tuple description(const Scene& scene, const Solution& solution) {
     Description found;
     {
         const GilRelease release;
         found = describe(scene, solution, SignalWatch());
     }
-    return py::make_tuple(found.first, in_python(found.headline), in_python(found.effect),
-                          in_python(found.reasons));
+    return py::make_tuple(found.first, found.headline, found.reasons);
 }
 
 Body valid_body(double a, double b, double gravity, std::optional<double> gyration2) {
@@ -142,12 +128,7 @@ void bind_certificate(py::module_& m) {
           "scene"_a, "theta"_a);
     m.def("certify", certificate, "scene"_a);
     m.def("describe", description, "scene"_a, "solution"_a);
-    m.def(
-        "describe_start", [](const Scene& scene) { return in_python(describe_start(scene)); },
-        "scene"_a);
-    m.def(
-        "describe_proof", [](const Scene& scene) { return in_python(describe_proof(scene)); },
-        "scene"_a);
+    m.def("describe_proof", describe_proof, "scene"_a);
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },
         "scene"_a);

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "bindings/bindings.hpp"
+#include "describe.hpp"
 #include "multipliers/steps.hpp"
-#include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
@@ -64,17 +64,12 @@ struct SceneMaker {
     }
 };
 
-// The state just after the blow, the mode that forces allow, and facts about both.
+// The state just after the blow, the mode that forces allow, and sentences about both.
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
-    const Continuation next = first_continuation(scene, start.state);
     py::dict fields = numbers_of(start);
-    fields["touching"] = start.touching;
-    fields["slip_removed"] = start.slip_removed;
-    fields["mode_by_velocity"] = start.state.mode;
-    fields["mode"] = next.mode;
-    fields["paradox"] = next.paradox;
-    fields["may_fly"] = next.may_fly;
+    fields["mode"] = first_continuation(scene, start.state).mode;
+    fields["reason"] = describe_start(scene);
     return fields;
 }
 
@@ -101,7 +96,6 @@ Settings settings_of(const py::dict& fields) {
 
 void bind_scene(py::module_& m) {
     bind_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.");
-    bind_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?");
     bind_class<Impulse>(m, "Impulse")
         .def(py::init([](double jx, double jz, double dx, double dz) {
                  const Impulse impulse{jx, jz, dx, dz};

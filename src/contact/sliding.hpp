@@ -108,9 +108,6 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
 // it (c < 0) it has two if B < 0, flight and a slide with N = c/B > 0.
 enum class Painleve { determined, no_motion, two_motions };
 
-template <>
-inline constexpr std::array names<Painleve>{"DETERMINED", "NO_MOTION", "TWO_MOTIONS"};
-
 // How a body continues that touches the ground and does not move into it.
 struct Continuation {
     Mode mode;

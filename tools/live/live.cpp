@@ -59,7 +59,7 @@ std::string json(const Sentence& sentence) {
     const auto number = [](const auto& each) {
         return json(std::string(each.first)) + ':' + json(each.second);
     };
-    return '[' + json(sentence.key) + ',' + json("{}", sentence.numbers, number) + ']';
+    return '[' + json(sentence.first) + ',' + json("{}", sentence.second, number) + ']';
 }
 
 template <class Values>
@@ -69,10 +69,8 @@ std::string json(const Values& values) {
 
 std::string json_of_description() {
     const Description found = describe(scene, solution, [] {});
-    Sentences reasons{found.effect};
-    reasons.insert(reasons.end(), found.reasons.begin(), found.reasons.end());
     return ",\"first\":" + json(found.first ? name(*found.first) : "IN_THE_AIR") +
-           ",\"headline\":" + json(found.headline) + ",\"reasons\":" + json(reasons);
+           ",\"headline\":" + json(found.headline) + ",\"reasons\":" + json(found.reasons);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .words import filled, table
+from .words import Sentence, joined, table
 
 if TYPE_CHECKING:
     from .impulse import Impulse
@@ -13,10 +13,9 @@ if TYPE_CHECKING:
 _ASCII = str.maketrans({"θ": "theta", "°": " deg", "é": "e", "−": "-", "∞": "inf"})
 
 
-def in_words(sentences: Iterable[tuple[str, dict[str, float]]]) -> str:
-    """Return sentences, each a key with its numbers, in letters that every console has."""
-    texts = (filled(table("en"), key, 6, **numbers) for key, numbers in sentences)
-    return " ".join(texts).translate(_ASCII)
+def in_words(sentences: Sequence[Sentence]) -> str:
+    """Return the sentences of keys with their numbers, in letters that every console has."""
+    return joined(table("en"), sentences, 6).translate(_ASCII)
 
 
 def blow_in_words(impulse: Impulse) -> str:

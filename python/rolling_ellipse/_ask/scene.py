@@ -243,7 +243,7 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
-        return InitialState(**known, reason=in_words(_core.describe_start(self.core)))
+        return InitialState(**known, reason=in_words(start["reason"]))
 
     to_mjcf, to_sdf = to_mjcf, to_sdf
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 
 LANGUAGES = ("en", "de")
 BRACES = re.compile(r"\{(\w+)\}")
+
+Sentence = tuple[str, list[tuple[str, float]]]  # a key, and the numbers for the braces of its text
 
 
 @cache
@@ -25,6 +27,11 @@ def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
     """Return a number as the language writes it."""
     text = f"{value:.{digits}g}".replace("inf", "∞").replace("-", "−")
     return text.replace(".", words["decimal"])
+
+
+def joined(words: Mapping[str, str], sentences: Sequence[Sentence], digits: int) -> str:
+    """Return sentences as text, each a key with its numbers."""
+    return " ".join(filled(words, key, digits, **dict(numbers)) for key, numbers in sentences)
 
 
 def filled(words: Mapping[str, str], key: str, digits: int = 4, **values: float) -> str:

@@ -71,7 +71,7 @@ def from_arrays(
     return kind(
         **fields_of(samples.samples(times)), scene=body, model="contact",
         method=GIVEN, status=COMPLETED, message=COMPLETED.value, settings=DEFAULTS,
-        reason=in_words([("from_arrays", {})]),
+        reason=in_words([("from_arrays", [])]),
         valid_until=math.inf, t_end=float(times[-1]), span=float(times[-1]), kept_events=(),
     )  # fmt: skip
 

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 # For files, pickles and `sol`, not for people
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# What a blow does to the contact that only `initial_state` explains
+# Effects of a blow, which come first among reasons, that `initial_state` alone explains
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
@@ -420,9 +420,9 @@ def _require_counts(stats: Any) -> None:
 def _reason(self: Trajectory) -> str:
     """What happens in a motion, and then what is proved of rolling."""
     if self.start is not None:
-        return in_words([("off_constraints", {})])
-    _, headline, effect, reasons = _core.describe(self.scene.core, self._solution)
-    return in_words([*headline, *([effect] if effect[0] not in _NOT_NEW else []), *reasons])
+        return in_words([("off_constraints", [])])
+    _, headline, reasons = _core.describe(self.scene.core, self._solution)
+    return in_words(headline + reasons[reasons[0][0] in _NOT_NEW :])
 
 
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:

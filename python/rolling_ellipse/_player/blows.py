@@ -50,11 +50,8 @@ def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) ->
     d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
     if F <= 0:
         F = (strength["least"] + strength["most"]) / 2
-    force, at = (
-        float(np.clip(value, axis["least"], axis["most"]))
-        for value, axis in ((F, strength), (d, place))
-    )
-    return Impulse.press(force, at)
+    force = np.clip(F, strength["least"], strength["most"])
+    return Impulse.press(float(force), float(np.clip(d, place["least"], place["most"])))
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:

@@ -2,6 +2,7 @@
 // all blows do. It needs all modules before it.
 
 const STROBES = 8;
+const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // ends of the plot of forces, and furthest [weights]
 const STEPS = { // in columns and rows of the map, by a key on it
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
@@ -190,8 +191,7 @@ export class Explorer extends Player {
     const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
     this.plot.setAttribute("aria-label", this.say("forces_spoken", { t: this.strip.motion.end,
       N_least: N.least, N_most: N.most, F_least: shear.least, F_most: shear.most }));
-    const { cut } = this.film;
-    const isCut = Math.max(N.most, shear.most) > cut[1] || shear.least < cut[0];
+    const isCut = Math.max(N.most, shear.most) > HIGH[1] || shear.least < LOW[1];
     this.plot.nextElementSibling.textContent = this.say("forces")
       + (isCut ? this.say("forces_cut", { peak }) : "");
   }
@@ -329,12 +329,11 @@ export class Explorer extends Player {
   }
 
   paintPlot(ink) {
-    const { curves, film: { cut, least }, strip: { events } } = this;
-    const [N, F] = curves;
+    const { curves: [N, F], strip: { events } } = this;
     paintCurves(ink, this.colours, this.plot, [{ ...N, name: "N", colour: "blue", dash: [] },
       { ...F, name: "F", colour: "orange", dash: [5, 3] }], {
-      high: Math.min(cut[1], Math.max(least[1], N.most, F.most)),
-      low: Math.max(cut[0], Math.min(least[0], N.least, F.least)),
+      high: Math.min(HIGH[1], Math.max(HIGH[0], N.most, F.most)),
+      low: Math.max(LOW[1], Math.min(LOW[0], N.least, F.least)),
       end: this.film.end, now: this.t,
       impacts: events.filter(([, kind]) => kind === "impact").map(([time]) => time),
     });

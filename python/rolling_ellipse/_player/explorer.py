@@ -15,7 +15,7 @@ from .. import _core
 from .._ask.check import file_name, flag, positive, require_near
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene, require_scene
-from .._ask.words import filled
+from .._ask.words import filled, joined
 from .._core import Outcome
 from .._motion.export.atomic import replacing
 from .._motion.trajectory import Trajectory
@@ -24,7 +24,7 @@ from . import blows
 from .page import core, document, escaped, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
-_CUT, _LEAST = (-3.0, 5.0), (-0.5, 1.5)  # largest and least range of the plot of forces [weights]
+_FILM = {"fps": 60, "speed": 1, "decimals": 2, "follows": "edge", "waits": True}
 # Of the map, by the first outcome; a body may stay in the air, too
 _COLOURS = {outcome.name: COLOURS[outcome] for outcome in Outcome}
 _COLOURS["IN_THE_AIR"] = COLOURS[Outcome.LOSES_CONTACT]
@@ -169,17 +169,11 @@ class Explorer(FieldsOnly):
         strip = blows.strip(motion)
         left, right, bottom, top = strip["window"]
         data = {
+            **_FILM,
             "end": self.t_end,
-            "fps": 60,
-            "speed": 1,
-            "decimals": 2,
             "shape": (top - bottom) / (right - left),
-            "follows": "edge",
-            "waits": True,
             "strips": [strip],
             "words": self.words,
-            "cut": _CUT,
-            "least": _LEAST,
             "wasm": core(),
             "scene": blows.numbers(self.scene),
             "axes": axes,
@@ -196,14 +190,11 @@ class Explorer(FieldsOnly):
     def _markup(self, motion: Trajectory) -> str:
         """Return the parts around the player with their texts, and what happens in the film."""
         texts = escaped(self.words)
-        _, headline, effect, reasons = _core.describe(motion.scene.core, motion._solution)
-        sentences = {"headline": headline, "reasons": [effect, *reasons]}
-        texts |= {
-            name: " ".join(filled(texts, key, 3, **numbers) for key, numbers in each)
-            for name, each in sentences.items()
-        }
+        _, headline, reasons = _core.describe(motion.scene.core, motion._solution)
         texts |= {
             "player": "{player}",
+            "headline": joined(texts, headline, 3),
+            "reasons": joined(texts, reasons, 3),
             "card": blows.card(self.scene, texts),
             "legend": "".join(
                 f'<span data-outcome="{name}" hidden><i style="background: {colour}"></i>'
