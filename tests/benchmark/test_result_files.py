@@ -4,6 +4,7 @@ import os
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from oracles.limits import files_of_at_most
 from oracles.simulators import write_states
