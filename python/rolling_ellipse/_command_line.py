@@ -11,7 +11,6 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import wraps
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -28,6 +27,7 @@ from ._core import Mode, Validity
 from ._motion.trajectory import Trajectory
 from ._verbs.certify import certify
 from ._verbs.flow import period
+from .benchmark._run import require_simulator
 from .benchmark.adapters import ENGINES
 
 SCENE_OPTIONS = {
@@ -203,7 +203,6 @@ def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
     """Run an engine or a function; what goes wrong in it is a sentence with its place."""
     mine = _function(name)
 
-    @wraps(mine)
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
         try:
             return mine(problem, times, setting)
@@ -235,6 +234,7 @@ def _function(name: str) -> Any:
         raise _failed(module, error) from error
     if not callable(simulator):
         raise ValueError(f"run must name a function of {module}, got {function!r}")
+    require_simulator("run", simulator)
     return simulator
 
 

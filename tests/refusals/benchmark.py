@@ -133,7 +133,7 @@ def _rows() -> Iterator[Row]:
     yield "run", told("run", "exact")
     yield "run", told("run", "json:nothing")
     yield "run", told("run", "../x:f")
-    yield "mine", told("run", "json:dumps")
+    yield "run", told("run", "json:dumps")
     yield RuntimeError, told("run", f"{__name__}:broken")
     yield RuntimeError, module_that_fails
     yield "states", told("run", f"{__name__}:forgets")

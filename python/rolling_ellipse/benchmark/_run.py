@@ -59,7 +59,7 @@ def run(
     >>> from rolling_ellipse import benchmark
     >>> benchmark.run(lambda problem, times, step: problem.exact(times), problems="rest.lie")
     """
-    _require_simulator(mine)
+    require_simulator("mine", mine)
     tolerance, settings = positive("tolerance", tolerance), list(ladder)
     able = {one.id for one in able_to(tags)}
     scores = []
@@ -79,7 +79,7 @@ def run(
     return Scores(scores)
 
 
-def _require_simulator(mine: Any) -> None:
+def require_simulator(name: str, mine: Any) -> None:
     """Raise TypeError if an object cannot be called with a problem, times and a setting."""
     given = shown(mine)
     if callable(mine):
@@ -90,7 +90,7 @@ def _require_simulator(mine: Any) -> None:
             return
         except TypeError:
             given = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
-    raise TypeError(f"mine must be a function of (problem, times, setting), got {given}")
+    raise TypeError(f"{name} must be a function of (problem, times, setting), got {given}")
 
 
 def score(
