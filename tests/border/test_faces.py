@@ -250,8 +250,8 @@ def test_a_row_says_what_an_impact_did() -> None:
     row = repr(hit)
     assert row.startswith(f"<Event IMPACT at t = {hit.t:.9g} s, theta = ")
     after = hit.state_after
-    told = f"{after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
-    assert row.endswith(f", {told}, {after.energy_lost:.4g} J lost>")
+    impulse = f"{after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+    assert row.endswith(f", {impulse}, {after.energy_lost:.4g} J lost>")
 
 
 @pytest.mark.parametrize(("count", "rows"), [(0, 0), (1, 1), (16, 16), (17, 17), (18, 17)])

@@ -3,24 +3,12 @@
 import math
 from typing import Any
 
+import judge_films
 import numpy as np
 import pytest
-from judge_films import (
-    EXAMPLE,
-    FREE,
-    GUESS,
-    KINDS,
-    SIGMA,
-    TIMES,
-    WRONG,
-    example,
-    largest,
-    noisy,
-    right,
-    wild,
-)
+from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours
+from rolling_ellipse._verbs.films.judgement import neighbours  # fits show them by chance only
 
 TRACKS = ("x", "z", "theta")
 
@@ -36,13 +24,13 @@ def fitted(tracks: dict[str, Any], **how: Any) -> Fit:
 @pytest.mark.parametrize("seed", [6, 7, 14, 23])
 def test_the_minimum_is_not_above_that_below_the_truth(seed: int) -> None:
     """These seeds led to other minima, 9 to 30 higher."""
-    row = example(seed)
+    row = judge_films.example(seed)
     assert row["over"] < 0.1 and "cannot tell" not in row["message"]
 
 
 @pytest.mark.parametrize("seed", [8, 10, 24, 33])
 def test_wild_quarter_turns_lead_to_no_other_minimum(seed: int) -> None:
-    row = wild(seed)
+    row = judge_films.wild(seed)
     assert row["over"] < 0.1 and "4 of them beyond 5 sigma" in row["message"]
 
 
@@ -62,18 +50,18 @@ def test_unknowns_take_their_share_of_the_data_of_a_track() -> None:
     """Two of five frames of a flight fix its start. The mean of sigma^2, of 3 degrees of freedom
     in each of 80 tracks, is known to sqrt(2/240); all five frames would make it 3/5."""
     scene, t = Scene(0.035, 0.025, z=2.0), np.arange(1, 6) / 60
-    seen, found = simulate(scene, t), []
+    seen, shares = simulate(scene, t), []
     for seed in range(40):
         random = np.random.default_rng(seed)
         x, z = (track + random.normal(0, 1e-3, t.size) for track in (seen.x, seen.z))
         fit = fit_motion(t, x, z, scene=scene, free=("x", "x_dot", "z", "z_dot"))
-        found.append((fit.sigma[:2] / 1e-3) ** 2)
-    assert abs(np.mean(found) - 1) < 4 * math.sqrt(2 / 240)
+        shares.append((fit.sigma[:2] / 1e-3) ** 2)
+    assert abs(np.mean(shares) - 1) < 4 * math.sqrt(2 / 240)
     assert "too few frames side by side to judge the fit" in fit.message
 
 
 def test_outliers_do_not_make_noise() -> None:
-    """The median residual of n numbers tells sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
+    """The median residual of n numbers gives sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
     (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. Bounded at four deviations of
     the mean of three tracks; the median itself would be lower by a third."""
     t = np.linspace(0.00125, 0.4, 320)
@@ -89,7 +77,7 @@ def test_outliers_do_not_make_noise() -> None:
 @pytest.mark.parametrize("seed", range(len(KINDS)))
 def test_right_films_are_called_right(seed: int) -> None:
     """T of a right film is a normal number or less: 3.5 once in 4000 tracks, 1 in 300 here."""
-    row = right(seed)
+    row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())
 
@@ -97,7 +85,7 @@ def test_right_films_are_called_right(seed: int) -> None:
 def test_an_error_reaches_the_other_minima() -> None:
     """Friction above all needs fits nearly as well, with a restitution that is 4.4 of its
     linearised errors away."""
-    assert abs(right(6)["off"]["restitution"]) < 3
+    assert abs(judge_films.right(6)["off"]["restitution"]) < 3
 
 
 @pytest.mark.parametrize(
@@ -121,7 +109,8 @@ def test_a_body_in_thick_air_fits_by_no_reading() -> None:
     """Its residuals are alike: errors grow by more than the root of 3, that of c = 1/2."""
     tracks = film(11)
     fit = fitted(tracks | WRONG["in air"][0](tracks, None), sigma=None)
-    assert "does not fit" in fit.message and "it fits" not in fit.message and largest(fit) > 3.5
+    assert "does not fit" in fit.message and "it fits" not in fit.message
+    assert judge_films.largest(fit) > 3.5
 
 
 def test_a_track_that_stands_still_or_jumps_is_beyond_any_tracker() -> None:
@@ -133,17 +122,6 @@ def test_a_track_that_stands_still_or_jumps_is_beyond_any_tracker() -> None:
     assert "z is off by" in fitted(tracks, sigma=None).message
     many = fitted(tracks, loss="soft_l1").message
     assert "of 80 values of z are beyond 5 sigma; the scene does not fit" in many
-
-
-def test_what_a_film_cannot_tell_keeps_its_guess() -> None:
-    for free, scene in (
-        (("omega", "mass"), EXAMPLE.replace(mass=3.0, omega=10.0)),
-        (("omega", "restitution"), EXAMPLE.replace(restitution=0.3, omega=10.0)),
-    ):
-        tracks = {name: track[:20] for name, track in film(4).items()}  # before the impact
-        fit = fit_motion(**tracks, scene=scene, free=free, sigma=SIGMA)
-        assert getattr(fit.scene, free[1]) == pytest.approx(getattr(scene, free[1]), abs=1e-8)
-        assert math.isinf(fit.errors[free[1]]) and abs(fit.scene.omega - 12) < 1
 
 
 def test_missing_frames_part_neighbours() -> None:

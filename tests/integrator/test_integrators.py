@@ -114,11 +114,9 @@ def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
 
 # no motion near the separatrix, where errors are amplified without bound
 TOLERANCE_SCENES = {
-    "rolling": rl.scenes.rolling,
-    "rocking": rl.scenes.rocking,
-    "standing": STANDING,
+    "rolling": rl.scenes.rolling, "rocking": rl.scenes.rocking, "standing": STANDING,
     "thin": rl.scenes.thin,
-}
+}  # fmt: skip
 TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
 
 
@@ -290,14 +288,11 @@ def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
 @pytest.mark.parametrize(
     "scene",
     [
-        Scene(2.0, 1.0, x=4.0),
-        Scene(2.0, 1.0, theta=math.pi / 2),
-        Scene(0.7, 1.9, theta=math.pi / 2),
-        Scene(0.7, 1.9),
-        Scene(1.0, 1.0, theta=0.3),
+        Scene(2.0, 1.0, x=4.0), Scene(2.0, 1.0, theta=math.pi / 2),
+        Scene(0.7, 1.9, theta=math.pi / 2), Scene(0.7, 1.9), Scene(1.0, 1.0, theta=0.3),
     ],
     ids=["flat", "tip", "a < b flat", "a < b tip", "circle"],
-)
+)  # fmt: skip
 @each_method
 def test_what_rests_stays(name: str, scene: Scene) -> None:
     """A resting body stays at rest with every method: pi/2 is a double only within rounding, and

@@ -7,7 +7,7 @@ each step, which reference tables judge. A loss is divided by its limit:
   (x from the start), over 1e-2 or ten rtol;
 * the constraints: the largest of |f2|, |f3| over the long semi-axis and |f4|, over 1e-3;
 * the motion: the difference of the angles at the end of a step and of the exact motion from its
-  beginning, over 0.1 rad or ten rtol of the size of theta.
+  start, over 0.1 rad or ten rtol of the size of theta.
 """
 
 import math

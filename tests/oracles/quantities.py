@@ -94,6 +94,4 @@ def quantities(value: Any) -> list[Any]:
 
 def plain(values: list[float]) -> list[Any]:
     """Arrays without units that have attributes with the names of units."""
-    return [
-        np.array(values).view(Astropy), Labelled(np.array(values), units="m"), NetCDF(values),
-    ]  # fmt: skip
+    return [np.array(values).view(Astropy), Labelled(np.array(values), units="m"), NetCDF(values)]
