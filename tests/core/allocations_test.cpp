@@ -53,13 +53,6 @@ void check(bool holds, const char* what, long once, long twice) {
 
 Scene scene_of(double omega) { return ellipse(0.1, omega, 0.9); }
 
-Scene sliding() {
-    Scene scene = scene_of(0.0);
-    scene.friction = 0.1;
-    scene.x_dot = 3.0;
-    return scene;
-}
-
 struct Job {
     const char* name;
     Scene scene;
@@ -89,7 +82,7 @@ const Job sampled[] = {
     {"exact on a slope", on_slope(scene_of(3.0), 0.1),
      settings_of(Model::automatic, Method::automatic), 9.0},
     {"a jump", scene_of(5.5), settings_of(Model::contact, Method::automatic), 0.8},
-    {"a slide", sliding(), settings_of(Model::contact, Method::automatic), 1.0},
+    {"a slide", skidding(0.1, 0.0, 3.0, 0.1), settings_of(Model::contact, Method::automatic), 1.0},
 };
 
 // The knots and the dense output are in two vectors that double their size: twice as many steps

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <cstring>
-#include <stdexcept>
 #include <vector>
 
 #include "motions.hpp"
@@ -87,19 +85,12 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// A body that rolls, slides, leaves the ground and lands.
-Scene jumping() {
-    Scene scene = ellipse(0.0, 5.5, 0.3);
-    scene.restitution = 0.5;
-    return scene;
-}
-
-Settings automatic() { return settings_of(Model::automatic, Method::automatic); }
-
-// Each segment gives coordinates, states and flow samples of the same motion.
+// Each segment gives coordinates, states and flow samples of the same motion: of a body that rolls,
+// slides, leaves the ground and lands.
 void every_segment_knows_every_kind_of_sample() {
-    const Scene scene = jumping();
-    const Solution solution = simulate(scene, automatic(), 3.0, [] {});
+    const Scene scene = bouncing(0.0, 5.5, 0.3);
+    const Settings settings = settings_of(Model::automatic, Method::automatic);
+    const Solution solution = simulate(scene, settings, 3.0, [] {});
     CHECK(solution.model == Model::contact && solution.ending == Ending::completed);
     CHECK(solution.motion.segments.size() > 3);
     const Sampler sampler(solution.motion, 301);
@@ -126,42 +117,11 @@ void every_segment_knows_every_kind_of_sample() {
     }
 }
 
-void a_checkpoint_that_throws_ends_the_work() {
-    int asked = 0;
-    const auto stop = [&asked] {
-        if (++asked == 2) throw std::runtime_error("enough");
-    };
-    bool stopped = false;
-    try {
-        simulate(jumping(), automatic(), 3.0, stop);
-    } catch (const std::runtime_error&) {
-        stopped = true;
-    }
-    CHECK(stopped && asked == 2);
-}
-
-void wrong_numbers_are_refused() {
-    Scene scene = jumping();
-    scene.friction = -1;
-    std::string message;
-    try {
-        validate(scene);
-    } catch (const std::invalid_argument& error) {
-        message = error.what();
-    }
-    CHECK(message.rfind("friction must be", 0) == 0);
-}
-
 void needed_friction_of_special_forces() {
     CHECK(friction_needed({2.0, -1.0}) == 0.5);
     CHECK(friction_needed({0.0, 0.0}) == 0);
     CHECK(friction_needed({0.0, 1e-300}) == infinity);
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
-}
-
-template <class Each>
-bool same_bits(const std::vector<Each>& one, const std::vector<Each>& other) {
-    return std::memcmp(one.data(), other.data(), one.size() * sizeof(Each)) == 0;
 }
 
 // Places, series and times of one motion by the kernel of each level.
@@ -216,8 +176,6 @@ int main() {
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
     every_segment_knows_every_kind_of_sample();
-    a_checkpoint_that_throws_ends_the_work();
-    wrong_numbers_are_refused();
     needed_friction_of_special_forces();
     every_vector_level_has_the_same_bits();
     return verdict(failures);

@@ -117,12 +117,6 @@ Scene separatrix(double beside) {
     return scene;
 }
 
-Scene skidding(double theta, double omega, double x_dot, double friction) {
-    Scene scene = ellipse(theta, omega, friction);
-    scene.x_dot = x_dot;
-    return scene;
-}
-
 Scene falling(double friction, double restitution) {
     Scene scene = ellipse(0.5, 0.75, friction);
     scene.z = 2.5;
@@ -132,21 +126,14 @@ Scene falling(double friction, double restitution) {
 }
 
 Scene flat_fall() {
-    Scene scene = ellipse(0.0, 0.0, 0.5);
+    Scene scene = bouncing(0.0, 0.0, 0.5);
     scene.z = 1.5;
-    scene.restitution = 0.5;
     return scene;
 }
 
 Scene struck(const Impulse& impulse, double friction) {
     Scene scene = ellipse(0.0, 0.0, friction);
     scene.impulse = impulse;
-    return scene;
-}
-
-Scene bouncing(double omega) {
-    Scene scene = ellipse(0.0, omega, 0.3);
-    scene.restitution = 0.5;
     return scene;
 }
 
@@ -203,7 +190,7 @@ std::vector<Asked> motions() {
         {"no-friction", skidding(0.4, 1.0, 0.5, 0.0)},
         {"jam", skidding(0.9, -0.5, 5.0, 1.6), 1.0},
         {"jump", ellipse(0.0, 5.2, 1.0)},
-        {"bounces", bouncing(5.5)},
+        {"bounces", bouncing(0.0, 5.5, 0.3)},
         {"drop", falling(1.0, 0.0)},
         {"bounce", falling(0.0, 1.0)},
         {"settles", falling(0.4, 0.5), 6.0},

@@ -1,8 +1,10 @@
-// A scene and settings for the test programs.
+// Scenes and settings for the test programs.
 #pragma once
 
 #include <cstdio>
+#include <cstring>
 #include <optional>
+#include <vector>
 
 #include "geometry/ellipse.hpp"
 #include "scene/scene.hpp"
@@ -24,6 +26,18 @@ inline Scene ellipse(double theta, double omega, double friction = infinity) {
     return scene;
 }
 
+inline Scene skidding(double theta, double omega, double x_dot, double friction) {
+    Scene scene = ellipse(theta, omega, friction);
+    scene.x_dot = x_dot;
+    return scene;
+}
+
+inline Scene bouncing(double theta, double omega, double friction) {
+    Scene scene = ellipse(theta, omega, friction);
+    scene.restitution = 0.5;
+    return scene;
+}
+
 inline Settings settings_of(Model model, Method method, std::optional<double> step = {},
                             Stabilization stabilization = Stabilization::projection) {
     Settings settings{};
@@ -41,6 +55,12 @@ inline Settings settings_of(Model model, Method method, std::optional<double> st
 inline Scene on_slope(Scene scene, double slope) {
     scene.slope = slope;
     return scene;
+}
+
+template <class Each>
+bool same_bits(const std::vector<Each>& one, const std::vector<Each>& other) {
+    return one.size() == other.size() &&
+           std::memcmp(one.data(), other.data(), one.size() * sizeof(Each)) == 0;
 }
 
 // Prints the verdict of a test program and returns its exit code.

@@ -26,9 +26,9 @@ from oracles.golden import (
     outcomes_through_python,
     printed,
 )  # fmt: skip
-from oracles.margins import told
 from oracles.paths import ROOT
 
+Build = tuple[str, list[Record]]  # name of the C library, and records
 LIBRARY, RECORDS = golden()
 MOTIONS = [name for name in blocks(RECORDS, "motion")]
 OTHERS = ("body", "rolled", "thresholds", "classify")
@@ -68,11 +68,8 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def second(build: Path) -> tuple[str, list[Record]]:
+def second(build: Path) -> Build:
     return printed(build / "golden")
-
-
-# ------------------------------------------------------------------------------- programs
 
 
 @pytest.mark.parametrize("program", ["core_test", "threads_test", "allocations_test", "lanes_test"])
@@ -82,25 +79,20 @@ def test_all_holds(program: str, build: Path) -> None:
     assert "all hold" in run(str(build / program))
 
 
-# ----------------------------------------------------------------------------------- bits
-
-
-def test_the_second_build_has_the_committed_bits(second: tuple[str, list[Record]]) -> None:
+def test_the_second_build_has_the_committed_bits(second: Build) -> None:
     library, records = second
     worst, where = difference(RECORDS, records)
-    told(library, worst, where)
+    print(library, worst, where)
     assert worst <= (0.0 if library == LIBRARY else OTHER_LIBRARY), where
 
 
-def test_another_rounding_of_the_c_library_stays_within_the_bound(
-    build: Path, second: tuple[str, list[Record]]
-) -> None:
+def test_another_rounding_of_the_c_library_stays_in_the_bound(build: Path, second: Build) -> None:
     """glibc without fused multiply-add rounds as on a processor that has none."""
     library, records = printed(build / "golden", GLIBC_TUNABLES="glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4")
     if library == second[0]:
         pytest.skip(f"{library} has one rounding only")
     worst, where = difference(second[1], records)
-    told(library, worst, where)
+    print(library, worst, where)
     assert 0 < worst <= OTHER_LIBRARY, where
 
 
@@ -110,19 +102,15 @@ def test_every_model_method_and_event_has_its_bits() -> None:
     assert stabilizations == {"none", "baumgarte", "projection", "projection+energy", "ggl"}
     solutions = {each.words for each in RECORDS if each.kind == "solution"}
     assert {model for model, _ in solutions} == {"rolling", "multipliers", "contact"}
-    assert {method for _, method in solutions} == {
-        "exact", "dop853", "dopri5", "rk4", "gauss", "radau",
-    }  # fmt: skip
+    methods = {method for _, method in solutions}
+    assert methods == {"exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
     events = {each.words[0] for each in RECORDS if each.kind == "event"}
     assert events == {"slip", "stick", "reverse", "lift_off", "impact", "rest", "jam"}
 
 
-# --------------------------------------------------------------------- the installed extension
-
-
 def compare(mine: list[Record], through_python: list[Record], bound: float) -> None:
     worst, where = difference(mine, through_python)
-    told(worst, where)
+    print(worst, where)
     assert worst <= bound, where
 
 
@@ -134,22 +122,18 @@ def test_motions_through_python(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_motions_of_the_installed_extension_have_the_bits_of_the_second_build(
-    name: str, second: tuple[str, list[Record]]
+def test_motions_of_the_extension_have_the_bits_of_the_second_build(
+    name: str, second: Build
 ) -> None:
     motion = [each for each in blocks(second[1], "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), 0.0)
 
 
-def test_bodies_of_the_installed_extension_have_the_bits_of_the_second_build(
-    second: tuple[str, list[Record]],
-) -> None:
+def test_bodies_of_the_installed_extension_have_the_bits_of_the_second_build(second: Build) -> None:
     bodies = [each for each in second[1] if each.kind in ("body", "rolled")]
     compare(bodies, bodies_through_python(bodies), 0.0)
 
 
-def test_outcomes_of_the_installed_extension_are_those_of_the_second_build(
-    second: tuple[str, list[Record]],
-) -> None:
+def test_outcomes_of_the_installed_extension_are_those_of_the_second_build(second: Build) -> None:
     outcomes = [each for each in second[1] if each.kind in ("thresholds", "classify")]
     compare(outcomes, list(outcomes_through_python(outcomes)), 0.0)

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -28,11 +27,7 @@ constexpr int rounds = 8;
 using Numbers = std::vector<double>;
 using Work = std::function<Numbers()>;
 
-Scene scene_of(double omega) {
-    Scene scene = ellipse(0.1, omega, 0.6);
-    scene.restitution = 0.5;
-    return scene;
-}
+Scene scene_of(double omega) { return bouncing(0.1, omega, 0.6); }
 
 Settings loose(Model model, Method method, std::optional<double> step = {}) {
     Settings settings = settings_of(model, method, step);
@@ -121,11 +116,6 @@ std::vector<Work> works() {
         all.push_back([=] { return solved(scene_of(omega), ggl); });
     }
     return all;
-}
-
-bool same_bits(const Numbers& one, const Numbers& other) {
-    return one.size() == other.size() &&
-           std::memcmp(one.data(), other.data(), one.size() * sizeof(double)) == 0;
 }
 
 }  // namespace
