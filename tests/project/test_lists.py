@@ -87,7 +87,7 @@ PLACES = {
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
     "a kind of stretch on a slope": r"\bRepeat\b",
     "a model": r"Model::multipliers|SteppedMultipliers|model == \"multipliers\"",
-    "a field of Scene": r"\bScene \w+\{\}|scene_of\(\)",
+    "a field of Scene": r"\bScene \w+\{\}|level_scene\(",
 }
 UNTESTED = {"rolling resistance", "another shape than the ellipse", "a way out of Python"}
 
