@@ -91,10 +91,16 @@ class ContactRun {
         state_.mode = next_.mode;
         if (is_stuck()) return stop_stuck();
         if (next_.grazes) return graze();
-        if (next_.mode == Mode::rest) return rest();
-        if (next_.mode == Mode::sliding) return slide();
-        if (next_.mode == Mode::flight) return fly();
-        scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
+        switch (next_.mode) {
+            case Mode::rest:
+                return rest();
+            case Mode::rolling:
+                return scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
+            case Mode::sliding:
+                return slide();
+            case Mode::flight:
+                return fly();
+        }
     }
 
     void rest() {
