@@ -79,6 +79,10 @@ class Scene(NamedTuple):
     x_dot: Any = None
     z_dot: Any = None
 
+    def given(self) -> dict[str, Any]:
+        """The inputs that are given, by their names."""
+        return {name: value for name, value in self._asdict().items() if value is not None}
+
 
 class Row(NamedTuple):
     """The kind of an event and the mpfr values just after it."""
@@ -572,7 +576,7 @@ class Follower:
             self.arc = standing(body, self.state, mpfr(0))
             assert self.arc is not None
             if self.arc.mode == SLIDING and self.arc.side == arc.side:
-                raise Undecided("a slip that ends and goes on")
+                raise Undecided("a slip that ends and continues")
             self.happens({ROLLING: "stick", SLIDING: "reverse", FLIGHT: "lift_off"}[self.arc.mode])
         elif what == "slip":
             if gmpy2.is_finite(body.mu):
@@ -590,22 +594,28 @@ class Follower:
         else:
             raise Undecided("a jam on the way")
 
+    def push(self, touch: Touch, hit: Hit) -> None:
+        """Apply the impulses of a collision to the velocities."""
+        s = self.state
+        omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / self.body.k2
+        x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
+        z_dot = touch.o * omega if hit.rebound == 0 else s.z_dot + hit.away
+        self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=z_dot)
+
     def hit(self) -> None:
         """Apply an impact, and choose the arc after it."""
         body, s = self.body, self.state
         touch = body.touch(s.phi)
-        s = s._replace(z=touch.h)
+        self.state = s = s._replace(z=touch.h)
         v, u = s.x_dot - touch.h * s.omega, s.z_dot - touch.o * s.omega
         hit = collide(body, touch, v, u, self.law)
         before = self.energy()
-        omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / body.k2
-        x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
-        z_dot = touch.o * omega if hit.rebound == 0 else s.z_dot + hit.away
-        self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=z_dot)
+        self.push(touch, hit)
         work = (hit.along * (v + hit.slip) + hit.away * (u + hit.rebound)) / 2
         self.energy_error += abs(self.energy() - before - work)
         natural = gmpy2.sqrt(body.g * min(body.a, body.b))
-        flat = body.down == 0 and touch.o == 0 and omega == 0 and x_dot == 0
+        moving = self.state.omega != 0 or self.state.x_dot != 0
+        flat = body.down == 0 and touch.o == 0 and not moving
         if hit.rebound > 0 and not flat and hit.rebound < self.least_rebound * natural:
             self.lost = self.t
             return

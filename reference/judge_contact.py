@@ -60,7 +60,8 @@ from contact_motion import (
     support,
 )  # fmt: skip
 from gmpy2 import mpfr
-from series import ROUNDING, Road, log_uniform
+from runs import ROUNDING, add_record, log_uniform, read_records
+from series import Road
 
 # Precisions: the first computes the units, the next the values, the third checks the values.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
@@ -150,22 +151,14 @@ class Judge(Follower):
             u = mpfr(0)
         if u > 0:
             return Arc(FLIGHT, zeros=1)
-        if u == 0 and not unlimited:
-            self.state = s._replace(z_dot=touch.o * s.omega)
-            return standing(body, self.state, v)
-        if u == 0 and v * touch.coupling < 0:
+        if u == 0 and (not unlimited or v * touch.coupling < 0):
             self.state = s._replace(z_dot=touch.o * s.omega)
             return standing(body, self.state, v)
         restitution, body.e = body.e, mpfr(0)
         hit = collide(body, touch, v, u)
         body.e = restitution
-        omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / body.k2
-        x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
-        if hit.rebound > 0:
-            self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=s.z_dot + hit.away)
-            return Arc(FLIGHT, zeros=1)
-        self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=touch.o * omega)
-        return standing(body, self.state, hit.slip)
+        self.push(touch, hit)
+        return Arc(FLIGHT, zeros=1) if hit.rebound > 0 else standing(body, self.state, hit.slip)
 
     def step(self, end: Any) -> None:
         """Keep the state at the start of the step."""
@@ -419,12 +412,12 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
 
 def in_words(case: Case) -> rl.Scene:
     """The scene of a case as the package's `Scene`."""
-    given = {name: value for name, value in case.scene._asdict().items() if value is not None}
+    given = case.scene.given()
     if case.blow:
         given["impulse"] = rl.Impulse(
             jx=case.blow.jx, jz=case.blow.jz, dx=case.blow.dx, dz=case.blow.dz
         )
-    return rl.Scene(given.pop("a"), given.pop("b"), **given)
+    return rl.Scene(**given)
 
 
 class Found(NamedTuple):
@@ -526,7 +519,7 @@ def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, An
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
     record: dict[str, Any] = {"number": number, "family": case.family}
-    record["inputs"] = {k: v for k, v in case.scene._asdict().items() if v is not None}
+    record["inputs"] = case.scene.given()
     if case.blow:
         record["blow"] = list(case.blow)
     signal.signal(signal.SIGALRM, too_slow)
@@ -953,17 +946,6 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
 # ---------------------------------------------------------------- the run
 
 
-def read(file: Path) -> list[dict[str, Any]]:
-    """Records of a run so far; a line that was not finished is left out."""
-    records = []
-    for line in file.read_text().splitlines() if file.exists() else []:
-        try:
-            records.append(json.loads(line))
-        except json.JSONDecodeError:
-            continue
-    return records
-
-
 def aspect(record: dict[str, Any]) -> str:
     """The power of ten of a/b, or "round"."""
     a, b = record["inputs"]["a"], record["inputs"]["b"]
@@ -1036,13 +1018,13 @@ def main() -> None:
         print(json.dumps(record, indent=1))
         return
     file = given.file or Path(f"judged-{given.seed}.jsonl")
-    records = read(file)
+    records = read_records(file)
     done = {one["number"] for one in records}
     tasks = [(given.seed, i, given.family) for i in range(given.scenes) if i not in done]
     began = time.perf_counter()
-    with multiprocessing.Pool(given.workers) as pool, file.open("a") as out:
+    with multiprocessing.Pool(given.workers) as pool:
         for count, record in enumerate(pool.imap_unordered(judge, tasks), 1):
-            print(json.dumps(record), file=out, flush=True)
+            add_record(file, record)
             records.append(record)
             if count % 25 == 0:
                 spent = time.perf_counter() - began

@@ -14,7 +14,6 @@ wild     the same with 4 of 80 angles off by a quarter turn, by "soft_l1" and "c
 """
 
 import argparse
-import json
 import math
 import time
 from collections import Counter
@@ -25,6 +24,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse._motion.inputs import value_of
+from runs import add_record, read_records
 
 Tracks = dict[str, Any]
 TRACKS = ("x", "z", "theta")
@@ -246,15 +246,13 @@ def main() -> None:
     parser.add_argument("--study", choices=STUDIES, default="right")
     parser.add_argument("--films", type=int, default=0, help="seeds from 0")
     options = parser.parse_args()
-    lines = options.file.read_text().splitlines() if options.file.exists() else []
-    rows = [json.loads(line) for line in lines]
+    rows = read_records(options.file)
     done = {(row["study"], row["seed"]) for row in rows}
     for seed in range(options.films):
         if (options.study, seed) not in done:
             row = {"study": options.study, "seed": seed, **STUDIES[options.study](seed)}
             rows.append(row)
-            with options.file.open("a") as file:
-                file.write(json.dumps(row) + "\n")
+            add_record(options.file, row)
     report(rows)
 
 

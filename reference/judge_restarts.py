@@ -33,7 +33,6 @@ than a linear effect is beside a tie.
 """
 
 import argparse
-import json
 import math
 import warnings
 from collections import Counter, defaultdict
@@ -46,6 +45,7 @@ import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import _core
 from rolling_ellipse._ask.settings import DEFAULTS
+from runs import add_record, read_records
 
 Values = dict[str, Any]
 Finding = tuple[str, str, float, str]  # label, verdict, distance, and the case to be pasted
@@ -387,15 +387,12 @@ def main() -> None:
     asked.add_argument("--file", type=Path, help="results, a line a block of scenes")
     given = asked.parse_args()
     warnings.simplefilter("ignore", rl.ValidityWarning)
-    kept = given.file.read_text().splitlines() if given.file and given.file.exists() else []
-    records = [json.loads(line) for line in kept]
+    records = read_records(given.file)
     done = {(row["study"], row["seed"], row["block"]) for row in records}
     for block in range(-(-given.scenes // BLOCK)):
         if (given.study, given.seed, block) not in done:
             records.append(judge(given.study, given.seed, block))
-            if given.file:
-                with given.file.open("a") as file:
-                    print(json.dumps(records[-1]), file=file)
+            add_record(given.file, records[-1])
     report(records)
 
 

@@ -33,7 +33,8 @@ from typing import Any, NamedTuple
 import gmpy2
 from contact_motion import VALUES, Body, Row, Scene, Undecided, follow, peak_of_friction
 from gmpy2 import mpfr
-from series import ROUNDING, Road, log_uniform, write_table
+from runs import ROUNDING, log_uniform, write_table
+from series import Road
 
 TABLE = Path(__file__).with_name("contact_reference.csv")
 AGREEMENT = 1e-34

@@ -33,7 +33,8 @@ from typing import NamedTuple
 
 import mpmath
 from make_slope_reference import COLUMNS, Answer, Scene, follow, units
-from series import Road, log_uniform, write_table
+from runs import log_uniform, write_table
+from series import Road
 
 TABLE = Path(__file__).with_name("gentle_reference.csv")
 TABLE_ROAD = Road(64, 54, 1e-54)

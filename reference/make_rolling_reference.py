@@ -34,23 +34,22 @@ a Taylor series agreed within 5e-7. Where unit_theta would exceed 1e-4 the time 
 inputs do not fix the answer.
 """
 
-import csv
 import math
 import random
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import mpmath
 from mpmath import mp, mpf
+from runs import ROUNDING, log_uniform, write_table
 
 TABLE = Path(__file__).with_name("rolling_reference.csv")
 COLUMNS = ["kind", "a", "b", "gyration2", "gravity", "theta0", "omega0", "t"]
 COLUMNS += ["theta", "omega", "x", "unit_theta", "unit_omega", "unit_x"]
 DIGITS = 80
 AGREEMENT = mpf("1e-42")
-ROUNDING = 2.2e-16
 UNIT_LIMIT = 1e-4
 
 
@@ -327,11 +326,6 @@ class Body(NamedTuple):
         return float(mp.sqrt(2 * self.gravity * (level - mp.sqrt(h2)) / d))
 
 
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
 def random_body(rng: random.Random, kind: str) -> Body:
     """A body of 0.01 to 100 m, a third with a < b, mostly a uniform disc and on Earth."""
     a = log_uniform(rng, 0.01, 100.0)
@@ -456,25 +450,22 @@ def make_row(rng: random.Random, kind: str, rule: Rule, check: Rule) -> tuple[li
     return [kind, *inputs, *outputs, *(f"{value:.6e}" for value in unit)], disagreement
 
 
-def make_table(seed: int) -> None:
-    """Write the table."""
+def made(seed: int) -> Iterator[list[str]]:
+    """The lines of the scenes of all kinds."""
     rng = random.Random(seed)
     rule = gauss_rule(50, 2.0)
     with mp.extradps(10):
         check = gauss_rule(54, 1.6)
     worst = mpf(0)
-    with TABLE.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
-        for kind, count in KINDS.items():
-            for _ in range(count):
-                row, disagreement = make_row(rng, kind, rule, check)
-                worst = max(worst, disagreement)
-                table.writerow(row)
-            print(f"{kind}: {count}, worst disagreement so far {mp.nstr(worst, 2)}", flush=True)
+    for kind, count in KINDS.items():
+        for _ in range(count):
+            row, disagreement = make_row(rng, kind, rule, check)
+            worst = max(worst, disagreement)
+            yield row
+        print(f"{kind}: {count}, worst disagreement so far {mp.nstr(worst, 2)}", flush=True)
 
 
 if __name__ == "__main__":
     print(f"mpmath {mpmath.__version__}")
     with mp.workdps(DIGITS):
-        make_table(seed=20240229)
+        write_table(TABLE, COLUMNS, made(seed=20240229))

@@ -18,7 +18,7 @@ from pathlib import Path
 from contact_motion import Scene, Undecided, follow
 from gmpy2 import mpfr
 from make_contact_reference import TABLE, UNIT_ROAD
-from series import write_table
+from runs import write_table
 
 DERIVATIVES = Path(__file__).with_name("sensitivity_reference.csv")
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")

@@ -52,7 +52,8 @@ from typing import Any, NamedTuple
 
 import gmpy2
 from gmpy2 import mpfr
-from series import ROUNDING, Road, log_uniform, product, quotient, square_root, value, write_table
+from runs import ROUNDING, log_uniform, write_table
+from series import Road, product, quotient, square_root, value
 
 TABLE = Path(__file__).with_name("slope_reference.csv")
 LEVEL_TABLE = Path(__file__).with_name("rolling_reference.csv")

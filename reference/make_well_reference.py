@@ -32,7 +32,8 @@ from typing import Any, NamedTuple
 import gmpy2
 from gmpy2 import mpfr
 from make_slope_reference import Rolling, Scene, Series, State
-from series import ROUNDING, Road, log_uniform, value, write_table
+from runs import ROUNDING, log_uniform, write_table
+from series import Road, value
 
 TABLE = Path(__file__).with_name("well_reference.csv")
 TABLE_ROAD = Road(80, 60, 1e-60)

@@ -1,20 +1,11 @@
-"""Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
+"""Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99)."""
 
-The module also draws random numbers with a uniform logarithm and writes tables.
-"""
-
-import csv
 import math
-import random
-from collections.abc import Iterable
 from operator import mul
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import gmpy2
 from gmpy2 import mpfr
-
-ROUNDING = 2.2e-16
 
 
 class Road(NamedTuple):
@@ -53,16 +44,3 @@ def value(coefficients: list[Any], step: Any) -> Any:
     for coefficient in reversed(coefficients):
         total = total * step + coefficient
     return total
-
-
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
-def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> None:
-    """Write a table as CSV; each line is written when it is computed."""
-    with path.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(columns)
-        table.writerows(lines)

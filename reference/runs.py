@@ -1,0 +1,39 @@
+"""What the makers of tables and the judges of random scenes share: drawn numbers and files."""
+
+import csv
+import json
+import math
+import random
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+ROUNDING = 2.2e-16
+
+
+def log_uniform(rng: random.Random, low: float, high: float) -> float:
+    """A number whose logarithm is uniform."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> None:
+    """Write a table as CSV; each line is written when it is computed."""
+    with path.open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(columns)
+        table.writerows(lines)
+
+
+def read_records(file: Path | None) -> list[dict[str, Any]]:
+    """Records of a run so far; a line that was not finished is left out."""
+    if file is None or not file.exists():
+        return []
+    lines = file.read_text().splitlines(keepends=True)
+    return [json.loads(line) for line in lines if line.endswith("\n")]
+
+
+def add_record(file: Path | None, record: dict[str, Any]) -> None:
+    """Append a record to the file of a run, if it has one."""
+    if file is not None:
+        with file.open("a") as out:
+            print(json.dumps(record), file=out)
