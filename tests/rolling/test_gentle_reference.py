@@ -5,15 +5,13 @@ has a unit: what a relative change of 2.2e-16 of each input, and of 2.2e-16 rad 
 it, and two ulp of the number itself.
 """
 
-import math
-import warnings
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles import table
-from oracles.geometry import support
+from oracles.incline import pushed, rolled
 from oracles.numbers import EPS
 
 STATE = ("theta", "omega", "x")
@@ -42,13 +40,6 @@ def errors(row: Row, values: Any, names: tuple[str, ...] = STATE) -> float:
     """The largest error of some answers, in units."""
     exact = [[row[name] for name in names]]
     return float(np.max(table.differences([list(values)], exact)[0] / units(row, names)))
-
-
-def rolled(scene: rl.Scene, times: Any) -> rl.Trajectory:
-    """The rolling motion, even if the ground could not hold it."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)
-        return rl.simulate(scene, times, model="rolling")
 
 
 def test_the_table_has_what_it_promises() -> None:
@@ -105,13 +96,8 @@ def test_simulate_and_ends_are_right_to_a_few_units(row: Row) -> None:
 
 
 def forces_at(scene: rl.Scene, theta: float, omega: float) -> Any:
-    """N and F by Newton's law, from the equation of rolling."""
-    h, dh, ddh = support(theta, scene.a, scene.b)
-    along, into = scene.gravity * math.sin(scene.slope), scene.gravity * math.cos(scene.slope)
-    k2, omega2 = scene.gyration2, omega**2
-    turning = (h * along - dh * (into + (h + ddh) * omega2)) / (k2 + h**2 + dh**2)
-    normal, friction = into + dh * turning + ddh * omega2, h * turning + dh * omega2 - along
-    return scene.mass * np.array([normal, friction])
+    """N and F by Newton's law."""
+    return scene.mass * np.array(pushed(scene, theta, omega)[1:])
 
 
 def rounding_of_forces(scene: rl.Scene, theta: float, omega: float) -> Any:

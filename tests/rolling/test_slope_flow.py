@@ -5,7 +5,6 @@ of the energy integral, which never takes one half turn after the other.
 """
 
 import math
-import warnings
 from itertools import product
 from typing import Any
 
@@ -14,18 +13,12 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.geometry import support
+from oracles.incline import lying, rolled
 from oracles.numbers import EPS
 from oracles.slope import rolled_by_series
 from scipy.integrate import solve_ivp
 
 DIGITS = 20
-
-
-def rolled(scene: rl.Scene, times: Any) -> Any:
-    """The exact rolling motion, even if the ground could not hold it."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)
-        return rl.simulate(scene, times, model="rolling", method="exact")
 
 
 class Energy:
@@ -262,17 +255,6 @@ def test_what_does_not_repeat_itself_has_no_period() -> None:
     with pytest.raises(ValueError, match=r"^scene must repeat itself, but on a slope of 0\.1"):
         rl.period(rl.scenes.slope)
     assert math.isinf(rl.period(rl.Scene(2.0, 1.0, slope=0.1, theta=lying(0.1), omega=0.0)))
-
-
-def lying(slope: float) -> float:
-    """The stable angle of the 2:1 ellipse in equilibrium: h' = h tan(slope)."""
-    return math.atan(equilibrium_tangent(slope))
-
-
-def equilibrium_tangent(slope: float) -> float:
-    """tan(theta), the smaller root of (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan."""
-    incline = math.tan(slope)
-    return 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
 
 
 def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:

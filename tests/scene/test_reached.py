@@ -11,18 +11,14 @@ import mpmath as mp
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.incline import rolled
+from oracles.numbers import EPS
 from rolling_ellipse import Impulse, Scene
 from rolling_ellipse.geometry import support, support_slope
 
-EPS = 2.0**-52
 MOST = 1e12  # limit of energy / (m g max(a, b)) and of height / max(a, b)
 DOWNHILL = Scene(2.0, 1.0, slope=0.1, omega=3.0)
 LEVEL = Scene(2.0, 1.0, omega=3.2)
-FORCED = pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
-
-
-def rolled(scene: Scene, t: float) -> rl.Trajectory:
-    return rl.simulate(scene, [0.0, t / 2, t], model="rolling")
 
 
 def inertial_time(scene: Scene, turned: float) -> float:
@@ -37,7 +33,7 @@ def inertial_time(scene: Scene, turned: float) -> float:
     return float(turned / scene.omega * np.mean(np.sqrt(inertia[1] / inertia[0])))
 
 
-@FORCED
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize(
     ("scene", "t"),
     [(DOWNHILL, 1e8), (LEVEL, 1e14 * rl.period(LEVEL) / 2)],
@@ -47,7 +43,7 @@ def test_a_state_after_very_many_half_turns_is_gone_on_from(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
     """Bits agree from the state itself, a file, a table of scenes and a folder."""
-    motion = rolled(scene, t)
+    motion = rolled(scene, [0.0, t / 2, t])
     assert motion.theta[-1] > 0.99e14 * math.pi
     reached = motion.scene_at(motion.t_end)
     assert reached.theta == motion.theta[-1] and reached.omega == motion.omega[-1]
@@ -71,9 +67,8 @@ def test_a_state_after_very_many_half_turns_is_gone_on_from(
     assert list(rl.load_many(tmp_path / "many")) == [on]
 
 
-@FORCED
 def test_what_was_gained_downhill_is_not_typed_again() -> None:
-    motion = rolled(DOWNHILL, 1e8)
+    motion = rolled(DOWNHILL, [1e8])
     reached = motion.scene_at(motion.t_end)
     energy = reached.omega**2 * (reached.gyration2 + 4.0) / (reached.gravity * 2.0)
     assert energy > MOST
