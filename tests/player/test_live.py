@@ -168,7 +168,8 @@ def test_without_webassembly_the_film_of_the_first_blow_plays(
     assert "only plays the film of one blow" in page.locator(".card").inner_text()
     assert page.locator(".said").inner_text().strip().startswith("It rolls over.")
     assert not [part for part in (".hands", ".map", ".copy") if page.locator(part).is_visible()]
-    page.wait_for_function(f"{PLAYER}.t > 0.1")
+    moving = ".rolling-ellipse[data-time]:not([data-time='0'])"  # waits without eval
+    page.locator(moving).wait_for(state="attached")
     motion = rl.simulate(rl.scenes.report, 1.0)
     drawn = page.evaluate(f"[0, 0.3, 1].map((t) => {PLAYER}.film.strips[0].motion.at(t).theta)")
     assert drawn == pytest.approx(motion.sol([0, 0.3, 1]).theta, abs=5e-3)
