@@ -18,7 +18,7 @@ struct Start : InitialState {
 
 void append(Sentences& to, const Sentences& more) { to.insert(to.end(), more.begin(), more.end()); }
 
-// What the blow does to the contact.
+// The effect of the blow on the contact.
 Sentence effect_of(const Scene& scene, const Start& start) {
     const std::pair along{"along", start.reaction_x}, up{"up", start.reaction_z};
     if (start.slip_removed != 0) return {"stopped", {along, up, {"energy", start.energy_lost}}};
@@ -31,7 +31,7 @@ Sentence effect_of(const Scene& scene, const Start& start) {
     return {"slides_off", {along, up, {"mu", scene.friction}}};
 }
 
-// Why the motion is not the one that the velocities of the start suggest; empty if it is.
+// Says why the motion differs from what the initial velocities suggest; empty if it does not.
 Sentences surprise(const Scene& scene, const Start& start) {
     const Continuation& next = start.next;
     if (next.may_fly) return {{"wedged", {}}};
@@ -59,7 +59,7 @@ Sentence proof_of(const Scene& scene, const Start& start, const Certificate& pro
     return {"proved", {{"N", *normal}, angle, {"ratio", *needed}}};
 }
 
-// What is proved of rolling, by which friction, and the friction that the blow needs.
+// The proof about rolling, the friction it assumes, and the friction that the blow needs.
 Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certificate& proof) {
     Sentences found{proof_of(scene, start, proof)};
     if (std::isinf(scene.friction)) {
@@ -74,7 +74,7 @@ Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certifi
     return found;
 }
 
-// The scene that continues on the ground after an event.
+// The scene of a body that continues on the ground after an event.
 Scene scene_after(Scene scene, const State& state) {
     scene.impulse.reset();
     for (auto* number : {&scene.z, &scene.x_dot, &scene.z_dot}) number->reset();
@@ -85,7 +85,7 @@ Scene scene_after(Scene scene, const State& state) {
     return scene;
 }
 
-// The outcome of rolling that an event brings.
+// The outcome of rolling that an event signals.
 std::optional<Outcome> outcome_of(EventKind kind) {
     if (kind == EventKind::slip) return Outcome::slips;
     if (kind == EventKind::lift_off) return Outcome::loses_contact;
@@ -93,7 +93,7 @@ std::optional<Outcome> outcome_of(EventKind kind) {
     return {};
 }
 
-// How the rolling of the scene ends that began at a time, and when, if the motion shows it.
+// How and when the rolling that starts at the time `begin` ends, as far as the motion shows it.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
     const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
     for (const Event& each : solution.motion.events) {

@@ -1,4 +1,4 @@
-// What happens to a body, and why, as sentences for Python and for pages.
+// Sentences on what happens to a body, and why, for Python and for web pages.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,23 @@
 
 namespace rolling_ellipse {
 
-// The key of a text in the tables of words, and the numbers for its braces by their names.
+// The key of a text in the translation tables, and the named values that replace its placeholders.
 using Sentence = std::pair<std::string, std::vector<std::pair<const char*, double>>>;
 using Sentences = std::vector<Sentence>;
 
 struct Description {
-    // The first outcome, after the flight of a body in the air; none if it stays there.
+    // The first outcome, after landing if the body starts in the air; empty if it never lands.
     std::optional<Outcome> first;
     Sentences headline;  // what happens
-    Sentences reasons;   // what the blow does to the contact, then why the motion is as it is
+    Sentences reasons;   // the effect of the blow on the contact, then the cause of the motion
 };
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint);
 
-// What the blow does, and how the body moves after it.
+// Says what the blow does, and how the body moves after it.
 Sentences describe_start(const Scene& scene);
 
-// What the certificate of the scene proves of rolling.
+// Says what the certificate of the scene proves about rolling.
 Sentences describe_proof(const Scene& scene);
 
 }  // namespace rolling_ellipse

@@ -21,10 +21,10 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
 }
 
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
-    if (ending == Ending::completed) return {};  // avoids the cost of the text below
+    if (ending == Ending::completed) return {};  // saves the cost of the text below
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     const bool in_contact =
-        settings.model == Model::contact;  // the contact model has no steps of controlled error
+        settings.model == Model::contact;  // the contact model has no error-controlled steps
     switch (ending) {
         case Ending::completed:
             break;

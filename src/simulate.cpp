@@ -12,10 +12,10 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// The settings with "auto" replaced by the simplest model that the scene needs, and its method.
+// Replaces "auto" by the simplest model that the scene needs, and by the method of that model.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool rolls = settings.method != Method::automatic;  // methods are those of rolling
+        const bool rolls = settings.method != Method::automatic;  // the methods belong to rolling
         settings.model = rolls || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
@@ -25,7 +25,7 @@ Settings chosen(Settings settings, Validity validity) {
     return settings;
 }
 
-// Initial state and, if the body rolls, its rolling motion on level ground or on a slope.
+// The initial state and, if the body rolls, its rolling motion, on level ground or on a slope.
 struct Beginning {
     InitialState initial;
     std::optional<RollingStart> rolling;
@@ -44,8 +44,8 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// The end of valid rolling. On a slope the law is followed up to a time, unless it is broken or
-// touched before; if rolling holds until then, the time of its end is unknown, NaN.
+// The end of valid rolling. On a slope the law is followed up to the time `until`, unless it is
+// broken or touched earlier; if rolling holds until then, the time of its end is unknown (NaN).
 EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity) {
     if (from.rolling) return end_of_rolling(*from.rolling, scene.friction);
     if (!from.on_slope) return {Validity::no_proof};
@@ -56,8 +56,8 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
     return end;
 }
 
-// Whether the contact model computes the motion: it proves each arc of rolling, up to the last time
-// only.
+// Whether the contact model computes the motion; it proves each arc of rolling only up to the end
+// time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (asked.model == Model::contact) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&
@@ -72,7 +72,7 @@ void end_validity(double t, double t_end, Solution& solution) {
     }
 }
 
-// Ends the validity of a computed rolling motion where the proof says.
+// Ends the validity of a computed rolling motion at the time that the proof gives.
 void judge_by_proof(const Beginning& from, const EndOfRolling& end, double t_end,
                     Solution& solution) {
     if (std::isnan(end.time)) solution.valid_until = end.time;

@@ -1,5 +1,5 @@
 // The whole computation: scene -> initial state -> certificate -> model -> solution; and messages
-// for people: why a start does not roll, why a motion stopped.
+// for users: why a start does not roll, why a motion stopped.
 //
 // Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace rolling_ellipse {
 
-// A motion, with how it was computed and how it ended.
+// A motion, how it was computed and how it ended.
 struct Solution : Integration<Motion> {
     Model model = Model::rolling;
     Method method = Method::exact;
@@ -25,8 +25,8 @@ struct Solution : Integration<Motion> {
 
 // Numerical errors of an integrated motion in its energy and its constraints.
 struct Losses {
-    // Largest change of the energy over the largest kinetic + |potential| energy. The height is 0
-    // on the ground where the motion starts: so the result does not depend on the origin of x.
+    // Largest change of the energy over the largest kinetic + |potential| energy. Heights are
+    // measured from the ground where the motion starts, so that the origin of x does not matter.
     double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
     double projected = 0.0;    // largest constraint residual after a step, before its projection
@@ -38,8 +38,8 @@ Certificate certify(const Scene& scene);
 Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
-// The multiplier model from coordinates and velocities that violate the constraints: it is never
-// valid. Those that meet them are a scene's. The scene gives body and ground.
+// The multiplier model from coordinates and velocities that violate the constraints; such a motion
+// is never valid. The scene gives body and ground. (A start that obeys the constraints is a scene.)
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
@@ -47,11 +47,11 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
 // requested time where necessary.
 double valid_until(const Scene& scene, const Solution& solution);
 
-// Numerical errors of energy and constraints in a motion with steps; empty for all others.
+// Numerical errors of energy and constraints in a motion computed in steps; empty for all others.
 std::optional<Losses> losses(const Solution& solution);
 
 // Time of a full swing or turn of the rolling motion that starts from the scene; throws
-// std::invalid_argument where it does not repeat.
+// std::invalid_argument if the motion does not repeat.
 double period(const Scene& scene);
 
 // A number as text with six digits.
@@ -60,7 +60,7 @@ std::string brief(double value);
 // A sentence on why a start does not roll; empty for one that rolls.
 std::string why_not_rolling(const Scene& scene, const State& start);
 
-// Why a motion ended at t, before its last time, and what helps; empty for a complete one.
+// A sentence on why a motion ended early, at t, and on the remedy; empty for a complete motion.
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end);
 
 }  // namespace rolling_ellipse

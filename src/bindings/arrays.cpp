@@ -30,7 +30,7 @@ std::string shape_of(const Array& array) {
 GilRelease::~GilRelease() {
     try {
         PyEval_RestoreThread(state_);
-    } catch (...) {  // unwinding by pthread_exit: this thread waits for the end of the process
+    } catch (...) {  // unwinding by pthread_exit: wait for the process to end
         for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     }
 }
@@ -51,7 +51,7 @@ void watch_main_thread() {
     const py::object found = py::module_::import("threading").attr("main_thread")();
     main_thread = found.attr("ident").cast<unsigned long>();
     const py::module_ os = py::module_::import("os");
-    if (!py::hasattr(os, "register_at_fork")) return;  // only Unix forks
+    if (!py::hasattr(os, "register_at_fork")) return;  // only Unix can fork
     const py::cpp_function forked([] { main_thread = PyThread_get_thread_ident(); });
     os.attr("register_at_fork")(py::arg("after_in_child") = forked);
 }
@@ -62,7 +62,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     const GilRelease release;
     struct Stopped {};
     struct Failure {
-        py::ssize_t piece = -1;  // -1: an interrupt between two pieces
+        py::ssize_t piece = -1;  // -1 for an interrupt between two pieces
         std::exception_ptr exception;
     };
     std::vector<Failure> failures(workers);
@@ -70,7 +70,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     std::atomic<bool> stopped{false};
     std::mutex mutex;
     std::condition_variable ended;
-    std::size_t idle = 0;  // threads without any more work
+    std::size_t idle = 0;  // threads with no work left
     const auto guarded = [&](int worker, const auto& action) {
         try {
             action();
@@ -80,7 +80,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             stopped = true;
         }
     };
-    // A piece that is taken is begun: so all pieces before one that fails have been begun, too.
+    // Every claimed piece is also started, so when one fails, all earlier pieces have been started.
     const auto take = [&](int worker, const std::function<void()>& checkpoint) {
         py::ssize_t& piece = failures[worker].piece;
         for (;;) {
@@ -105,7 +105,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     try {
         for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker);
     } catch (const std::exception&) {
-        // The system has no room for one more thread: the others take its pieces.
+        // The system cannot start another thread: the existing ones do its fraction of the work.
     }
     SignalWatch check_for_signals;
     guarded(0, [&] {
@@ -175,7 +175,7 @@ py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssiz
 
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
                        std::size_t count) {
-    // The message begins with the name of one argument, or with two names, "a/b".
+    // The message starts with the name of one argument, or with two names, "a/b".
     const std::size_t end = message.find(' ');
     std::string named;
     for (std::size_t begin = 0; begin < end;) {

@@ -1,4 +1,4 @@
-// NumPy arrays in and out; loops over them without the GIL, which Ctrl-C stops.
+// NumPy arrays in and out, and interruptible loops over them without the GIL.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -20,15 +20,15 @@ namespace rolling_ellipse::bindings {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
-// An array of doubles that are contiguous and aligned. Any other argument (a field of a record,
-// part of a buffer) is copied first.
+// An array of contiguous, aligned doubles. Any other argument (a field of a record, part of a
+// buffer) is copied first.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
-// Releases the GIL for a scope. In a daemon thread the scope may end while Python shuts down. Then
-// CPython before 3.14 ends the thread by pthread_exit, which would unwind our frames and release
-// Python objects in them without the GIL. Our thread waits for the end of the process instead, as
-// in CPython 3.14.
+// Releases the GIL for a scope. In a daemon thread the scope may end while Python shuts down.
+// CPython before 3.14 then ends the thread by pthread_exit, which would unwind our frames and
+// release the Python objects in them without the GIL. Instead, our thread then waits for the
+// process to end, as in CPython 3.14.
 class GilRelease {
   public:
     GilRelease() : state_(PyEval_SaveThread()) {}
@@ -40,9 +40,9 @@ class GilRelease {
     PyThreadState* state_;
 };
 
-// Checks for Ctrl-C at most every 50 ms, and throws it as Python's exception. More checks would be
-// slow: each takes the GIL, for which a busy Python thread makes it wait 5 ms. Python handles
-// signals in its main thread only: in any other thread nothing is checked.
+// Checks for Ctrl-C at most every 50 ms and throws Python's exception for it. Checking more often
+// would be slow: each check takes the GIL, and waits 5 ms for it if a Python thread is busy. Python
+// handles signals only in its main thread; in any other thread nothing is checked.
 class SignalWatch {
   public:
     SignalWatch();
@@ -57,22 +57,22 @@ class SignalWatch {
 // Finds Python's main thread, now and after each fork.
 void watch_main_thread();
 
-// Runs body(i, checkpoint) for each i of 0 .. n, without the GIL. Ctrl-C stops each thread at its
-// next checkpoint. Where the system cannot start as many threads as requested, those that there are
-// do all of the work. If several pieces fail, the exception of the earliest one is thrown.
+// Runs body(i, checkpoint) for 0 <= i < n, without the GIL. Ctrl-C stops each thread at its next
+// checkpoint. If the system cannot start all the requested threads, the others do all the work. If
+// several pieces fail, the exception of the earliest one is thrown.
 using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);
 
-// Runs body(begin, end) over 0 .. n in chunks, as `run_each` does its pieces. The results of a
-// chunk do not depend on the thread that takes it.
+// Splits 0 .. n into chunks and runs body(begin, end) on each, as `run_each` does with its pieces.
+// The results of a chunk do not depend on the thread that takes it.
 inline constexpr py::ssize_t chunk = 1024;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
-// Makes an array read-only. `flags.writeable` of NumPy would take as long as all else.
+// Makes an array read-only. NumPy's `flags.writeable` would double the time of a call.
 py::array read_only(py::array array);
 
-// A new array of n numbers, in half the time that pybind11 takes to make one.
+// A new array of n doubles, created in half the time that pybind11 takes.
 Array vector(py::ssize_t n);
 Array matrix(py::ssize_t rows, py::ssize_t columns);
 void store(Array& matrix, py::ssize_t row, const double* values);
@@ -82,13 +82,13 @@ py::array_t<Number> array_of(const std::vector<Number>& values) {
     return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// Refuse an array of another shape: std::invalid_argument with its name. require_matrix takes any
-// number of rows unless one is given, and returns the number.
+// Both throw std::invalid_argument, naming the array, if its shape is wrong. require_matrix accepts
+// any number of rows unless one is given, and returns the number of rows.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);
 py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns,
                            std::optional<py::ssize_t> rows = {});
 
-// A named argument: an array of n numbers, or one number for all.
+// A named argument: an array of n values, or a single value that is used n times.
 struct Argument {
     const char* name;
     const double* data;
@@ -97,12 +97,12 @@ struct Argument {
     double operator[](py::ssize_t i) const { return data[i * stride]; }
 };
 
-// The message of a refusal with the index behind each argument that is an array: "a[3]/b must be
+// An error message with the index inserted after each argument that is an array: "a[3]/b must be
 // ...".
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
                        std::size_t count);
 
-// Several arguments, each an array or one number; [i] gives the element i of each, in their order.
+// Several arguments, each an array or a single value; [i] gives element i of each, in order.
 template <std::size_t Count>
 class Arguments {
   public:
@@ -119,7 +119,7 @@ class Arguments {
         return std::apply([i](const auto&... each) { return std::array{each[i]...}; }, each_);
     }
 
-    // Calls an action that reads the elements i; a refusal names their index.
+    // Calls an action that reads element i of each argument; errors name the index.
     template <class Action>
     auto naming(py::ssize_t i, const Action& action) const {
         try {
@@ -133,8 +133,8 @@ class Arguments {
     std::array<Argument, Count> each_{};
 };
 
-// The results of n calls as an array: (n,) for a number, (n, K) for a vector or matrix of K
-// numbers.
+// The results of n calls as an array: (n,) for a number, (n, K) for a vector or matrix with K
+// elements.
 template <class Number>
 struct Results {
     explicit Results(py::ssize_t n) : array(n), to(array.mutable_data()) {}
@@ -156,8 +156,8 @@ struct Results<Eigen::Matrix<double, Rows, Columns>> {
     double* to;
 };
 
-// Calls function(i), which returns a tuple, for each i of 0 .. n. Returns an array for each part of
-// the tuple, as a Python tuple.
+// Calls function(i), which returns a tuple, for 0 <= i < n. Returns a Python tuple with one array
+// per element of that tuple.
 template <class Function>
 py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
     using Row = decltype(function(0));
@@ -179,7 +179,7 @@ py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
         Row{});
 }
 
-// `computed` for a function of named arguments, each with n elements, or one.
+// `computed` for a function of named arguments, each with n elements or one.
 template <std::size_t Count, class Function>
 py::tuple computed_from(py::ssize_t n, const std::array<const char*, Count>& names,
                         const std::array<Array, Count>& arrays, const Function& function) {
@@ -187,7 +187,7 @@ py::tuple computed_from(py::ssize_t n, const std::array<const char*, Count>& nam
     return computed(n, [&](py::ssize_t i) { return std::apply(function, of[i]); });
 }
 
-// The arrays of `computed` by names.
+// The arrays of `computed` as a dict by name.
 template <std::size_t Count>
 py::dict named(const char* const (&names)[Count], const py::tuple& arrays) {
     py::dict found;

@@ -1,4 +1,4 @@
-// Many scenes at once: a table of scenes in, tables of their motions out.
+// Many scenes at once: takes a table of scenes and returns tables of their motions.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,9 +12,9 @@ namespace rolling_ellipse::bindings {
 namespace {
 
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
-constexpr int refused = -1;  // code of a refused scene; Ending uses 0 and above
+constexpr int refused = -1;  // code of a rejected scene; the codes of Ending are >= 0
 
-// The valid scene of a row; NaN stands for an absent number.
+// The scene in a row, validated; NaN marks an absent value.
 Scene scene_in(const double* row, Origin origin) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -29,7 +29,7 @@ Scene scene_in(const double* row, Origin origin) {
     return scene;
 }
 
-// Index and message of the first scene that is refused; None if all are accepted.
+// Index and message of the first rejected scene; None if all are accepted.
 py::object first_refused(const Array& scenes, bool reached) {
     const Origin origin = reached ? Origin::reached : Origin::typed;
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -47,7 +47,7 @@ py::object first_refused(const Array& scenes, bool reached) {
 // The motion of a scene as samples and events. Only one of the sample vectors is filled.
 struct Answer {
     int ending = refused;
-    Solution solution = {};  // solution without its segments
+    Solution solution = {};  // the solution without its segments
     py::ssize_t segments = 0;
     py::ssize_t samples = 0;
     std::vector<FlowSample> rolling = {};
@@ -93,7 +93,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     return answer;
 }
 
-// Ending and counts of an answer, and the sizes of its parts of the other tables.
+// Ending and counts of an answer, and how many entries it has in each joined list.
 std::vector<Figure> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
     std::vector<Figure> codes{{"ending", answer.ending},
@@ -106,7 +106,7 @@ std::vector<Figure> codes_of(const Answer& answer) {
     return codes;
 }
 
-// The lists of all answers, one after the other; `part` is a member of Answer or returns one.
+// The lists of all answers, concatenated; `part` is a member of Answer or returns one.
 template <class Part>
 auto joined(std::vector<Answer>& answers, const Part& part) {
     std::vector<typename std::decay_t<decltype(std::invoke(part, answers[0]))>::value_type> all;
@@ -117,7 +117,7 @@ auto joined(std::vector<Answer>& answers, const Part& part) {
     return all;
 }
 
-// Codes and times of all answers, one row a scene.
+// Codes and times of all answers, one row per scene.
 py::dict facts(const std::vector<Answer>& answers) {
     const py::ssize_t n = answers.size();
     py::array_t<std::int64_t> codes({n, static_cast<py::ssize_t>(codes_of({}).size())});
@@ -132,7 +132,7 @@ py::dict facts(const std::vector<Answer>& answers) {
     return py::dict("codes"_a = codes, "numbers"_a = numbers);
 }
 
-// The names of the columns of each table. Samples have a row for each quantity instead.
+// The column names of each table. In sample tables each quantity is a row instead.
 py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
@@ -141,8 +141,8 @@ py::dict columns() {
         "contact"_a = names_of(state_fields, force_fields));
 }
 
-// The samples of all scenes one after the other, by their kind. A quantity is a row; coordinates
-// have a row for each sample instead.
+// The samples of all scenes, concatenated, by kind. Each quantity is a row, but coordinates have
+// one row per sample.
 py::dict samples(std::vector<Answer>& answers) {
     const auto rolling = joined(answers, &Answer::rolling);
     const auto contact = joined(answers, &Answer::contact);
@@ -183,9 +183,9 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
     return tables;
 }
 
-// The state of each motion at its time, NaN where the motion has ended before, and codes: its mode
-// then, the number of its events, the kind of the first one, and its ending; -1 where there is
-// none.
+// The state of each motion at its requested time, NaN if the motion ended earlier, and codes, -1
+// for none: the mode at that time, the number of events, the kind of the first event, and the
+// ending.
 py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
                     int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -222,7 +222,7 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     return py::dict("states"_a = states, "codes"_a = codes);
 }
 
-// The friction that each scene requires to roll for ever, or to lie still.
+// The friction that each scene needs to roll forever, or to lie still.
 Array friction_table(const Array& scenes, bool to_rest, int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     Array needed = vector(n);

@@ -1,5 +1,5 @@
-// The parts of the Python module. Only this folder knows Python. It converts numbers to NumPy
-// arrays and back, and computes nothing.
+// The parts of the Python module. Only this folder depends on Python; it converts values to NumPy
+// arrays and back and computes nothing itself.
 #pragma once
 
 #include <pybind11/native_enum.h>
@@ -15,9 +15,8 @@
 
 namespace rolling_ellipse::bindings {
 
-// Binds a class of the core. Its objects refuse to be pickled or copied: the Python objects that
-// hold them make them again. Without the refusal, pybind11 would end the process under the pickle
-// protocols 0 and 1.
+// Binds a class of the core. Its objects cannot be pickled or copied; the Python objects that hold
+// them recreate them instead. Under pickle protocols 0 and 1, pybind11 would end the process.
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name) {
     py::class_<T> bound(m, name);
@@ -27,7 +26,7 @@ py::class_<T> bind_class(py::module_& m, const char* name) {
     return bound;
 }
 
-// Binds an enum by the names of its values.
+// Binds an enum with the names of its values.
 template <class Enum>
 void bind_enum(py::module_& m, const char* name, const char* base, const char* doc) {
     py::native_enum<Enum> bound(m, name, base, doc);
@@ -36,19 +35,19 @@ void bind_enum(py::module_& m, const char* name, const char* base, const char* d
     bound.finalize();
 }
 
-// A whole number and its name.
+// An integer and its name.
 struct Figure {
     const char* name;
     std::int64_t value;
 };
 
-// The counts of an integration, each with its name.
+// The counts of an integration, with their names.
 inline std::array<Figure, 4> stats_of(py::ssize_t segments, const StepCounts& counts) {
     return {Figure{"segments", segments}, Figure{"steps", counts.steps},
             Figure{"rejected_steps", counts.rejected}, Figure{"evaluations", counts.evaluations}};
 }
 
-// Calls an action with each field of some tables.
+// Calls an action with each field of the given tables.
 template <class Action, class... Tables>
 void for_each(const Action& action, const Tables&... tables) {
     const auto all = [&](const auto& table) {
@@ -64,7 +63,7 @@ py::tuple names_of(const Tables&... tables) {
     return names;
 }
 
-// The symbols of the units by the names of the fields.
+// The unit symbols by field name.
 template <class... Tables>
 py::dict units_of(const Tables&... tables) {
     py::dict units;
@@ -72,7 +71,7 @@ py::dict units_of(const Tables&... tables) {
     return units;
 }
 
-// The numbers of a start by the names of their fields.
+// The values of an initial state by field name.
 inline py::dict numbers_of(const InitialState& start) {
     py::dict numbers;
     for (const auto& field : state_fields) numbers[field.name] = start.state.*field.number;
@@ -80,17 +79,17 @@ inline py::dict numbers_of(const InitialState& start) {
     return numbers;
 }
 
-// Reads the numbers of a struct from a row; returns the place behind them.
+// Reads the fields of a struct from a row; returns a pointer to the value after them.
 template <class Struct, std::size_t N>
 const double* read(Struct& to, const Field<Struct> (&table)[N], const double* from) {
     for (const Field<Struct>& field : table) to.*field.number = *from++;
     return from;
 }
 
-// The state given by arrays q and q_dot of shape (1, 5); other shapes are refused.
+// The state given by arrays q and q_dot of shape (5,); other shapes are rejected.
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
-// Numbers of an event as a row: t, the code of its kind, and the states before and after, each with
+// An event as a row of numbers: t, the code of its kind, and the states before and after, each with
 // the code of its mode.
 inline constexpr std::size_t event_numbers = 2 + 2 * (std::size(state_fields) + 1);
 using EventRow = std::array<double, event_numbers>;
@@ -98,10 +97,10 @@ py::tuple event_columns();
 Array event_rows(const std::vector<Event>& events);
 Event event_of(const EventRow& row);
 
-// The number of times, which ascend, that a solution reaches.
+// How many of the given ascending times lie within the solution.
 py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n);
 
-// theta, omega, x of n samples.
+// Arrays of theta, omega and x of n samples.
 struct FlowArrays {
     explicit FlowArrays(py::ssize_t n) : theta(vector(n)), omega(vector(n)), x(vector(n)) {}
 
@@ -111,12 +110,12 @@ struct FlowArrays {
     const FlowColumns columns{theta.mutable_data(), omega.mutable_data(), x.mutable_data()};
 };
 
-// Columns of contact samples: for each number of state_fields and force_fields, and for the modes.
+// Columns of contact samples: one for each of state_fields and force_fields, and the modes.
 struct ContactColumns {
     std::vector<double*> numbers;
     std::int8_t* modes;
 
-    // Stores the samples begin .. end - 1 in the columns; samples[0] is the sample `begin`.
+    // Stores samples begin .. end - 1 in the columns; samples[0] is sample `begin`.
     void store(const ContactSample* samples, py::ssize_t begin, py::ssize_t end) const;
 };
 

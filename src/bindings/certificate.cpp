@@ -8,7 +8,7 @@ namespace {
 
 std::int8_t code(Outcome outcome) { return static_cast<std::int8_t>(outcome); }
 
-// Outcomes of a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
+// Outcomes for a, b, omega, theta, friction, gravity, gyration2, each with n elements or one.
 py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
     const Arguments<7> of({"a", "b", "omega", "theta", "friction", "gravity", "gyration2"},
                           arguments, n);
@@ -25,7 +25,7 @@ py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, 
     return computed(n, outcome_at, workers)[0];
 }
 
-// Outcomes of a scene on level ground by each of n blows instead of its own: jx, jz, dx, dz.
+// Outcomes of a scene on level ground for each of n blows that replace its own: jx, jz, dx, dz.
 py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Array, 4>& impulses) {
     const Arguments<4> of({"jx", "jz", "dx", "dz"}, impulses, n);
     const Geometry at = geometry(scene.axes(), scene.theta);
@@ -42,7 +42,7 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
     })[0];
 }
 
-// A certificate by the names of its fields; the validity as a code, since enums are slow to make.
+// A certificate by field name, with the validity as a code, since creating Python enums is slow.
 py::dict certificate(const Scene& scene) {
     const Certificate c = certify(scene);
     py::dict fields;
@@ -55,7 +55,7 @@ py::dict certificate(const Scene& scene) {
     return fields;
 }
 
-// The first outcome of a motion, headline and reasons.
+// The first outcome of a motion, its headline and its reasons.
 py::tuple description(const Scene& scene, const Solution& solution) {
     Description found;
     {
@@ -93,7 +93,8 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
         "rocking_rate"_a = t.rocking_rate, "tip_rate"_a = t.tip_rate);
 }
 
-// Lift-off speed and the ranges of speeds that jam; slip_speed and painleve_friction are known.
+// Lift-off speed and the ranges of speeds at which the body jams, given slip_speed and
+// painleve_friction.
 py::tuple lift_off_interruptible(double a, double b, double gravity,
                                  std::optional<double> gyration2, double friction,
                                  double slip_speed, double painleve_friction) {

@@ -18,7 +18,7 @@ RollingStart validated_start(const Body& body, double theta, double omega) {
     return rolling_start(body, theta, omega);
 }
 
-// theta, omega, x of one motion at many times.
+// Returns theta, omega, x of one motion at many times.
 py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
@@ -50,11 +50,11 @@ const Kernel& kernel_called(const std::string& wanted) {
     throw std::invalid_argument("level must be one of 'best'" + names + ", got '" + wanted + "'");
 }
 
-// t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
+// Takes t, a, b, theta, omega, gravity, gyration2, each with n elements or one.
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
                      const std::string& level) {
     const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
-    // One scene alone is computed without vector lanes, which would cost more.
+    // A single scene is computed without vector lanes, since they would cost more.
     const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
     const auto sample_all = [&](const Kernel& by, py::ssize_t begin, py::ssize_t end) {
@@ -75,7 +75,8 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             try {
                 sample_all(lanes, begin, end);
             } catch (const std::invalid_argument&) {
-                // Vector lanes validate times last; one by one, the first wrong scene is named.
+                // Vector lanes validate the times last; sampling one by one names the first invalid
+                // scene.
                 for (py::ssize_t i = begin; i < end; ++i) {
                     of.naming(i, [&] { sample_all(kernels().front(), i, i + 1); });
                 }
@@ -87,8 +88,8 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
 
 using FlowArguments = std::array<double, 8>;  // t, a, b, theta, omega, gravity, gyration2, slope
 
-// A motion on a slope in the direction of its times: reversed in time, it is that of the reversed
-// start.
+// A motion on a slope, followed forward or backward in time. Backward, it is computed as a forward
+// motion from the start with its velocity reversed.
 struct SlopeMotion {
     double heading;
     SlopeFlow flow;
@@ -133,7 +134,7 @@ py::tuple flow_scalar(double t, double a, double b, double theta, double omega, 
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
-// t, a, b, theta, omega, gravity, gyration2, slope, each with n elements, or one.
+// Takes t, a, b, theta, omega, gravity, gyration2, slope, each with n elements or one.
 py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments, int workers) {
     const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
                           arguments, n);
@@ -148,7 +149,7 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
                 ++i;
                 continue;
             }
-            // Times of one motion side by side share it.
+            // Consecutive times that belong to the same motion share it.
             std::optional<SlopeMotion> motion;
             of.naming(i, [&] { motion = slope_motion(first); });
             times.clear();

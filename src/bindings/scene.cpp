@@ -7,22 +7,22 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// x_dot, z_dot, omega just after the collision of a touching body. The arguments are theta, x_dot,
-// z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one.
+// Returns x_dot, z_dot, omega just after the collision of a touching body. The arguments are theta,
+// x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements or one.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
                          double gyration2, double friction, double restitution) {
-        constexpr double gravity = 1.0;  // any number: velocities do not depend on it
+        constexpr double gravity = 1.0;  // any value: the velocities do not depend on it
         Scene scene = level_scene({a, b, gyration2, gravity}, friction);
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
         scene.x = 0.0;
-        scene.z = a + b;  // above the ground at any angle: any velocity is valid
+        scene.z = a + b;  // above the ground at any angle, so that any velocity is valid
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
-        validate(scene.body());            // first: a refusal then names gyration2
-        validate(scene, Origin::reached);  // the widest limit, as gravity is arbitrary here
+        validate(scene.body());            // first, so that errors name gyration2
+        validate(scene, Origin::reached);  // with the widest limit, as gravity is arbitrary here
         const Geometry at = geometry(scene.axes(), theta);
         const State before = state_before_impulse(scene, at);
         const State after = collision(scene, at, before, gap_rate(before, at), law).after;
@@ -37,10 +37,10 @@ bool may_be_absent(const SceneField& field) {
     return field.otherwise || std::holds_alternative<std::optional<double> Scene::*>(field.number);
 }
 
-// Makes a scene from numbers by the names of its fields; None stands for an absent one. No scene is
-// made if another number is absent, or is no float of Python.
+// Makes a scene from values given by field name; None stands for an absent optional value. Returns
+// no scene if a required value is absent or any value is not a Python float.
 struct SceneMaker {
-    std::vector<py::str> names;  // interned: dictionaries find them by their address
+    std::vector<py::str> names;  // interned, so that dictionaries find them by address
 
     SceneMaker() {
         for (const auto& field : scene_fields) {
@@ -64,7 +64,7 @@ struct SceneMaker {
     }
 };
 
-// The state just after the blow, the mode that forces allow, and sentences about both.
+// The state just after the blow, the mode that the forces allow, and sentences about both.
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
     py::dict fields = numbers_of(start);
@@ -73,7 +73,7 @@ py::dict start_of(const Scene& scene) {
     return fields;
 }
 
-// Reads a setting; a choice is given by its name.
+// Reads a setting; an enum is given by name.
 template <class Value>
 void take(py::handle given, Value& value) {
     if constexpr (std::is_enum_v<Value>) {

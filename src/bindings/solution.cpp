@@ -8,7 +8,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// Refuses times at which the solution is not known. A motion without segments has none.
+// Rejects times at which the solution is unknown: all times if the motion has no segments.
 void validate_times(const Solution& solution, const double* times, py::ssize_t begin,
                     py::ssize_t end) {
     if (begin < end && solution.motion.segments.empty()) {
@@ -21,7 +21,7 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
     }
 }
 
-// Are these valid sample times: at least one, finite, not negative, and strictly ascending?
+// Whether these are valid sample times: at least one, finite, not negative, strictly ascending.
 bool are_sample_times(const Array& t) {
     if (t.ndim() != 1 || t.size() == 0) return false;
     const double* const times = t.data();
@@ -31,7 +31,7 @@ bool are_sample_times(const Array& t) {
     return times[0] >= 0 && times[t.size() - 1] < infinity;
 }
 
-// Calls take(samples, begin, end) with the samples at all times, part by part.
+// Calls take(samples, begin, end) with the samples at all times, one batch after another.
 template <class Sample, class Take>
 void take_samples(const Solution& solution, const Array& t, const Take& take) {
     const py::ssize_t n = t.size();
@@ -45,7 +45,7 @@ void take_samples(const Solution& solution, const Array& t, const Take& take) {
     });
 }
 
-// theta, omega, x at each time.
+// Returns theta, omega, x at each time.
 py::tuple rolling_samples(const Solution& solution, const Array& t) {
     FlowArrays out(t.size());
     const double* const times = t.data();
@@ -58,7 +58,7 @@ py::tuple rolling_samples(const Solution& solution, const Array& t) {
                           read_only(out.x));
 }
 
-// q and q_dot, (n, 5), at each time.
+// Returns q and q_dot, (n, 5), at each time.
 py::tuple coordinate_samples(const Solution& solution, const Array& t) {
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
@@ -72,7 +72,7 @@ py::tuple coordinate_samples(const Solution& solution, const Array& t) {
     return py::make_tuple(read_only(t), read_only(q), read_only(q_dot));
 }
 
-// The numbers of state and force at each time, and the mode.
+// The values of state and force, and the mode, at each time.
 py::tuple contact_samples(const Solution& solution, const Array& t) {
     constexpr std::size_t numbers = std::size(state_fields) + std::size(force_fields);
     py::tuple arrays(numbers + 2);
@@ -92,8 +92,8 @@ py::tuple contact_samples(const Solution& solution, const Array& t) {
     return arrays;
 }
 
-// Read-only arrays of the samples at times, the times before them: of rolling theta, omega, x; of
-// the multiplier model q, q_dot; of contact the numbers of states and forces, and modes.
+// Read-only arrays of the times and of the samples there: theta, omega, x for rolling; q, q_dot for
+// the multiplier model; the values of states and forces, and the modes, for contact.
 py::tuple samples(const Solution& solution, const double* times, py::ssize_t n) {
     Array t = vector(n);
     std::copy_n(times, n, t.mutable_data());
@@ -102,8 +102,8 @@ py::tuple samples(const Solution& solution, const double* times, py::ssize_t n) 
     return rolling_samples(solution, t);
 }
 
-// A solution up to the last of the times, and its samples at all times that it reaches. A start q,
-// q_dot replaces that of the scene.
+// A solution up to the last time, and its samples at all times that it reaches. If q and q_dot are
+// given, the motion starts from them rather than from the scene's start.
 py::tuple solved(const Scene& scene, const Settings& settings, const Array& t,
                  const std::optional<std::pair<Array, Array>>& start) {
     require_length("t", t, std::max<py::ssize_t>(t.size(), 1));
@@ -120,7 +120,7 @@ py::tuple solved(const Scene& scene, const Settings& settings, const Array& t,
     return py::make_tuple(std::move(solution), found);
 }
 
-// The numbers of a sample at one time, by the names of the arrays of a motion, and its mode.
+// A sample at one time: its values, named like the arrays of a motion, and its mode.
 py::dict sample_at(const Solution& solution, const Scene& scene, const Settings& settings,
                    double t) {
     validate_times(solution, &t, 0, 1);
@@ -145,7 +145,7 @@ py::dict sample_at(const Solution& solution, const Scene& scene, const Settings&
     return found;
 }
 
-// An array of times for each value, and phrases that say where some of them may be missing.
+// An array of times for each value, and phrases that say where times may be missing.
 py::tuple lists(const Passages& passages) {
     py::list times;
     for (const std::vector<double>& each : passages.times) times.append(array_of(each));
@@ -165,7 +165,7 @@ py::tuple passages_of(const Solution& solution, Quantity quantity,
     return lists(found);
 }
 
-// Times of the zeros of a function that takes an array of times and returns as many numbers.
+// Times of the zeros of a function that maps an array of times to an array of values.
 py::tuple zeros_of(const Solution& solution, const py::function& function, int direction) {
     const Measure measure = [&](const std::vector<double>& times) {
         const Array values = function(array_of(times));
@@ -183,7 +183,7 @@ py::dict stats(const Solution& solution) {
     return found;
 }
 
-// The losses of an integrated motion: energy, constraints, projected; None for all others.
+// The losses of an integrated motion (energy, constraints, projected); None for all others.
 py::object losses_in(const Solution& solution) {
     const std::optional<Losses> found = losses(solution);
     if (!found) return py::none();

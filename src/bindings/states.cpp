@@ -1,4 +1,4 @@
-// Functions of a given state: geometry, constraints, forces and accelerations.
+// Functions of a single state: geometry, constraints, forces and accelerations.
 #include <map>
 
 #include "bindings/bindings.hpp"
@@ -8,7 +8,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// The state in a row of q and q_dot, (n, 5).
+// The state in one row of q and q_dot, (n, 5).
 CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
     return {Eigen::Map<const Coordinates>(q.data(row, 0)),
             Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
@@ -23,7 +23,7 @@ py::tuple computed_at(const Array& q, const Array& q_dot, const Function& functi
     return computed(n, [&](py::ssize_t i) { return function(state_at(q, q_dot, i)); });
 }
 
-// The constraint matrix, row after row, and the drift term.
+// The constraint matrix, row by row, and the drift term.
 py::tuple constraint_system(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
     return computed_at(q, q_dot, [&](const CoordinateState& state) {
@@ -33,7 +33,7 @@ py::tuple constraint_system(const Array& q, const Array& q_dot, double a, double
     });
 }
 
-// Residuals of the constraints on positions and on velocities, gap and slip.
+// Residuals of the constraints on positions and on velocities, with gap and slip.
 py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
     return computed_at(q, q_dot, [&](const CoordinateState& state) {
@@ -43,7 +43,7 @@ py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double
     });
 }
 
-// q and q_dot of a rolling body.
+// Returns q and q_dot of a rolling body.
 py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omega, double a,
                             double b) {
     validate_axes(a, b);
@@ -53,7 +53,7 @@ py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omeg
     });
 }
 
-// Binds a function of the ellipse and theta to arrays theta, a, b, each with n elements, or one.
+// Binds a function of the ellipse and theta to arrays theta, a, b, each with n elements or one.
 template <class Function>
 void define_geometry(py::module_& module, const char* name, Function function) {
     module.def(
@@ -68,8 +68,7 @@ void define_geometry(py::module_& module, const char* name, Function function) {
         "n"_a, "arguments"_a);
 }
 
-// q, q_dot, q_ddot and multipliers of the contact model, from its samples by the names of their
-// columns.
+// Returns q, q_dot, q_ddot and multipliers of the contact model, from its samples by column name.
 py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& samples) {
     const py::ssize_t n = samples.at("theta").size();
     std::vector<const double*> columns;
@@ -92,7 +91,7 @@ py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& 
     return named({"q", "q_dot", "q_ddot", "multipliers"}, computed(n, row));
 }
 
-// q_ddot and multipliers of the multiplier model, at each row of q and q_dot.
+// Returns q_ddot and multipliers of the multiplier model at each row of q and q_dot.
 py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
                             const Array& q_dot) {
     const ConstrainedBody body(scene);
@@ -109,7 +108,7 @@ py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
 
-// q, with the x that is given, q_dot, q_ddot and multipliers of rolling.
+// Returns q (with the given x), q_dot, q_ddot and multipliers of rolling.
 py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
                         const Array& x) {
     const auto row = [&](double angle, double speed, double position) {
@@ -121,7 +120,7 @@ py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& ome
                  computed_from<3>(theta.size(), {"theta", "omega", "x"}, {theta, omega, x}, row));
 }
 
-// z, x_dot, z_dot, normal and friction force of rolling.
+// Returns z, x_dot, z_dot, normal and friction force of rolling.
 py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const RollingEquation rolling(scene.body(), scene.slope);
     const auto row = [&](double angle, double speed) {
@@ -134,7 +133,7 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
                  computed_from<2>(theta.size(), {"theta", "omega"}, {theta, omega}, row));
 }
 
-// theta'' of rolling, and its derivatives by theta and omega.
+// Returns theta'' of rolling and its derivatives with respect to theta and omega.
 py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const RollingEquation equation(scene.body(), scene.slope);
     const auto row = [&](double angle, double speed) {

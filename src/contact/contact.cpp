@@ -10,7 +10,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The kind of the event that leads to the mode `next`; for sliding it is the given one.
+// The kind of the event that leads to the mode `next`; for sliding, the given kind.
 EventKind kind_of(Mode next, EventKind sliding) {
     if (next == Mode::rest) return EventKind::rest;
     if (next == Mode::rolling) return EventKind::stick;
@@ -44,7 +44,7 @@ class ContactRun {
 
   private:
     // Chooses the first motion after the start. A body that touches the ground and moves into it
-    // hits it at once.
+    // collides at once.
     void start() {
         const bool touches = state_.z == geometry(axes(), state_.theta).h;
         const double blur = angle_roundings(state_.theta);
@@ -63,8 +63,8 @@ class ContactRun {
 
     Axes axes() const { return scene_.axes(); }
 
-    // Counts an angle from the nearest flat position or tip, where a thin body is most sensitive to
-    // it, and exchanges the axes of the scene for it; returns the angle so counted.
+    // Returns the angle from the nearest flat position or tip, where a thin body is most sensitive
+    // to it, and exchanges the axes of the scene accordingly.
     DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
@@ -79,7 +79,7 @@ class ContactRun {
         return angle.rest;
     }
 
-    // Continues from a state with its angle counted from a quarter turn; returns the angle.
+    // Continues from a state with its angle measured from a quarter turn; returns that angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);
@@ -121,8 +121,8 @@ class ContactRun {
         const double friction = friction_to_roll();
         const bool at_limit = friction != scene_.friction;
         EndOfRolling end = end_of_rolling(start, friction);
-        // At the limit of friction rolling may last less than a rounding of theta: it then lasts
-        // one.
+        // At the limit of friction, theta changes by at least one rounding error before rolling
+        // ends.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
@@ -140,8 +140,8 @@ class ContactRun {
         roll(std::move(flow), lasts);
     }
 
-    // At the limit of the law rounding cannot decide whether the body rolls or slips. With slightly
-    // more friction it rolls until this is decided.
+    // At the limit of the law, rounding hides whether the body rolls or slips. With slightly more
+    // friction it rolls until the difference is clear.
     double friction_to_roll() const {
         const ContactForce force =
             rolling_force(scene_, geometry(axes(), state_.theta), state_.omega);
@@ -200,14 +200,15 @@ class ContactRun {
         }
         state_ = without_slip(axes(), before.theta, before.omega, before.x, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
-        // A body that slides keeps its x_dot: h omega would add a rounding.
+        // A body that keeps sliding keeps its x_dot: h omega would add a rounding error.
         if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
             state_.x_dot = before.x_dot;
         }
         continue_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
-    // Follows a grazing contact as free flight: both motions agree to 1e-14 up to turn_of_grazing.
+    // Follows a grazing contact as free flight; the two motions agree to 1e-14 up to
+    // turn_of_grazing.
     void graze() {
         const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
@@ -222,7 +223,7 @@ class ContactRun {
         const Flight flight{axes(), scene_.ground_gravity(), state_, gap_rate_};
         const auto [lasts, small_rate] = touch_down(flight);
         State before = state_at(flight, is_over_after(lasts) ? time_left() : lasts);
-        // Bounces down a slope may grow higher and higher, until the state is no longer finite.
+        // Bounces down a slope may grow until the state is no longer finite.
         if (!is_finite(before)) return give_up(Ending::step_too_small, 0.0);
         add_segment(flight);
         if (!advance(lasts)) return;
@@ -232,7 +233,8 @@ class ContactRun {
         hit(before, at, small_rate ? *small_rate : gap_rate(before, at));
     }
 
-    // Puts what a flight adds to angle, x and x_dot into a state, with the low parts of the sums.
+    // Adds the changes of angle, x and x_dot during a flight to a state; keeps the low parts of the
+    // sums.
     void add_flight(const Flight& flight, double lasts, State& state) {
         const auto& [into, along] = flight.gravity;
         const double moved = lasts * (flight.start.x_dot + 0.5 * along * lasts);
@@ -251,7 +253,7 @@ class ContactRun {
         const auto [after, low, rebound] =
             collision(scene_, at, before, approach, Restitution::stronge, low_);
         state_ = after;
-        // A rebound slower than a rounding of the speed of a fall counts as no rebound.
+        // A rebound speed below the rounding error of the speed of a fall counts as 0.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
             state_.z_dot = at.dh * state_.omega;
             return continue_with(continuation(scene_, state_), EventKind::impact, before);
@@ -273,7 +275,7 @@ class ContactRun {
 
     void continue_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
-        // A start at the limit of rolling is a tie.
+        // A start at the limit of rolling changes its mode without an event.
         if (now() == 0 && motion_.events.empty()) return start_with(next);
         continue_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
@@ -296,7 +298,7 @@ class ContactRun {
         }
     }
 
-    // The state in SI units, with its whole angle.
+    // The state in SI units, with its total angle.
     State in_full(const State& state) const {
         return in_si(with_whole_angle(scene_, state, turned_, motion_.scene), units_);
     }
@@ -309,10 +311,10 @@ class ContactRun {
     double now() const { return static_cast<double>(t_); }
     double time_left() const { return static_cast<double>(-t_ + t_end_); }
     bool is_over_after(double lasts) const {
-        return !(static_cast<double>(t_ + lasts) <= t_end_);  // NaN if it lasts for ever
+        return !(static_cast<double>(t_ + lasts) <= t_end_);  // NaN if it lasts forever
     }
 
-    // Advances the time to the end of the segment just added; false if the motion is over before.
+    // Advances the time to the end of the segment just added; false if the motion ends first.
     bool advance(double lasts) {
         if (is_over_after(lasts)) {
             finish();
@@ -327,14 +329,14 @@ class ContactRun {
         ending_ = Ending::completed;
     }
 
-    // Ends the motion at the time `lasts` after the start of its last segment.
+    // Ends the motion early, at the time `lasts` after the start of its last segment.
     void give_up(Ending ending, double lasts) {
         t_ = t_ + lasts;
         ending_ = ending;
     }
 
     const Units units_;
-    Scene scene_;  // the scene, its axes exchanged after an odd number of quarter turns
+    Scene scene_;  // the scene, with axes exchanged after an odd number of quarter turns
     const Settings& settings_;
     const double t_end_;
     const Checkpoint& checkpoint_;
@@ -342,9 +344,9 @@ class ContactRun {
     double gap_rate_;
     const double rest_speed_;
     Motion motion_;
-    std::optional<SlidePoint> sliding_on_;  // the end of a slide, if another one follows it
-    DoubleDouble turned_;                   // quarter turns taken off theta
-    LowParts low_;                          // of state_, from impact to impact
+    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
+    DoubleDouble turned_;                   // quarter turns subtracted from theta
+    LowParts low_;                          // low parts of state_, kept from impact to impact
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
     DoubleDouble t_;

@@ -11,12 +11,11 @@
 namespace rolling_ellipse {
 namespace {
 
-// Limit of the ratio of a rebound to the one before for which bounces are summed: a sum has at most
-// 3e5 of them.
+// Bounces are summed only up to this ratio of successive rebounds, which limits them to 3e5.
 constexpr double largest_ratio = 0.9999;
 
-// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, by their power series in 4 x^2, in which
-// nothing cancels.
+// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, by power series in 4 x^2, without
+// cancellation.
 struct BeyondSmall {
     double sine;
     double square;
@@ -39,7 +38,7 @@ BeyondSmall beyond_small(double x) {
     return {-x * y2 / 6 * value(series[0], y2), -square(x) * y2 / 12 * value(series[1], y2)};
 }
 
-// The growth of h as the body turns, given the sum of both h, physics (55):
+// The growth of h as the body turns, given the sum of the initial and the final h, physics (55):
 // h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + turned) sin(turned).
 double rise(const Axes& axes, double theta, double turned, double sum) {
     return axes.c2() * std::sin(2 * theta + turned) * std::sin(turned) / sum;
@@ -56,8 +55,8 @@ class Gap {
         return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
-    // The gap as the sum of its start and its change: hops far lower than the body keep their
-    // digits.
+    // The gap as its initial value plus its change, so that it is accurate even for hops far lower
+    // than the body.
     double value(double t) const {
         const State& s = flight_.start;
         const double fallen = 0.5 * flight_.gravity.into * t;
@@ -74,10 +73,11 @@ class Gap {
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
     }
 
-    // The time of a contact, given the neighbours between which the gap closes. The centre is then
-    // put at h: the later one would always lift it, by 1e-16 of its energy. Where the body turns by
-    // more than 1e-8 between them, the gap also bends by a rounding or more, and the later one is
-    // the contact; so it is if the earlier one is the start of the flight.
+    // The time of a contact, given the neighbouring doubles between which the gap closes. The
+    // height of the centre is then set to h; at the later time this would always raise it and so
+    // add 1e-16 of its energy. Yet the later time is taken if the body turns by more than 1e-8
+    // between the two, since the gap then bends by a rounding error or more, or if the earlier time
+    // is the start of the flight.
     double closes(const Bracket& between) const {
         constexpr double small_turn = 1e-8;
         const auto [low, high] = between;
@@ -102,7 +102,8 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // The time of falling to a height, which is at most the start's if the body starts by falling.
+    // The time at which the centre falls to a height, at most the initial height if it starts
+    // downwards.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
@@ -116,8 +117,8 @@ class Gap {
     }
 
     // Rise of h over its tangent, h - (h0 + h0' phi), after a small turn phi, and its slope, h' -
-    // h0', by the difference of h^2 and the square of the tangent: all terms are of the order of
-    // phi^2, and the first, with the h'' of the start, keeps its digits for every body.
+    // h0', from the difference of h^2 and the square of the tangent: all terms are of order phi^2,
+    // and the first, with the initial h'', is accurate for every body.
     struct Rise {
         double height;
         double slope;
@@ -144,10 +145,10 @@ class Gap {
 };
 
 // The second derivative of the gap, -(g cos(alpha) + h'' omega^2) with h'' = a^2 b^2/h^3 - h, is
-// positive where h is over the only positive root of
+// positive where h exceeds the only positive root of
 //     h^4 - (g cos(alpha)/omega^2) h^3 - a^2 b^2,
-// that is around the tip, and negative elsewhere, physics (55). Time is thus divided into convex
-// and concave intervals of the gap, in each of which the first root is certain.
+// that is, around the tip, and negative elsewhere, physics (55). This divides time into intervals
+// on which the gap is convex or concave, so that the first root in each is certain.
 class Curvature {
   public:
     explicit Curvature(const Flight& flight) {
@@ -155,9 +156,9 @@ class Curvature {
         const FlatView view = flat_view(flight.axes, flight.start.theta);
         const double root =
             positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
-        if (omega == 0 || !(root < view.long_axis)) return;  // concave for all times
+        if (omega == 0 || !(root < view.long_axis)) return;  // concave at all times
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
-        const double phi = std::atan2(turned, view.cos);  // angle from the flat, growing with time
+        const double phi = std::atan2(turned, view.cos);  // angle from flat, growing with time
         const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
         const double flat_side = std::sqrt((view.long_axis - root) * (view.long_axis + root));
         const double edge = std::atan2(tip_side, flat_side);
@@ -175,7 +176,7 @@ class Curvature {
 
     Interval first() const { return {0.0, first_end_, convex_}; }
 
-    // The time in the middle of a convex interval, at which the tip is below.
+    // The time in the middle of a convex interval, when the tip is lowest.
     double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
 
     Interval after(const Interval& last) const {
@@ -183,7 +184,7 @@ class Curvature {
         return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
     }
 
-    // The interval that contains a later time, shortened so that it begins at that time.
+    // The interval that contains a given later time, cut to start at that time.
     Interval around(Interval interval, double t) const {
         if (t < interval.end) return {t, interval.end, interval.convex};
         const double period = convex_time_ + concave_time_;
@@ -198,7 +199,8 @@ class Curvature {
     }
 
   private:
-    // The positive root of the quartic, by Newton's method from its right, where it is convex.
+    // The positive root of the quartic, by Newton's method from the right, where the quartic is
+    // convex.
     static double positive_root(double load, double ab) {
         double h = load + std::sqrt(ab);
         for (;;) {
@@ -217,20 +219,21 @@ class Curvature {
 
 double first_touch(const Flight& flight, const Gap& gap) {
     const Curvature curvature(flight);
-    // Whether the flight starts on the ground without a velocity away from it.
+    // Whether the flight starts on the ground without moving away from it.
     const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
     const double tall = most_height(flight.axes);
-    // The time by which a contact is certain, however h is rounded.
+    // The time by which the body must have touched the ground, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));
     const auto value = [&](double t) { return gap.value(t); };
     const auto rate = [&](double t) { return gap.rate(t); };
 
     Curvature::Interval now = curvature.first();
-    // A body that leaves by its acceleration does so in a convex interval of the gap.
+    // A body that leaves the ground by acceleration alone does so in a convex interval of the gap.
     if (leaves_slowly && !now.convex) {
         now = curvature.after(now);
-        // Unless that interval begins at once, the gap closes before it: the body does not leave.
+        // Unless that interval starts at once, the gap closes first and the body does not leave the
+        // ground.
         if (!(gap.value(now.begin) >= -equal_ulps * epsilon * tall)) return 0.0;
     }
     double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate of the gap at now.begin
@@ -247,7 +250,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
                 if (gap.value(lowest) <= 0)
                     return gap.closes(bisect_root(now.begin, lowest, value));
                 // A tip that passes below a centre this low touches the ground, even if rounding
-                // leaves a positive gap for a body that spins fast.
+                // leaves a positive gap for a fast-spinning body.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
@@ -256,7 +259,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
             return gap.closes(bisect_root(from, end, value, gap.root_about(from)));
         }
         const Curvature::Interval next = curvature.after(now);
-        // The body spins so fast that an interval, or half a convex one, is below an ulp of time.
+        // The body spins so fast that an interval, or half a convex one, lasts less than an ulp.
         const bool too_fast =
             !(now.end < next.end) || (next.convex && !(next.begin < curvature.tip_time(next)));
         if (too_fast || !(end < sure)) return end;
@@ -300,7 +303,8 @@ double speed_of_fall(const Scene& scene) {
 
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings) {
     constexpr double small = 1e-6;
-    // Largest rest speed by the speed of a fall, which bounds the relative error of the sum.
+    // Largest ratio of the rest speed to the speed of a fall; it bounds the relative error of the
+    // sum.
     constexpr double large = 1e-2;
     const double unit = speed_of_fall(scene);
     if (!settings.rest_speed) return small * unit;
@@ -314,9 +318,9 @@ double rest_speed(const Scene& scene, const Units& units, const Settings& settin
     return speed;
 }
 
-// Whether bounces are summed under one c and h'. The relative error, the square of their duration
-// by the time in which the body falls, or turns by b/a, must be at most the rest speed by the speed
-// of a fall.
+// Whether bounces may be summed with constant c and h'. The relative error is (their duration
+// divided by the time in which the body falls, or turns by b/a)^2; it must not exceed the ratio of
+// the rest speed to the speed of a fall.
 bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed) {
     const auto [rebound, ratio, c] = first;
     if (rebound > rest_speed || c <= 0 || !(ratio < largest_ratio)) return false;
@@ -326,10 +330,10 @@ bool settles(const Scene& scene, double omega, const Bounce& first, double rest_
     return 2 * rebound * rate <= longest * c * (1 - ratio);
 }
 
-// The sum of infinitely many bounces that shrink by a ratio: they take a finite time, physics (57).
-// Bounces this small take place at one angle, under the c of their beginning.
+// The sum of infinitely many bounces whose rebounds shrink by a constant ratio and which take a
+// finite time, physics (57). Bounces this small take place at one angle, with the initial c.
 Settling settling(const Scene& scene, const State& start, const Bounce& first) {
-    constexpr double negligible_share = 1e-12;  // of the first rebound; slower ones are left out
+    constexpr double negligible_share = 1e-12;  // of the first rebound; slower ones are ignored
     const Geometry at = geometry(scene.axes(), start.theta);
     const GroundGravity gravity = scene.ground_gravity();
     State moving = start;

@@ -1,5 +1,5 @@
-// Flight, exact: the centre on a parabola, the angular velocity constant; its end, physics (55);
-// and bounces that are too small and too short to resolve one by one, summed.
+// Exact flight, with the centre on a parabola and a constant angular velocity; the end of a flight,
+// physics (55); and the sum of bounces that are too small and too short to resolve one by one.
 #pragma once
 
 #include <optional>
@@ -13,28 +13,28 @@ struct Flight {
     Axes axes;
     GroundGravity gravity;
     State start;
-    double gap_rate;  // rate of the gap at the start; z_dot - h' omega would have fewer digits
+    double gap_rate;  // initial rate of the gap, more accurate than z_dot - h' omega
     Mode mode = Mode::flight;
 };
 
 State state_at(const Flight& flight, double t);
 
-// A state of free flight as that of the grazing contact which it follows.
+// The state of a body in grazing contact, from the free flight that replaces this contact.
 State grazing(const Geometry& at, const State& free, Mode mode);
 
-// The height of the centre above which the body does not touch the ground, however h is rounded.
+// The height of the centre above which the body cannot touch the ground, however h is rounded.
 double most_height(const Axes& axes);
 
-// The first contact of a flight: the time since its start and, after a small turn, the rate of the
-// gap, which then has more digits than the velocities. A start in contact counts as leaving the
-// ground, with its velocity or its acceleration.
+// The first contact of a flight: the time from its start and, if the body has turned only a little,
+// the rate of the gap, which is then more accurate than the velocities. A start in contact counts
+// as leaving the ground, by its velocity or its acceleration.
 struct Landing {
     double after;
     std::optional<double> gap_rate;
 };
 Landing touch_down(const Flight& flight);
 
-// The speed sqrt(g b) of a fall by half the short semi-axis b.
+// The speed sqrt(g b) after a fall of half the short semi-axis b.
 double speed_of_fall(const Scene& scene);
 
 // The speed, in the given units, below which bounces may be summed. Throws std::invalid_argument if
@@ -48,7 +48,7 @@ struct Bounce {
     double c;
 };
 
-// Whether a bounce is the first of those that are summed.
+// Whether summation starts at this bounce.
 bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed);
 
 // Bounces too small to resolve one by one, replaced by their averaged motion.
@@ -57,7 +57,7 @@ struct Settling {
     double lasts;
     State start;
     State end;
-    DoubleDouble angle;  // theta of the end, to full accuracy
+    DoubleDouble angle;  // final theta, to full accuracy
 };
 
 Settling settling(const Scene& scene, const State& start, const Bounce& first);

@@ -8,7 +8,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The type of sample that a law computes itself; `convert` makes the other types from it.
+// The type of sample that a law computes directly; `convert` derives the other types from it.
 template <class Law>
 using OwnSample = std::conditional_t<
     std::is_same_v<Law, SteppedMultipliers>, CoordinateState,
@@ -16,13 +16,13 @@ using OwnSample = std::conditional_t<
                            std::is_same_v<Law, SteppedRolling>,
                        FlowSample, ContactSample>>;
 
-// Samples of a law at times since its start. Laws whose header declares `sample` need none here.
+// Samples a law at times from its start. Laws whose header declares `sample` are not listed here.
 
 void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
     FlowSampler{flow, n}(times, n, samples);
 }
 
-// Rounding does not put a flying body under the ground; a contact that grazes stays on it.
+// Prevents rounding from sinking a flying body into the ground; a grazing contact stays on it.
 void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
     const double tall = most_height(flight.axes);
     for (std::size_t i = 0; i < n; ++i) {
@@ -39,9 +39,10 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
     }
 }
 
-// While bounces settle, velocities change evenly, and the rate of the gap falls evenly from the
-// first rebound to 0: a sample rises, as a start does. A coordinate is the integral of its rate;
-// what is then missing of its change is added evenly, too.
+// While bounces settle, velocities change linearly in time, and the rate of the gap falls linearly
+// from the first rebound to 0: in a sample the body moves away from the ground, as at the start.
+// Each coordinate is the integral of its rate, plus a term linear in time that makes up for the
+// rest of its total change.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
     const auto& [axes, lasts, start, end, angle] = settling;
     const double rebound = gap_rate(start, geometry(axes, start.theta));
@@ -70,7 +71,7 @@ void sample(const Standing& standing, const double*, std::size_t n, ContactSampl
     std::fill_n(samples, n, standing);
 }
 
-// Converts samples of a law to another type; a multiplier model has the force among its unknowns.
+// Converts samples of a law to another type; in the multiplier model the force is an unknown, too.
 
 template <class Law>
 void convert(const Scene& scene, const Law&, const std::vector<FlowSample>& from,
@@ -123,7 +124,7 @@ double whole_angle(const DoubleDouble& turned, double theta) {
     return turned.high == 0 ? theta : static_cast<double>(turned + theta);
 }
 
-// Converts a sample of a motion to SI units, with its whole angle; the scene has the axes of its
+// Converts a sample to SI units and to its total angle; the scene has the axes of the segment's
 // law.
 
 void complete(FlowSample& sample, const Motion& motion, const Scene&, const DoubleDouble& turned) {
@@ -157,7 +158,7 @@ void complete(CoordinateState& state, const Motion& motion, const Scene&,
 State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turned,
                        const Scene& scene) {
     const double theta = whole_angle(turned, state.theta);
-    // Far from the ground nothing else changes, nor does it where the double of the angle is rough.
+    // Far from the ground, or where the rounded angle is too coarse, only theta is replaced.
     if (state.z <= most_height(scene.axes()) && std::abs(theta) <= most_turned) {
         return with_angle(seen, state, scene.axes(), theta);
     }
@@ -200,7 +201,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
-        // The time j in units of the motion. One law samples all times from i on in its segment.
+        // Time j in units of the motion. All times from i on in the same segment are sampled at
+        // once.
         const auto time = [&, unit = units.time](std::size_t j) {
             return std::min(times[j] / unit, std::numeric_limits<double>::max());
         };

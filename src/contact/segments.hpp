@@ -34,21 +34,22 @@ struct Event {
 // The state just after an event, and the impulse of the ground at an impact.
 InitialState start_after(const Scene& scene, const Event& event);
 
-// A body that stays as it is: at rest, or at the instant from which no motion continues, where no
-// force of the ground is right.
+// A body whose state stays as it is: at rest, or at an instant from which no motion continues and
+// at which no contact force obeys the laws.
 using Standing = ContactSample;
 
-// A law of some kB behind a pointer: in the list, every segment would take as much memory.
+// A law of several kB, kept behind a pointer: stored in place, it would make every segment that
+// large.
 template <class Law>
 using Apart = std::shared_ptr<const Law>;
 
-// The law of the motion from a time on, up to the next segment.
+// A stretch of the motion and the law it follows, from a time up to the next segment.
 struct Segment {
     double begin;
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
                  Flight, Settling, Standing>
         law;
-    DoubleDouble turned{};        // angle to be added to the angles of the law
+    DoubleDouble turned{};        // angle to add to those of the law
     bool axes_exchanged = false;  // the law has a and b exchanged (odd quarter turns)
 };
 
@@ -57,10 +58,10 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
-    bool rests = false;  // set if the only law is one of rolling, and the body is at rest
+    bool rests = false;  // true if the only law is one of rolling and the body is at rest
 };
 
-// The law of a segment, whether it is stored in the segment or behind a pointer (Apart).
+// The law of a segment, whether stored in the segment itself or behind a pointer (Apart).
 template <class Law>
 const Law& itself(const Law& law) {
     return law;
@@ -71,24 +72,24 @@ const Law& itself(const Apart<Law>& law) {
     return *law;
 }
 
-// The motion of a body with everything that its contact does: it rolls, slides, flies, hits the
-// ground and comes to rest, each on a segment of its own, joined by events (contact.cpp).
+// The motion of a body in all its phases: it rolls, slides, flies, hits the ground and comes to
+// rest, each in a separate segment, joined by events (contact.cpp).
 Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint);
 
-// The state of a segment with its whole angle, rounded to a double: on the ground h, h' omega and,
-// without slip, h omega are those of this double. `seen` has the axes of the segment.
+// The state of a segment with its total angle, rounded to a double. On the ground, h, h' omega and
+// (without slip) h omega are computed from this double. `seen` has the axes of the segment.
 State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turned,
                        const Scene& scene);
 
-// A motion of one segment, with this law, in SI units.
+// A motion in SI units with a single segment of this law.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Samples a motion at an expected number of times in all, which may come in parts: a table, if so
-// many times are worth one, is made once. A sample is a FlowSample (theta, omega, x), a
-// ContactSample (state and force) or a CoordinateState, in SI units; every segment has all three.
-// At an event it is the one just after it. A motion without segments has no samples.
+// Samples a motion. The times may come in several calls; if their `expected` total number is worth
+// a table, it is made once. A sample is a FlowSample (theta, omega, x), a ContactSample (state and
+// force) or a CoordinateState, in SI units; every segment provides all three. A sample at an event
+// is the one just after it. A motion without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);
@@ -101,10 +102,10 @@ class Sampler {
 
   private:
     const Motion& motion_;
-    std::optional<FlowSampler> flow_;  // set if the motion is one exact rolling
+    std::optional<FlowSampler> flow_;  // set if the motion is exact rolling throughout
 };
 
-// The times at which the steps of an integrated motion begin and end; empty for all other motions.
+// The times at which the steps of an integrated motion start and end; empty for all other motions.
 std::vector<double> knot_times(const Motion& motion);
 
 }  // namespace rolling_ellipse

@@ -12,12 +12,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// Value of B, physics (50), below which the slower clock of physics (54) is used.
+// The value of B, physics (50), below which the slower clock of physics (54) is used.
 constexpr double small_response = 1e-2;
-// Value of B, physics (50), below which B counts as 0.
+// The value of B, physics (50), below which B counts as 0.
 constexpr double no_response = 1e-13;
 
-// The point at a reading of the piece's clock; slip and energy, which no sample needs, are kept.
+// The point of a piece at a clock reading. Slip and energy are not updated: no sample needs them.
 SlidePoint moved(const SlidePiece& piece, double clock) {
     const auto& [centre, kind, unit, reach, motion] = piece;
     const auto change = [clock](const LongSeries& series) { return value(series, clock); };
@@ -37,7 +37,7 @@ bool is_finite(const SlidePoint& point) {
                        [](const DoubleDouble& each) { return std::isfinite(double(each)); });
 }
 
-// Powers of the reach of a piece; finite, since a circle's reach may be huge where its coefficients
+// Powers of the reach of a piece, kept finite: a circle's reach may be huge, while its coefficients
 // are 0.
 LongSeries powers_of(double reach) {
     LongSeries powers{1.0};
@@ -47,12 +47,13 @@ LongSeries powers_of(double reach) {
     return powers;
 }
 
-// The first share of the reach at which a series that must stay positive is provably negative; each
-// coefficient(k) comes with the magnitude of the terms it was made from.
+// The first point, as a fraction of the reach, at which a series that must stay positive is
+// provably negative; coefficient(k) returns a value with the magnitude of the terms it was made
+// from.
 template <class Coefficient>
 std::optional<double> first_end(const LongSeries& powers, const Coefficient& coefficient) {
     Polynomial<long_order> shares;
-    Tracked least;  // a bound of the series from below
+    Tracked least;  // a lower bound of the series
     for (int k = 0; k <= long_order; ++k) {
         const auto [value, magnitude] = coefficient(k);
         const Tracked term{value * powers[k], magnitude * powers[k]};
@@ -64,18 +65,18 @@ std::optional<double> first_end(const LongSeries& powers, const Coefficient& coe
     return first_negative(bernstein(shares));
 }
 
-// The geometry at an angle that has more digits than a double.
+// The geometry at an angle in double-double precision.
 Geometry geometry(const Axes& axes, const DoubleDouble& angle) {
     const double sin = std::sin(angle.high);
     const double cos = std::cos(angle.high);
     constexpr double small = 0x1p-27;  // the sine of a smaller angle is the angle, the cosine 1
-    const bool is_small = std::abs(angle.low) < small;  // it reaches 1 after 1e16 radians
+    const bool is_small = std::abs(angle.low) < small;  // angle.low reaches 1 after 1e16 radians
     const double rest_sin = is_small ? angle.low : std::sin(angle.low);
     const double rest_cos = is_small ? 1.0 : std::cos(angle.low);
     return geometry(axes, sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin);
 }
 
-// Height of the centre over the tip minus its height now.
+// Height of the centre above the tip minus its current height.
 double under_tip(const Axes& axes, const Geometry& at) {
     return under_tip(flat_view(axes, at.sin, at.cos), at.h);
 }
@@ -108,7 +109,7 @@ class SlideIntegration {
         }
     }
 
-    // Adds a piece. Returns the reason if the slide stops there.
+    // Adds a piece. If the slide stops there, returns the reason.
     std::optional<SlideStop> step() {
         const SlidePoint& from = last_;
         const double unit = std::ldexp(1.0, -std::ilogb(rate()));
@@ -122,16 +123,16 @@ class SlideIntegration {
                                            : cancelled_response(slide_.body, at_, from.angle)},
                          clock());
         auto& [angle, omega, x_dot, path, time] = series.motion;
-        // Largest reach of a piece in units of its time: 1 + 15 times the time slid so far, for
-        // circles, whose series never lose their digits. h omega and pressure bound the reach, too:
-        // in a nearly round body they vary more, in shares of themselves, than angle and speed do.
+        // Largest reach of a piece in its unit of time: 1 + 15 times the time slid so far. It
+        // limits circles, whose series never lose accuracy. h omega and pressure bound the reach,
+        // too: for a nearly round body their relative changes exceed those of angle and speed.
         const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
         slide_.pieces.push_back({from, clock(), unit, reach_, series.motion});
         SlidePoint next = moved(slide_.pieces.back(), reach_);
-        // Powers of a rate beyond about 1e100 overflow.
+        // The powers of a rate beyond about 1e100 overflow.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
@@ -149,12 +150,13 @@ class SlideIntegration {
     }
 
   private:
-    // Takes omega from the energy where the body slows down on its way to the tip. The series carry
-    // the roundings of the fast motion before; the energy, counted from the tip, has smaller ones,
-    // unless friction has done much work: its roundings are in the energy.
+    // Computes omega from the energy where the body slows down on its way to the tip. The series
+    // carry the rounding errors of the fast motion before; those of the energy, measured from the
+    // tip, are smaller, unless friction has done much work, whose rounding errors are in the
+    // energy.
     void keep_energy() {
-        constexpr double small = 0.25;  // the terms of the energy, over its largest kinetic part
-        constexpr double rounding = 1e-12;  // a larger relative change of omega is no rounding
+        constexpr double small = 0.25;      // terms of the energy over the largest kinetic energy
+        constexpr double rounding = 1e-12;  // a larger relative change of omega is not rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
         most_kinetic_ = std::max(most_kinetic_, kinetic);
@@ -168,8 +170,8 @@ class SlideIntegration {
         last_.slip = last_.slip + -at_.h * change;
     }
 
-    // Takes the slip from x_dot and h omega where both are smaller than the slip has been: as a sum
-    // of changes it has the roundings of its largest value.
+    // Computes the slip from x_dot and h omega where both are smaller than the largest slip so far:
+    // as a sum of changes, the slip has the rounding errors of its largest value.
     void keep_slip() {
         const double rolled = at_.h * double(last_.omega);
         const double size = std::abs(double(last_.x_dot)) + std::abs(rolled);
@@ -179,8 +181,8 @@ class SlideIntegration {
 
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
-    // 1 + the rate of turning + the rate at which the force changes B, where that is large. In
-    // units of this rate no power overflows.
+    // 1 + the rate of turning + the rate at which the force changes B, if that is large. In units
+    // of this rate no power overflows.
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -192,7 +194,8 @@ class SlideIntegration {
 
     enum class End { slip, pressure, response, recovery, bounds };
 
-    // Shortens the reach to the first place where slip, pressure or B vanishes or a bound lies.
+    // Shortens the reach to the first point where slip, pressure or B vanishes or a bound is
+    // reached.
     void find_end(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
         LongSeries powers = powers_of(reach_);
@@ -212,7 +215,7 @@ class SlideIntegration {
             });
         };
         if (body.side != 0) {
-            // A slip that starts after rolling at the limit has a rate of 0 within rounding.
+            // A slip that starts after rolling at the limit has a rate of 0 to within rounding.
             const bool starts = series.slip[0] == 0;
             search(End::slip, [&](int k) -> Tracked {
                 const double slip = series.slip[k];
@@ -260,8 +263,8 @@ class SlideIntegration {
         return std::nullopt;
     }
 
-    // Whether c, now 0 within rounding, will fall below 0: only on the way to the tip, where h'' is
-    // least.
+    // Whether c, now 0 to within rounding, will fall below 0: this happens only on the way to the
+    // tip, where h'' is least.
     bool leaves() const {
         const Axes& axes = slide_.body.axes;
         const Geometry tip = axes.a > axes.b ? geometry(axes, 1.0, 0.0) : geometry(axes, 0.0, 1.0);
@@ -271,7 +274,7 @@ class SlideIntegration {
                at_.dh * omega > 0;
     }
 
-    // The end of a slide at B = 0: in a moment, N = c/B stops the slip or jams the body.
+    // The end of a slide at B = 0, where N = c/B instantly stops the slip or jams the body.
     SlideStop last_moment() {
         const double angle = double(last_.angle);
         const auto [stops, omega, slip, x_dot, lasts] = rolling_ellipse::last_moment(
@@ -294,19 +297,19 @@ class SlideIntegration {
     Geometry at_;  // geometry at the last point
     double most_kinetic_ = 0.0;
     double most_slip_ = 0.0;
-    double worked_ = 0.0;  // sum of the sizes of the work of friction [energy per mass]
-    // V, while the slower clock is used: a sum of its changes, which shrink with it. So it keeps
-    // its digits where the body turns away from B = 0, however near that is.
+    double worked_ = 0.0;  // sum of the |work| of friction [energy per mass]
+    // V, while the slower clock is used. It is a sum of changes that shrink along with V, so that V
+    // stays accurate however close to B = 0 the body turns away from it.
     std::optional<double> scaled_response_;
     double reach_ = 0.0;
     std::optional<End> end_;
-    // True once c was found to be 0 within rounding, not negative: beside B = 0 a slide under
-    // infinite friction begins so. c then has the rounding of gravity and h'' omega^2, too.
+    // True once c has been 0 to within rounding and not negative, as when a slide starts near B = 0
+    // under infinite friction. c then has the rounding errors of gravity and h'' omega^2, too.
     bool grazes_ = false;
 };
 
-// The reading of the piece's clock at a time since the centre of the piece: at most that of its
-// end, as the slip has its sign only up to there, and the time of an event may be rounded up.
+// The reading of the piece's clock at a time from the centre of the piece. It is at most the reach,
+// since the slip has its sign only up to there and the time of an event may be rounded up.
 double clock_at(const SlidePiece& piece, double time) {
     time /= piece.unit;
     if (piece.clock == SlideClock::time) return std::min(time, piece.reach);

@@ -1,6 +1,6 @@
-// Sliding to one side, solved by power series: a few to an arc, each as accurate as a double within
-// its reach; samples are taken from them, too. The slide ends at first roots, which are proved by
-// the signs of Bernstein coefficients, and not searched for by samples.
+// Sliding to one side, solved by power series: a few per arc, each accurate to double precision
+// within its reach, and used for samples, too. The slide ends at a first root that is proved by the
+// signs of Bernstein coefficients rather than searched for by sampling.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,22 @@
 namespace rolling_ellipse {
 
 struct SlidePoint {
-    // Angle of the body from the quarter turn nearest to the start. A thin body is most sensitive
-    // to the angle there, and the whole angle could not hold these digits.
+    // Angle of the body from the quarter turn nearest to the start. There a thin body is most
+    // sensitive to the angle, and the total angle cannot be stored precisely enough.
     DoubleDouble angle;
     DoubleDouble omega;
     DoubleDouble slip;
-    // Velocity of the centre, not computed from slip + h omega: it would have their rounding, where
-    // friction hardly changes it.
+    // Velocity of the centre. Where friction hardly changes it, computing it as slip + h omega
+    // would only add rounding errors.
     DoubleDouble x_dot;
-    DoubleDouble path;  // path since the start
-    DoubleDouble time;  // time since the start
-    // Energy per mass, without the energy of x_dot, 0 at rest on the tip; only friction changes it.
+    DoubleDouble path;  // path from the start
+    DoubleDouble time;  // time from the start
+    // Energy per mass except that of x_dot, 0 at rest on the tip; only friction changes it.
     DoubleDouble energy;
 };
 
-// The motion from a point on, as series of changes by a clock that is 0 there.
+// The motion from a point onwards, as power series of its changes in a clock that starts there at
+// 0.
 struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
@@ -39,7 +40,7 @@ struct SlidePiece {
 };
 
 struct Slide {
-    SlidingBody body;  // the body; after an odd number of quarter turns its axes are exchanged
+    SlidingBody body;  // the body, with axes exchanged after an odd number of quarter turns
     Axes axes;
     DoubleDouble theta_base;
     double x_base;
@@ -47,15 +48,15 @@ struct Slide {
     std::vector<SlidePiece> pieces;
 };
 
-// A slide at its start, with the slip to the given side (0: without friction there is none). After
-// the end of another slide it starts without slip, with the digits that a state rounds away.
+// A slide at its start, slipping to the given side (0 without friction). If it follows another
+// slide, it starts without slip and with the precision that a rounded state would lose.
 Slide slide_from(const Scene& scene, const State& start, double side,
                  const std::optional<SlidePoint>& end_of_other = {});
 
 struct SlideBounds {
     double t_end = infinity;
     long most_pieces = 0;
-    double theta = infinity;  // the slide stops beyond this angle, or where it turns back
+    double theta = infinity;  // the slide stops beyond this angle or if the body turns back
 };
 
 enum class SlideStop {
@@ -68,7 +69,7 @@ enum class SlideStop {
     no_progress
 };
 
-// Extends the slide until something stops the body; `slide.last` is the point where it stops.
+// Extends the slide until something stops it; `slide.last` is the point where it stops.
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint);
 
 // The state at the last point.
@@ -76,11 +77,11 @@ State end_of(const Slide& slide);
 // The angle of the body at the last point of the slide, to full accuracy.
 DoubleDouble angle_at_end(const Slide& slide);
 
-// The angular velocity at the last point, where the slip has vanished: by x_dot = h omega, if x_dot
-// was smaller during the slide than h omega, and so has smaller roundings.
+// The angular velocity at the last point, where the slip has vanished; from x_dot = h omega if
+// x_dot was smaller than h omega during the slide and so has smaller rounding errors.
 DoubleDouble omega_without_slip(const Slide& slide);
 
-// States and forces at n times since the start, ascending.
+// States and forces at n times from the start, ascending.
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples);
 
 }  // namespace rolling_ellipse

@@ -10,12 +10,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// Angular acceleration by a unit of the contact force, physics (51).
+// Angular acceleration per unit of contact force, physics (51).
 double spin(const SlidingBody& body, const Geometry& at) {
     return -(at.h * body.friction_share + at.dh * body.normal_share) / body.gyration2;
 }
 
-// dB/dtheta, B of physics (50).
+// dB/dtheta, with B of physics (50).
 double response_derivative(const SlidingBody& body, const Geometry& at) {
     return (2 * body.normal_share * at.dh * at.ddh +
             body.friction_share * (at.dh * at.dh + at.h * at.ddh)) /
@@ -46,7 +46,7 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
 
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
                                          const DoubleDouble& angle) {
-    constexpr double little = 0x1p-4;  // of the terms that is left
+    constexpr double little = 0x1p-4;  // terms whose sum is a smaller fraction have cancelled
     const auto [a, b] = body.axes;
     const double nu = body.normal_share;
     const double phi = body.friction_share;
@@ -76,8 +76,8 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 
-// The last moment: the impulse of N changes omega and slip in a fixed ratio, physics (54). At B = 0
-// what a unit of force adds to omega is 1/h': its terms in a light body all but cancel.
+// In the last moment the impulse of N changes omega and slip in a fixed ratio, physics (54). At
+// B = 0 a unit of impulse adds 1/h' to omega, whose terms all but cancel for a light body.
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
@@ -92,8 +92,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
     const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
     const double omega_after = stops ? without_slip : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
-    // The moment lasts until B = 0, or until N = c/B has made the impulse: a slide that starts with
-    // so small a B need not turn towards B = 0, nor turn at all.
+    // The moment lasts until B = 0 or until N = c/B has delivered the impulse: in a slide that
+    // starts with such a small B, the body need not turn towards B = 0, or turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
@@ -102,7 +102,7 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
             least < infinity ? least : 0.0};
 }
 
-// The derivatives of u = h^2, p = h h' and q = p' by the angle are 2 p, q and -4 p.
+// The derivatives of u = h^2, p = h h' and q = p' with respect to the angle are 2 p, q and -4 p.
 ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre,
                                               SlideClock clock) {
     const auto [sin, cos, omega0, slip0, x_dot0, response0] = centre;
@@ -116,14 +116,14 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     SlideSeries slide;
     auto& [motion, slip, rolled, pressure, response, u, work] = slide;
     auto& [angle, w, x_dot, path, time] = motion;
-    // Factors of products side by side, coefficient by coefficient.
+    // Factors of products computed side by side, coefficient by coefficient.
     using Factors = std::array<Quad, long_order + 1>;
     Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) by (angle', angle', h, omega^2)
     Factors lever, by_lever;   // (p, u, u, h) by (L, h, V, V)
     Factors force, by_force;   // (L, h, u V, h V) by (C, omega, omega', impulse')
     Factors clocks, by_clock;  // (dt/dtau, C, dt/dtau, impulse') by (omega, h, x_dot, h omega)
     Factors squared;           // (omega, u) by itself
-    // (a b - u)(a b + u) by factors: nothing cancels for thin bodies, nor for circles.
+    // (a b - u)(a b + u) as a product, without cancellation for thin bodies or circles.
     const double u0 = square(a * sin) + square(b * cos);
     const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
     const double h0 = std::sqrt(u0);
@@ -145,7 +145,8 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
         const Quad forces = inner(force, by_force, k);
         const Quad clocked = inner(clocks, by_clock, k);
         const Quad squares = self_product(squared, k, 1);
-        // The coefficient k of a product from its inner terms and the last coefficients of both.
+        // Coefficient k of a product from its inner terms and the last coefficients of both
+        // factors.
         const auto product = [k](const Quad& known, const Factors& first, const Factors& second,
                                  int lane, double first_k, double second_k) {
             const double ends =
@@ -226,7 +227,7 @@ namespace {
 
 double side_of(double v) { return std::copysign(1.0, v); }
 
-// Whether the body stays where it is.
+// Whether the body remains at rest.
 bool rests(const Scene& scene, const State& state, const Geometry& at) {
     if (state.omega != 0) return false;
     const double incline = std::tan(scene.slope);
@@ -234,10 +235,10 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 }
 
 // The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
-// it slips already can a slide with N = c/B > 0, c < 0, be a second motion beside flight: without
-// slip, the N and F of rolling rule out that slip starts to the side of this slide. Such a state
-// may be a start, but no motion leads to it: a slide ends before, where c or B vanishes, and an
-// impact with B < 0 lasts until the slip stops.
+// it already slips can a slide with N = c/B > 0, c < 0, be a second motion besides flight: without
+// slip, N and F of rolling rule out a slip that starts to that side. Such a state may be a start,
+// but no motion leads to it: a slide ends earlier, where c or B vanishes, and an impact with B < 0
+// lasts until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);
@@ -246,11 +247,11 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
-// Whether a start is the state in which a slide has jammed, B = 0 and c = 0 to within rounding and
-// a blur of theta.
+// Whether a start is the state in which a slide has jammed: B = 0 and c = 0 to within rounding and
+// an uncertainty `blur` of theta.
 bool has_jammed(const Scene& scene, const State& state, const Geometry& at, double slip,
                 double blur) {
-    constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of it
+    constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of this
     if (slip == 0 || scene.friction == 0 || std::isinf(scene.friction)) return false;
     const SlidingBody body = sliding_body(scene, side_of(slip));
     const auto [c, b] = response(body, at, state.omega);
@@ -259,7 +260,8 @@ bool has_jammed(const Scene& scene, const State& state, const Geometry& at, doub
            std::abs(c) <= rounding * body.gravity.into + c_by_blur;
 }
 
-// The start of a slip, where rolling is not possible, to the side to which the contact accelerates.
+// The start of a slip where rolling is impossible, in the direction in which the contact
+// accelerates.
 Continuation starting_to_slide(const Scene& scene, const Geometry& at, const State& state,
                                const ContactForce& rolling) {
     const auto to_side = [&](double side) { return slide_or_leave(scene, at, state.omega, side); };
@@ -274,12 +276,12 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
-// Whether a contact that rolls at the limit of its law, to within rounding of the forces and a blur
-// of theta, breaks it in the next moment: with finite friction |F| = mu N, else N = 0. The moment
-// is the first that rounding can resolve.
+// Whether a contact that rolls at the limit of its law (|F| = mu N, or N = 0 with infinite
+// friction), to within rounding of the forces and an uncertainty `blur` of theta, breaks the law at
+// the next moment that rounding lets us distinguish.
 bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
                  const ContactForce& force, double blur) {
-    constexpr double least_turn = 0x1p-20;  // to the next moment [rad]
+    constexpr double least_turn = 0x1p-20;  // turn from now to the next moment [rad]
     constexpr double most_turn = 0x1p-8;
     const RollingEquation rolling(scene.body(), scene.slope);
     const GroundGravity gravity = scene.ground_gravity();
@@ -295,9 +297,9 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
         const double mean_pull = 0.5 * (pull + rolling.acceleration(later.sin, later.cos, 0.0));
         const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * mean_pull * heading * turn;
-        if (!(later_omega2 > 0)) return false;  // it rocks less far, within a rounding of the law
+        if (!(later_omega2 > 0)) return false;  // it rocks less far; the law hardly changes
         const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2));
-        const double side = side_of(next.friction);  // at the limit also that of F, if F is not 0
+        const double side = side_of(next.friction);  // at the limit, also that of F unless F = 0
         const double now = law_margin(force, scene.friction, side);
         const double change = law_margin(next, scene.friction, side) - now;
         if (std::abs(now) > rounding + std::abs(change) / turn * blur) return false;
@@ -306,7 +308,7 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     return false;
 }
 
-// The continuation of a state, decided by a geometry and a slip, which may be those a moment later.
+// The continuation of a state, given a geometry and a slip that may be those of the next moment.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
@@ -338,8 +340,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
     }
     const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega, blur);
     if (!weightless) return continuation_at(scene, state, at, slip, may_roll, blur);
-    // A weightless body flies on its way up to the tip: c falls there, since h'' is least on it. On
-    // a slope N = h h' (g sin(alpha) - h' omega^2)/D of rolling may hold it nevertheless.
+    // A weightless body flies on its way up to the tip: c falls there, since h'' is least at the
+    // tip. On a slope it may still roll, with N = h h' (g sin(alpha) - h' omega^2)/D.
     if (at.dh * state.omega > 0 && !is_equilibrium(at)) {
         const Continuation now = continuation_at(scene, state, at, slip, may_roll, blur);
         return scene.slope != 0 && now.mode == Mode::rolling ? now : Continuation{Mode::flight};
@@ -356,13 +358,14 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta) {
     const Geometry before = geometry(scene.axes(), state.theta);
     const Geometry after = geometry(new_axes, theta);
-    // A value that differs by at most 16 roundings from one of rolling.
+    // Keeps the offset of a value from its value in rolling, if at most 16 times the change by
+    // rounding.
     const auto kept = [](double value, double was, double is) {
         return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
     };
     const double omega = state.omega;
-    // In the air and without friction only gravity changes x_dot. A flight that has just begun by
-    // the acceleration of the gap is not yet in the air.
+    // In the air and without friction only gravity changes x_dot. A body that is just leaving the
+    // ground because the gap accelerates is not yet in the air.
     const bool touches = state.z == before.h && state.z_dot == before.dh * omega;
     const bool by_contact = scene.friction != 0 && (state.mode != Mode::flight || touches);
     state.theta = theta;

@@ -1,5 +1,5 @@
 // Sliding with Coulomb friction to one side: the contact force, its effects, and the motion as
-// power series about a state; and the mode in which a body on the ground continues.
+// power series about a state; also the mode in which a body on the ground continues.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace rolling_ellipse {
 
-// A body with a slip of the sign `side` (0: without friction there is none). Infinite friction is
-// the limit, physics (52): no normal force, and friction alone keeps the gap closed.
+// A body whose slip has the sign `side` (0 without friction). Infinite friction is the limit of
+// physics (52): no normal force, and friction alone keeps the gap closed.
 struct SlidingBody {
     Axes axes;
     double mass;
@@ -21,37 +21,38 @@ struct SlidingBody {
     double normal_share;
     double friction_share;
 
-    // False for infinite friction: B is small near the tip, but the force does not grow there.
+    // False for infinite friction: B is small near the tip, but the force does not become large
+    // there.
     bool may_jam() const { return normal_share != 0; }
 };
 
 SlidingBody sliding_body(const Scene& scene, double side);
 
-// The free acceleration c into the ground, physics (53), and B (Painleve), the normal acceleration
-// by a unit of force, physics (49, 50). The force cancels the acceleration -c of the gap.
+// The free acceleration c into the ground, physics (53), and Painleve's B, the normal acceleration
+// per unit of force, physics (49, 50). The force cancels the acceleration -c of the gap.
 struct Response {
     double c;
     double b;
 };
 Response response(const SlidingBody& body, const Geometry& at, double omega);
 
-// V = k^2 h^2 B where its terms all but cancel, as they do in a light body near B = 0: by the
-// digits of the angle beyond a double.
+// V = k^2 h^2 B where its terms all but cancel, as for a light body near B = 0; computed from an
+// angle in double-double precision. Empty where they do not cancel.
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
                                          const DoubleDouble& angle);
 
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega);
 
-// The rate of the slip velocity, physics (51).
+// The rate of change of the slip velocity, physics (51).
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
-// The rate at which the contact force changes B by turning the body, by a clock that slows down
-// with B (hence the square root); by time it is 1/B times as large.
+// The rate at which the contact force changes B by turning the body, in a clock that slows down
+// with B (hence the square root); in time it is larger by a factor 1/B.
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
-// The end of a slide that has reached B = 0 with c > 0, physics (54): in a moment N = c/B makes
-// either the slip vanish (it stops) or c (it jams). Angular velocity, slip and velocity of the
-// centre after that moment, and its duration.
+// The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment N = c/B
+// either makes the slip vanish (the slide stops) or makes c vanish (it jams). Holds angular
+// velocity, slip and velocity of the centre after that moment, and its duration.
 struct LastMoment {
     bool stops;
     double omega;
@@ -63,8 +64,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 
 enum class SlideClock { time, slowed };
 
-// The centre of the series: sine and cosine of the angle, velocities and the response V, if it has
-// more digits than sine and cosine give it.
+// The centre of the series: sine and cosine of the angle, velocities, and the response V if it is
+// known more accurately than sine and cosine give it.
 struct SlideCentre {
     double sin;
     double cos;
@@ -74,7 +75,7 @@ struct SlideCentre {
     std::optional<double> response;
 };
 
-// The series that samples are taken from. Angle, path and time are 0 at the centre.
+// The series from which samples are computed. Angle, path and time are 0 at the centre.
 struct SlideMotion {
     LongSeries angle;
     LongSeries omega;
@@ -90,7 +91,7 @@ struct SlideSeries {
     LongSeries pressure;  // C = h^3 c, the scaled c
     LongSeries response;  // V = k^2 u B, the scaled B
     LongSeries height2;   // u = h^2
-    LongSeries work;      // work of friction on the turning, per mass
+    LongSeries work;      // work of friction on the rotation, per mass
 };
 
 // Physics (51, 52) times powers of h, with u = h^2, p = h h' and the shares nu, phi of the contact
@@ -99,8 +100,8 @@ struct SlideSeries {
 //     V = k^2 u B = nu k^2 u + p L               the response to it
 //     C = h^3 c = g cos(alpha) u h + (a b - u)(a b + u) omega^2
 //     omega' u V = -L C,    friction h V = phi k^2 C
-// By the clock dt = u V dtau/(k^2 u0^2), u0 the u of the centre, which slows down near B = 0 where
-// N = c/B grows without bound, all of that is polynomial in them: physics (54).
+// In the clock dt = u V dtau/(k^2 u0^2), with u0 = u at the centre, which slows down near B = 0
+// where N = c/B grows without bound, all of these are polynomials: physics (54).
 SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock);
 
 // The number of possible continuations. A slide may have none or two (P. Painleve, C. R.
@@ -108,31 +109,32 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
 // it (c < 0) it has two if B < 0, flight and a slide with N = c/B > 0.
 enum class Painleve { determined, no_motion, two_motions };
 
-// How a body continues that touches the ground and does not move into it.
+// How a body that touches the ground without moving into it continues.
 struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
-    // Set for infinite friction and c = 0 within rounding: N is then rounding as well, and next to
-    // the tip so is B. The body moves freely until it has turned so far that N and B have digits.
+    // Set for infinite friction and c = 0 to within rounding: N is then mere rounding error, and
+    // near the tip so is B. The body moves freely until it has turned far enough for N and B to be
+    // resolved.
     bool grazes = false;
-    bool may_fly = false;     // the body rolls, but flight would obey the laws, too
+    bool may_fly = false;     // the body rolls, but flight would obey the laws as well
     bool has_jammed = false;  // the state just after a JAM
 };
 
 inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
 
-// The mode that the forces allow. Without slip the body rolls if it may and can; else it starts to
-// slide, or leaves the ground if its contact is not pressed any more. On slopes the forces may
-// allow both rolling and flight (c < 0 < N): the body then rolls, as it does if it has arrived
-// rolling. At a start c = 0 and |F| = mu N count as true within rounding and within what a blur of
-// theta [rad] changes of them; the next moment then decides.
+// The mode that the forces allow. Without slip the body rolls if it may and can; otherwise it
+// starts to slide, or leaves the ground if nothing presses it to the ground any more. On slopes the
+// forces may allow both rolling and flight (c < 0 < N): the body then rolls, just as if it had
+// arrived rolling. At a start, c = 0 and |F| = mu N count as true if they hold to within rounding
+// and the effect of an uncertainty `blur` of theta [rad]; the next moment then decides.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// A state of the scene with another double for its angle, counted for the new axes: h and h' change
-// by rounding. A gap that is not much larger remains, and on the ground a slip and a rate of the
-// gap: contact and no slip remain so.
+// The state of a scene with its angle measured anew, for the new axes, so that h and h' change by
+// rounding. A gap of that order is kept, and so are slip and rate of the gap on the ground: a
+// contact remains a contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // How a body continues from its start, which may be in the air.

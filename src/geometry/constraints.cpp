@@ -6,13 +6,13 @@ namespace rolling_ellipse {
 namespace {
 
 // Depth of the lowest point of an ellipse under its centre [m], by the implicit equation d^T M d =
-// 1 in ground axes, physics (11): without the support function, so that each method checks the
-// other.
+// 1 in ground axes, physics (11). It does not use the support function, so that each method checks
+// the other.
 double lowest_depth(const Axes& axes, double theta) {
     const double along_a = std::sin(theta) / axes.b;
     const double along_b = std::cos(theta) / axes.a;
-    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the form is least
-    // at y^2 det M/M_xx, which is 1 where the line is tangent.
+    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the least value of
+    // the form is y^2 det M/M_xx, which is 1 where the line is tangent.
     const double m_xx = along_a * along_a + along_b * along_b;
     return axes.a * axes.b * std::sqrt(m_xx);
 }
@@ -60,7 +60,7 @@ Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
 ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
     using namespace coordinate;
     const double depth = lowest_depth(axes, q[theta]);
-    // Slip is v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
+    // The slip is v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
     return {position_residuals(axes, q), constraint_matrix(axes, q) * q_dot, q[z] - depth,
             q_dot[x] - q_dot[theta] * depth};
 }
@@ -69,7 +69,7 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const Geometry at = geometry(axes, theta);
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
-    // The radius for psi as rounded: then f3 is zero to within rounding, and f2 is flat in psi.
+    // The radius at the rounded psi makes f3 zero to within rounding; f2 is stationary in psi.
     const PolarRadius r = polar_radius(axes, psi);
     CoordinateState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, r.value;

@@ -14,7 +14,7 @@ struct CarlsonPair {
 
 // R_F and R_D by duplication, then by series in the symmetric functions of the deviations. B. C.
 // Carlson, Numer. Algorithms 10 (1995) 13; DLMF 19.36(i). Both series end at order 7: the error is
-// about (largest deviation)^8 / 100, below 1e-18 once that is < 1e-2.
+// about (largest deviation)^8 / 100, below 1e-18 for deviations < 1e-2.
 CarlsonPair carlson(double x, double y, double z) {
     constexpr double series_radius = 1e-2;
     double rd_sum = 0.0;
@@ -67,8 +67,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc of the ellipse between the contacts at the tip and at an angle from it, physics (10):
-// DLMF 19.25.10 without its last term, the lead -h' of the centre.
+// The arc of the ellipse from the tip to the contact at an angle from it, physics (10): DLMF
+// 19.25.10 without its last term, the centre's lead -h'.
 double arc_from_tip(const Axes& lying, double s, double c) {
     const auto [long_axis, short_axis] = lying;
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -77,8 +77,8 @@ double arc_from_tip(const Axes& lying, double s, double c) {
     return short_axis * short_axis * s * (rf + lying.c2() * s * s / 3 * rd);
 }
 
-// Path of the centre, and arc of the contact along the ellipse (h' longer), from theta = 0 to an
-// angle with sine and cosine >= 0: physics (9). Small paths keep their digits.
+// The path of the centre, and the arc of the contact along the ellipse (longer by h'), from
+// theta = 0 to an angle with sine and cosine >= 0: physics (9). Short paths stay accurate.
 struct QuarterPath {
     double centre;
     double contact;
@@ -93,7 +93,7 @@ QuarterPath quarter_path(const Axes& axes, double s, double c) {
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
-// The paths for an angle of any size: whole half turns and a remainder.
+// The paths for an angle of any size: whole half turns plus a remainder.
 QuarterPath unwrapped_path(const Axes& axes, double theta) {
     if (axes.a == axes.b) return {axes.a * theta, axes.a * theta};
     const double s = std::sin(theta);
@@ -137,8 +137,7 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // The angle h'/h'' from equilibrium decides, since a nearly round body has a small h'
-    // everywhere.
+    // Tests the angle h'/h'' from equilibrium, since a nearly round body has a small h' everywhere.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

@@ -1,4 +1,4 @@
-// Geometry of an ellipse that touches a straight ground, by its support function.
+// Geometry of an ellipse on a straight ground, from its support function.
 //
 // theta is the clockwise rotation of the body; at theta = 0 the axis a is parallel to the ground.
 // All functions hold for a > b, a = b and a < b and for any angle.
@@ -21,7 +21,7 @@ struct Axes {
 struct Geometry {
     double sin;
     double cos;
-    double h;    // height of the centre over its tangent line [m]
+    double h;    // height of the centre above the tangent line [m]
     double dh;   // h' = x_C - x_G [m]
     double ddh;  // h'' [m]
     double rho;  // h + h'', radius of curvature at the contact [m]
@@ -38,7 +38,7 @@ inline Geometry geometry(const Axes& axes, double s, double c) {
     at.dh = axes.c2() * s * c / at.h;                                            // physics (2)
     const double h3 = at.h * at.h * at.h;
     at.rho = a * a * b * b / h3;  // physics (4)
-    // rho - h, factorised so that it keeps its digits for nearly circular bodies: physics (3).
+    // rho - h, factorised to stay accurate for nearly circular bodies: physics (3).
     at.ddh = axes.c2() * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
     return at;
 }
@@ -47,15 +47,15 @@ inline Geometry geometry(const Axes& axes, double theta) {
     return geometry(axes, std::sin(theta), std::cos(theta));
 }
 
-// h h'' - h'^2 by factors, their order such that a mirror image has the same bits.
+// h h'' - h'^2 as a product, ordered so that mirror images give the same bits.
 inline double bend_of_height(const Axes& axes, const Geometry& at) {
     const double across = axes.b * at.cos;
     const double along = axes.a * at.sin;
     return axes.c2() * ((across - along) * (across + along)) / square(at.h);
 }
 
-// A position by its angle phi from the flat one: phi is theta for a >= b, otherwise theta - pi/2.
-// Half turns, after which the ellipse is the same, fold it to cos phi >= 0.
+// A position given by its angle phi from the flat one: phi is theta for a >= b, otherwise
+// theta - pi/2. Half turns, which map the ellipse to itself, are removed so that cos phi >= 0.
 struct FlatView {
     double long_axis;
     double short_axis;
@@ -69,8 +69,8 @@ struct FlatView {
 FlatView flat_view(const Axes& axes, double theta);
 FlatView flat_view(const Axes& axes, double sin, double cos);
 
-// under_tip: L - h, the depth of the centre under its highest position; over_flat: h - S, its
-// height over its lowest position [m]. They are products, since differences of heights lose digits.
+// under_tip: L - h, the depth of the centre below its highest position; over_flat: h - S, its
+// height above the lowest [m]. They are products, since differences of heights would lose accuracy.
 inline double under_tip(const FlatView& at, double h) {
     return at.c2 * square(at.cos) / (at.long_axis + h);
 }
@@ -78,11 +78,12 @@ inline double over_flat(const FlatView& at, double h) {
     return at.c2 * square(at.sin) / (at.short_axis + h);
 }
 
-// Whether the contact is right below the centre, to within 8 ulp of the height and of the angle. On
-// a slope the vertical meets the ground h tan(slope) = h incline downhill of the foot of h.
+// Whether the contact lies right below the centre, to within 8 ulp of the height and of the angle.
+// On a slope the vertical through the centre meets the ground h tan(slope) = h incline downhill of
+// the foot of the perpendicular.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
-// The angle psi - theta = atan2(h', h) from the vertical to the contact, between -pi/2 and pi/2.
+// The angle psi - theta = atan2(h', h) from the ground's normal to the contact, in (-pi/2, pi/2).
 double contact_angle_offset(const Geometry& at);
 
 // The angle psi of the report's eq 5, continuous over all theta.
@@ -95,9 +96,9 @@ double contact_angle_second(const Axes& axes, const Geometry& at);
 // Distance r of the contact from the centre [m], r^2 = h^2 + h'^2.
 double contact_distance(const Axes& axes, const Geometry& at);
 
-// Radius R of the ellipse in the body direction psi (report eq 6, physics (7)), and its first two
-// derivatives: R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a
-// b)^2, physics (8).
+// The radius R of the ellipse in the body direction psi (report eq 6, physics (7)) and its first
+// two derivatives: R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so
+// R' = R^3 (a^2 - b^2) sin cos/(a b)^2, physics (8).
 struct PolarRadius {
     double value;
     double derivative;
@@ -115,7 +116,7 @@ inline PolarRadius polar_radius(const Axes& axes, double psi) {
     return {radius, derivative, 3 * derivative * derivative / radius + gain * std::cos(2 * psi)};
 }
 
-// The path of the centre in rolling from 0 to theta [m], the integral of h: physics (9).
+// The path of the centre when rolling from 0 to theta [m], the integral of h: physics (9).
 double centre_path(const Axes& axes, double theta);
 
 // Arc length along the ellipse from the contact at 0 to the contact at theta [m]: centre_path + h'.
@@ -126,18 +127,18 @@ double arc_length(const Axes& axes, double theta);
 double path_from_flat(const Axes& lying, double s, double c);
 double path_from_tip(const Axes& lying, double s, double c);
 
-// Half a turn, pi in two parts: the ellipse is the same after it.
+// Half a turn, after which the ellipse looks the same: pi as a double-double.
 inline constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};
 
-// An angle without its full turns, if it is larger than half a turn; unchanged otherwise.
+// An angle reduced by full turns if it exceeds half a turn; unchanged otherwise.
 inline double within_a_turn(double angle) {
     return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
 }
 
 inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 
-// An angle as quarter turns and a remainder: the angle from the nearest flat position or tip, where
-// it has the most digits.
+// An angle as quarter turns and a remainder: the angle from the nearest flat position or tip, the
+// most precise form.
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
@@ -149,21 +150,22 @@ inline QuarterView quarter_view(const DoubleDouble& angle) {
     return {quarters, angle - half_pi_exact * quarters};
 }
 
-// The same for an angle of at most a quarter turn, by its sine and cosine.
+// The same for an angle of at most a quarter turn, from its sine and cosine.
 inline QuarterView quarter_view(double sin, double cos) {
     const double s = std::abs(sin);
     if (s <= cos) return {0.0, {std::atan2(sin, cos), 0.0}};
     return {std::copysign(1.0, sin), {-std::copysign(std::atan2(cos, s), sin), 0.0}};
 }
 
-// An angle small enough that its sums with others resolve a part of a turn: unchanged up to 1e15,
-// where a double resolves 0.1 rad, and without its full turns beyond.
+// The same direction by an angle small enough that sums with it resolve a fraction of a turn:
+// unchanged up to 1e15, where a double resolves 0.1 rad, and reduced by full turns beyond.
 inline double resolved(double angle) {
     constexpr double largest = 1e15;
     return std::abs(angle) > largest ? within_a_turn(angle) : angle;
 }
 
-// Takes whole half turns off angle + carry if the angle exceeds half a turn; returns their number.
+// Subtracts whole half turns from angle + carry if the angle exceeds half a turn; returns their
+// number.
 inline double take_half_turns_off(double& angle, double& carry) {
     if (!(std::abs(angle) > pi)) return 0.0;
     const double over = std::nearbyint(angle / pi);

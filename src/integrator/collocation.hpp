@@ -6,7 +6,7 @@ namespace rolling_ellipse {
 
 // Gauss-Legendre: nodes c, weights b; a_ij = b_j mu_ij with mu_ij + mu_ji = 1 exactly, which keeps
 // the rounded method symplectic (Antonana, Makazaga, Murua, Numer. Algorithms 76 (2017) 861).
-// nu_ij b_j are the stages of the next step as the polynomial of this one foresees them.
+// nu_ij b_j extrapolates the polynomial of this step to predict the stages of the next one.
 template <int Stages>
 struct GaussCoefficients;
 

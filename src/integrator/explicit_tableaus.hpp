@@ -1,9 +1,9 @@
 // Explicit Runge-Kutta methods as data.
 //
-// Rows of `a`: the stages of a step; the weights of its result, whose stage is f at the end of the
-// step (and the first stage of the next step); the stages of the dense output. `error` holds the
-// weights of the error estimates, `dense` the weights of the terms that the dense output adds to
-// the cubic Hermite polynomial.
+// Rows of `a`: first the stages of a step; then the weights of its result, whose stage is f at the
+// end of the step (also the first stage of the next step); then the stages of the dense output.
+// `error` holds the weights of the error estimates, `dense` the weights of the terms that the dense
+// output adds to the cubic Hermite polynomial.
 #pragma once
 
 namespace rolling_ellipse {
@@ -52,7 +52,7 @@ struct DormandPrince5 {
 
 // The method DOP853 of E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations
 // I, II.5, II.6, II.10: order 8 with error estimates of orders 5 and 3 and dense output of order 7;
-// digits of their program dop853.f.
+// coefficients from their program dop853.f.
 struct DormandPrince853 {
     static constexpr int order = 8;
     static constexpr int stages = 12;

@@ -13,8 +13,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
-// Scale of each component for the errors of a step: the sum of the sizes of an ordinary state, of
-// the point and of the stages.
+// The scale by which errors of each component are judged in a step: the sum of the magnitudes of a
+// typical state, of the point and of the stages.
 template <int Stages, class System, int N = System::size>
 Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Stages>& parts) {
     Vector<N> sum = f.typical() + point.y.cwiseAbs();
@@ -22,8 +22,8 @@ Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Sta
     return sum;
 }
 
-// Stopping criterion of an iteration to the last bit: no component has a shrinking change any more
-// (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
+// Stopping criterion of an iteration to the last bit: no component's change shrinks any more (M.
+// Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
 template <int N, int Stages>
 class Stagnation {
   public:
@@ -32,9 +32,9 @@ class Stagnation {
         smallest_ = last_;
     }
 
-    // Record the changes of an iteration; true if some component still shrinks. The larger one of
-    // two successive changes counts, since in second-order equations large and small ones
-    // alternate.
+    // Records the changes of an iteration; true if some component's change is still shrinking. The
+    // larger of two successive changes counts, since in second-order equations large and small
+    // changes alternate.
     bool shrinks(const StageVectors<N, Stages>& changes) {
         bool shrinking = false;
         const bool first = std::isinf(last_[0][0]);
@@ -55,11 +55,11 @@ class Stagnation {
         return shrinking;
     }
 
-    // The largest of the last changes, relative to a size of each component.
+    // The largest of the most recent changes, each component relative to its scale.
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
-    // True if the last changes are negligible relative to the first ones or to the size. (An
-    // iteration that diverges from a tiny start has tiny changes, too.)
+    // True if the most recent changes are negligible relative to the first ones or to the scale.
+    // (An iteration that diverges from a tiny start has tiny changes, too.)
     bool settled(const Vector<N>& size) const {
         constexpr double share_of_first = 1e-6;
         constexpr double near_rounding = 1e-11;
@@ -74,11 +74,11 @@ class Stagnation {
     Vector<N> first_ = Vector<N>::Zero();
 };
 
-// Most iterations of a step. It ends earlier, once its changes are settled and no longer shrink.
+// Limit on the iterations of a step; they end as soon as the changes have settled.
 inline constexpr int most_iterations = 200;
 
-// Dense output of an implicit method by a shorter step, hence of the full order. Its change is 0 if
-// the stages of the shorter step do not converge.
+// Dense output of an implicit method, computed by a shorter step and hence of full order. The
+// change is 0 if the stages of the shorter step do not converge.
 template <class Method, class System>
 struct PartialStep {
     static constexpr int N = System::size;
@@ -96,9 +96,9 @@ struct PartialStep {
     }
 };
 
-// Gauss-Legendre collocation of order 2 s: symplectic, symmetric, its rounding error a random walk.
-// Fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) where the h b_j sum to h,
-// and compensated summation, as in
+// Gauss-Legendre collocation of order 2 s: symplectic and symmetric; its rounding error grows like
+// a random walk. It uses fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) with
+// h b_j that sum to h, and compensated summation, as in
 //     E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231,
 //     M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
 template <int S, class System>

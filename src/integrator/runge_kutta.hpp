@@ -1,5 +1,5 @@
-// Explicit Runge-Kutta methods: steps of fixed size, steps of controlled error, dense output.
-// HNW: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
+// Explicit Runge-Kutta methods: fixed steps, error-controlled steps, dense output. HNW: E. Hairer,
+// S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace rolling_ellipse {
 
-// Call action(i) for First <= i < End, each i a constant of its own type.
+// Calls action(i) for First <= i < End, each i an integral_constant.
 template <int First, int End, class Action>
 [[gnu::always_inline]] inline void unrolled(const Action& action) {
     if constexpr (First < End) {
@@ -20,8 +20,8 @@ template <int First, int End, class Action>
     }
 }
 
-// The sum of the first Count stages with the weights of a row; terms with a zero weight are removed
-// at compile time. Written by components, since Eigen's expressions of vectors are not inlined
+// The sum of the first Count stages with the weights of a row; terms of zero weight are removed at
+// compile time. Written component by component, since Eigen's vector expressions are not inlined
 // here.
 template <const auto& Table, int Row, int Count, int N, std::size_t Size>
 [[gnu::always_inline]] inline Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k) {
@@ -41,13 +41,13 @@ class ExplicitMethod {
     static constexpr bool controls_error = Tableau::error_estimates > 0;
     static constexpr int all_stages = Tableau::all_stages;
     using Dense = DenseOutput<N, Tableau::dense_terms>;
-    // True if a step of controlled error computes every stage of its dense output.
+    // True if an error-controlled step computes every stage of its dense output.
     static constexpr bool keeps_dense = controls_error && all_stages == Tableau::stages + 1;
 
     explicit ExplicitMethod(const System& system) : f_(system) {}
 
     StepCounts counts;
-    Dense last_dense;  // dense output of the last step of controlled error, if keeps_dense
+    Dense last_dense;  // dense output of the last error-controlled step, if keeps_dense
 
     // Takes a step of the given size; always true.
     bool advance(Point<N>& point, double h) {
@@ -62,8 +62,8 @@ class ExplicitMethod {
         return dense_of_stages(h);
     }
 
-    // Steps of controlled error up to t_end; `visit(point)` is called with each new point and may
-    // change it. The elementary controller of HNW II.4 with SciPy's limits on the step's growth.
+    // Error-controlled steps up to t_end; `visit(point)` is called with each new point and may
+    // change it. The controller is the elementary one of HNW II.4 with SciPy's limits on growth.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
                      Visit visit) {
@@ -79,7 +79,7 @@ class ExplicitMethod {
                 const double smallest = 10 * (std::nextafter(point.t, infinity) - point.t);
                 if (!(h >= smallest)) return Ending::step_too_small;
                 const double t = std::min(point.t + h, t_end);
-                h = t - point.t;  // the step between rounded times
+                h = t - point.t;  // the step between the rounded times
                 evaluate<1, error_stages>(point, h);
                 Point<N> next = point;
                 add<N>(next, increment(h));
@@ -122,18 +122,18 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // A term of the interpolant that overflows, because a stage does, is left out.
+            // Omits a term of the interpolant that overflows because a stage does.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
     }
 
-    // Number of stages in the error estimate: with f at the end of the step if that has a weight.
+    // Number of stages in the error estimate, including f at the end of the step if weighted.
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
-    // The sum over the earlier stages is independent of the last one, so that the processor can
-    // compute both at the same time.
+    // Sums the earlier stages independently of the last one, so that the processor can compute both
+    // at the same time.
     template <int Stage>
     [[gnu::always_inline]] void evaluate_stage(const Point<N>& from, double h) {
         Vector<N> change = from.carry;
@@ -157,7 +157,7 @@ class ExplicitMethod {
         return h * weighted_sum<Tableau::a, Tableau::stages, all_stages>(k_);
     }
 
-    // The scales 1/(atol + rtol size) of errors; infinite where the sum is 0.
+    // The scales 1/(atol + rtol size) of the errors; infinite where the sum is 0.
     static Vector<N> inverse_scale(const Tolerance& tolerance, const Vector<N>& size) {
         Vector<N> inverse;
         for (int i = 0; i < N; ++i) {
@@ -166,8 +166,8 @@ class ExplicitMethod {
         return inverse;
     }
 
-    // The mean square of v relative to the tolerance. A component of 0 counts as 0 even where the
-    // tolerance is 0.
+    // The mean square of v relative to the tolerance. A component that is 0 contributes 0 even
+    // where the tolerance is 0.
     [[gnu::always_inline]] static double mean_square(const Vector<N>& v, const Vector<N>& inverse) {
         double sum = 0.0;
         for (int i = 0; i < N; ++i) {
@@ -176,7 +176,7 @@ class ExplicitMethod {
         return sum / N;
     }
 
-    // The mean square of a step's error relative to the tolerance; squared, it needs no root.
+    // The mean square of a step's error relative to the tolerance; no root of it is needed.
     [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
                                                double h, const Tolerance& tolerance) const {
         Vector<N> size;
@@ -195,9 +195,9 @@ class ExplicitMethod {
         }
     }
 
-    // Size of the first step, HNW II.4: from the sizes of y, y' and y''.
+    // Size of the first step, from the magnitudes of y, y' and y'': HNW II.4.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        constexpr double longest = 1e300;  // replaces an infinite span, which cannot shrink
+        constexpr double longest = 1e300;  // replaces an infinite span, which could not shrink
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> inverse = inverse_scale(tolerance, size);

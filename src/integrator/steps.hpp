@@ -1,13 +1,13 @@
-// A solution as the list of the points between its steps. The dense output of a step is stored
-// where it needs no further evaluation of f; otherwise it is computed when the step is sampled.
+// A solution as the list of the points between its steps. The dense output of a step is stored if
+// it needs no further evaluation of f; otherwise it is computed when the step is sampled.
 //
-// An integration method is a class of a System (see system.hpp) with
+// An integration method is a class template over a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size
 //     static constexpr bool controls_error;
 //     explicit Method(const System&);
 //     bool advance(Point<N>&, double h);       // one step; false if its stages have no solution
 //     Dense dense_output(const Point<N>& from, double h);  // .change(s) = y - from.y, 0 <= s <= 1
-//     StepCounts counts;                       // so far
+//     StepCounts counts;                       // counts so far
 // and, if it controls its error,
 //     Ending integrate(Point<N>, double t_end, const Tolerance&, long max_steps, Visit);
 //     static constexpr bool keeps_dense;
@@ -29,22 +29,22 @@ struct Knot {
     double t;
     Vector<N> y;
     Vector<N> carry;
-    double periods;  // number of periods of f subtracted from y
+    double periods;  // number of periods of f that were subtracted from y
 
     Point<N> point() const { return {t, y, carry, Vector<N>::Zero()}; }
 };
 
 template <int N>
 struct Steps {
-    double size;  // size of each step; 0: error control chooses it
+    double size;  // size of each step; if 0, error control chooses it
     std::vector<Knot<N>> knots;
-    std::vector<DenseOutput<N, 1>> dense = {};  // dense output of the first steps, where stored
+    std::vector<DenseOutput<N, 1>> dense = {};  // stored dense output of the first steps
 };
 
-// Largest number of steps whose dense output is stored, a bound on the memory of long runs.
+// Largest number of steps whose dense output is stored, to limit the memory of long runs.
 inline constexpr std::size_t most_kept = std::size_t{1} << 17;
 
-// Integrate from the last knot to t_end. `after_step(point)` may change each new point;
+// Integrates from the last knot to t_end. `after_step(point)` may change each new point;
 // `reduce(point)` subtracts periods from it and returns their number; `checkpoint()` is called
 // every `steps_between_checks` steps.
 template <class Integrator, int N, class Rule, class Reduce, class Checkpoint>
@@ -75,16 +75,16 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
     return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
 }
 
-// Call take(i, knot, change) for each of n times between the first and the last knot; the state is
-// the knot's plus the change. Fastest for sorted times.
+// Calls take(i, knot, change) for each of n times between the first and the last knot; the state is
+// that of the knot plus the change. Fastest for sorted times.
 template <class Integrator, int N, class Take>
 void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
                   Take take) {
     const std::vector<Knot<N>>& knots = steps.knots;
     const std::size_t last = knots.size() - 1;
-    std::size_t step = last + 1;  // the step that contains the time; none at first
+    std::size_t step = last + 1;  // the step that contains the time; initially none
     std::optional<decltype(integrator.dense_output({}, 0.0))> dense;
-    // Time since the knot of the step. A fixed step begins at the exact multiple of its size.
+    // Time since the knot of the step. A fixed step starts at the exact multiple of its size.
     const auto since_knot = [&](double t) {
         return steps.size == 0 ? t - knots[step].t
                                : std::fma(-static_cast<double>(step), steps.size, t);
@@ -114,10 +114,10 @@ void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* t
     }
 }
 
-// Call take(knot, change) at evenly chosen knots and in the middles of some of the steps. A knot
-// costs less than three evaluations of f and a middle at most two steps, in all about a twentieth
-// of the integration. Implicit methods are examined at knots only, since their dense output is a
-// step of the same accuracy.
+// Calls take(knot, change) at evenly chosen knots and at the midpoints of some steps. A knot costs
+// less than three evaluations of f, a midpoint at most two steps; together they cost about a
+// twentieth of the integration. Implicit methods are examined at knots only, since their dense
+// output is a step of the same accuracy.
 template <class Integrator, int N, class Take>
 void survey(Integrator& integrator, const Steps<N>& steps, long evaluations, Take take) {
     constexpr std::size_t least_knots = 8;

@@ -1,11 +1,11 @@
-// Points, tolerances and endings, common to all integrators. An integrator is given a system
-// y' = f(t, y), or diag(mass) y' = f(t, y), as a class
+// Points, tolerances and endings, common to all integrators. An integrator takes a system y' = f(t,
+// y), or diag(mass) y' = f(t, y), as a class
 //     struct System {
 //         static constexpr int size;
 //         Vector<size> operator()(double t, const Vector<size>& y) const;
 //         Matrix<size> jacobian(double t, const Vector<size>& y) const;   // for Radau
 //         Vector<size> mass() const;                                      // for Radau
-//         Vector<size> typical() const;  // sizes of an ordinary state, for implicit methods
+//         Vector<size> typical() const;  // magnitudes of a typical state, for implicit methods
 //     };
 // A step allocates no memory; a step that fails returns a status.
 #pragma once
@@ -37,7 +37,7 @@ struct Point {
     Vector<N> origin = Vector<N>::Zero();
 };
 
-// Add an increment to y + carry; the rounding error stays in the carry.
+// Adds an increment to y + carry; the rounding error stays in the carry.
 template <int N>
 void add(Point<N>& point, const Vector<N>& increment) {
     for (int i = 0; i < N; ++i) {
@@ -66,7 +66,7 @@ struct DenseOutput {
     }
 };
 
-// Steps between two calls of the checkpoint: 10 us of the cheapest steps, 4 ms of the slowest.
+// Steps between two calls of the checkpoint: they take 10 us if cheap, and up to 4 ms if slow.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {
@@ -89,13 +89,13 @@ struct StepCounts {
 // Return value of a visitor: `changed` if it altered the point, so that f must be evaluated again.
 enum class AfterStep { unchanged, changed };
 
-// Reason for the end of a motion. Integrators return the first four; the others belong to whole
-// motions.
+// The reason why a motion ended. Integrators return one of the first four; the others apply to
+// whole motions.
 enum class Ending {
     completed,
     max_steps,
     step_too_small,  // the tolerance cannot be met
-    step_too_large,  // a fixed step: stages without a solution, or a state out of range
+    step_too_large,  // a fixed step whose stages have no solution or whose state is out of range
     max_events,
     jammed,        // a slide has no continuation
     undetermined,  // a slide has two continuations
@@ -107,7 +107,7 @@ inline constexpr std::array names<Ending>{"COMPLETED",      "MAX_STEPS",    "STE
                                           "STEP_TOO_LARGE", "MAX_EVENTS",   "JAMMED",
                                           "UNDETERMINED",   "VALIDITY_LOST"};
 
-// A motion that was integrated, and the time up to which it is known.
+// An integrated motion and the time up to which it is known.
 template <class Motion>
 struct Integration {
     Motion motion;
@@ -118,11 +118,12 @@ struct Integration {
 
 // Steps of one size up to t_end; the last one is shorter. `method.advance(point, h)` updates the
 // point except its time and returns false if the step fails; `visit(point)` is called with each new
-// point and may change it. Times are multiples of the step, so that rounding does not accumulate.
+// point and may change it. Times are multiples of the step, so that rounding errors do not
+// accumulate.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
-    constexpr double no_step = 1e-10;  // share of a step: a shorter rest is rounding of times
+    constexpr double no_step = 1e-10;  // fraction of a step; a shorter remainder is due to rounding
     const double start = point.t;
     for (long n = 0; point.t < t_end; ++n) {
         if (n == max_steps) return Ending::max_steps;

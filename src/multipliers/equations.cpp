@@ -8,7 +8,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The direction in q of rolling: theta grows by 1, and A q_dot = 0.
+// The direction of rolling in q, with dtheta = 1 and A dq = 0.
 Coordinates rolling_direction(const ConstraintMatrix& a) {
     using namespace coordinate;
     Coordinates direction;
@@ -20,12 +20,11 @@ Coordinates rolling_direction(const ConstraintMatrix& a) {
     return direction;
 }
 
-// Second derivatives of all coordinates, and the multipliers that have the effect of a contact
-// force.
+// The second derivatives of all coordinates, and the multipliers equivalent to a contact force.
 //
-// The multipliers of the gradients of f1 ... f4 are lambda1 = F and lambda2 = N. The rows of psi
-// and r carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the
-// contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
+// Of the multipliers of f1 ... f4, lambda1 = F and lambda2 = N. The rows of psi and r carry no
+// mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the contact r
+// cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
 MultiplierSolution contact_solution(const Axes& axes, const Geometry& at,
                                     const CoordinateState& state, const ContactForce& force,
                                     const RollingEquation::Accelerations& acceleration) {
@@ -125,8 +124,8 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
-// Projection by Newton's method until the residuals stop shrinking. psi and r have no mass, so that
-// their values are free: if far off, they are first computed from theta, which keeps its digits.
+// Projects by Newton's method until the residuals stop shrinking. psi and r have no mass, so their
+// values are free: if far off, they are first computed from theta, which thus keeps its precision.
 double ConstrainedBody::project(CoordinateState& state) const {
     constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;
@@ -146,10 +145,10 @@ double ConstrainedBody::project(CoordinateState& state) const {
     return missed;
 }
 
-// Projection by Newton's method along the rolling direction, until the energy in excess stops
-// shrinking. Along it the energy changes by D (omega domega - pull dtheta), where `pull` is the
-// component of the force over D. The correction is the least one in domega^2 + (g/L) dtheta^2,
-// regular at turning points, too.
+// Projects by Newton's method along the rolling direction until the excess energy stops shrinking.
+// Along this direction the energy changes by D (omega domega - pull dtheta), where `pull` is the
+// component of the force divided by D. The correction minimises domega^2 + (g/L) dtheta^2, which is
+// regular even at turning points.
 double ConstrainedBody::project(CoordinateState& state, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;

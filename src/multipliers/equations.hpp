@@ -1,8 +1,8 @@
-// The report's system: coordinates q = (x, z, theta, psi, r), the constraints f1 ... f4 and their
+// The report's system: coordinates q = (x, z, theta, psi, r), constraints f1 ... f4 and their
 // Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
 //     M q_ddot = Q + A^T lambda,   A q_dot = 0,
 //     M = diag(m, m, I, 0, 0),     Q = (m g sin, -m g cos, 0, 0, 0)
-// with the slope in Q. M is singular in psi and r (eqs 19, 20); the saddle matrix with A is
+// with the slope in Q. M is singular in psi and r (eqs 19, 20); the saddle-point matrix with A is
 // regular.
 #pragma once
 
@@ -17,14 +17,14 @@ struct MultiplierSolution {
     Eigen::Vector4d multipliers;  // units N, N, N, N m; the first two are F and N
 };
 
-// The coordinates of a body in any mode: psi and r belong to its lowest point.
+// The coordinates of a body in any mode: psi and r are those of its lowest point.
 CoordinateState coordinate_state(const Axes& axes, const State& state);
 
 // Accelerations and multipliers from a state and its contact force, by Newton's and Euler's laws.
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// Rolling in full: state (its x the integral of h from 0), accelerations and multipliers.
+// Rolling in full: the state (where x is the integral of h from 0), accelerations and multipliers.
 struct RollingDetail : MultiplierSolution {
     CoordinateState state;
 };
@@ -38,7 +38,7 @@ class ConstrainedBody {
     const Axes& axes() const { return axes_; }
     double length() const { return length_; }
 
-    // Accelerations and multipliers such that A q_ddot = demand, from one factorisation.
+    // Accelerations and multipliers with A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
     // Accelerations and multipliers that keep the constraints.
@@ -46,15 +46,16 @@ class ConstrainedBody {
 
     SpecificEnergy specific_energy(const CoordinateState& state) const;
 
-    // The diagonal of the mass matrix and the force, both by the mass: M/m and Q/m.
+    // The diagonal of the mass matrix and the force, both divided by the mass: M/m and Q/m.
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
     Coordinates specific_force() const { return {gravity_.along, -gravity_.into, 0.0, 0.0, 0.0}; }
 
-    // The largest residual at q, max(|f2|/L, |f3|/L, |f4|), with the long semi-axis L.
+    // The largest residual at q, max(|f2|/L, |f3|/L, |f4|), L being the long semi-axis.
     double largest_residual(const Coordinates& q) const;
 
-    // Project a state to the nearest one, in the kinetic metric, that meets the constraints, and
-    // that has the given energy per mass if there is one; returns the largest residual before.
+    // Projects a state to the nearest one, in the kinetic metric, that satisfies the constraints
+    // and has the given energy per mass, if any; returns the largest residual before the
+    // projection.
     double project(CoordinateState& state) const;
     double project(CoordinateState& state, double energy) const;
 
@@ -65,7 +66,7 @@ class ConstrainedBody {
         Eigen::Matrix<double, Rows, 1> multipliers;
     };
 
-    // Solves [M, -A^T; A, 0] (change, multipliers) = (force, demand), all per mass.
+    // Solves [M, -A^T; A, 0] (change, multipliers) = (force, demand), all per unit mass.
     template <int Rows>
     Saddle<Rows> solve_saddle(const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
                               const Eigen::Matrix<double, Rows, 1>& demand) const;

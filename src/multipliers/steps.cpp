@@ -30,9 +30,9 @@ struct IndexOne {
     }
 };
 
-// The stabilised index-2 equations divided by the mass, by C. W. Gear, B. Leimkuhler, G. K. Gupta,
-// J. Comput. Appl. Math. 12-13 (1985) 77, for
-// y = (q, v, lambda, mu), G being the rows of A that belong to positions:
+// The stabilised index-2 equations divided by the mass, after C. W. Gear, B. Leimkuhler, G. K.
+// Gupta, J. Comput. Appl. Math. 12-13 (1985) 77, for y = (q, v, lambda, mu). G consists of the rows
+// of A for the position constraints:
 //     q_dot = v + G^T mu,   M v_dot = Q + A^T lambda,   0 = A v,   0 = (f2, f3, f4)
 struct IndexTwo {
     static constexpr int size = 17;
@@ -67,7 +67,8 @@ struct IndexTwo {
         return typical;
     }
 
-    // Jacobian by finite differences in q, enough for simplified Newton steps; the rest is linear.
+    // The Jacobian, by finite differences in q, which is accurate enough for simplified Newton
+    // iteration; all other terms are linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
         const double length = motion.body.length();
         const Coordinates unit{length, length, 1.0, 1.0, length};
@@ -87,7 +88,7 @@ struct IndexTwo {
     }
 };
 
-// The result of one step of size 1 of y' = z y from y = 1.
+// The result of one step of size 1 for y' = z y, starting from y = 1.
 template <class Tableau>
 std::complex<double> stability_function(std::complex<double> z) {
     std::array<std::complex<double>, Tableau::stages> slopes;
@@ -100,7 +101,7 @@ std::complex<double> stability_function(std::complex<double> z) {
     return y;
 }
 
-// Call action(integrator, steps) with the integrator and the steps of a motion.
+// Calls action(integrator, steps) with the integrator and the steps of a motion.
 template <class Motion, class Action>
 void with_integrator(Motion& motion, Action action) {
     if (auto* steps = std::get_if<Steps<17>>(&motion.steps)) {
@@ -138,7 +139,7 @@ bool projects(const SteppedMultipliers& motion) {
            motion.settings.stabilization == Stabilization::projection_energy;
 }
 
-// Project a state by the stabilization in force; returns the largest residual before.
+// Projects a state as the stabilization prescribes; returns the largest residual before that.
 double project(const SteppedMultipliers& motion, CoordinateState& state) {
     const bool by_energy = motion.settings.stabilization == Stabilization::projection_energy;
     return by_energy ? motion.body.project(state, motion.specific_energy)
@@ -168,7 +169,7 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
-// The state at a knot plus a change, its angles without the half turns of the knot.
+// The state at a knot plus a change, without the half turns of the knot in its angles.
 template <int N>
 CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
                          const Vector<N>& change) {

@@ -9,26 +9,26 @@
 
 namespace rolling_ellipse {
 
-// A start in coordinates: its state has x = 0 and angles counted from `angle_base`.
+// A start in coordinates. Its state has x = 0, and its angles are measured from `angle_base`.
 struct CoordinateStart {
     CoordinateState state;
     double x;
     DoubleDouble angle_base;
-    bool rests = false;  // the body rests for ever
+    bool rests = false;  // the body rests forever
 };
 
 struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
-    double specific_energy;   // energy of the start per mass [J/kg]
+    double specific_energy;   // initial energy per mass [J/kg]
     double x_base;            // x at the start, added to the integrated x
     DoubleDouble angle_base;  // angle to be added to the integrated angles
-    // Steps of y = (q, q_dot); the index-2 system appends lambda per mass and multipliers mu.
+    // Steps of y = (q, q_dot); the index-2 system appends lambda per mass and the multipliers mu.
     std::variant<Steps<10>, Steps<17>> steps;
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a rolling body given by its state, and a start with any coordinates and velocities.
+// The start of a rolling body given by its state, or one with any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 
@@ -41,16 +41,16 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
 
-// Energies and constraint residuals at points along a motion, at about a twentieth of its cost; it
-// took so many `evaluations`.
+// Energies and constraint residuals at points along a motion, at about a twentieth of its cost.
+// `evaluations` is the number of evaluations of f that the motion took.
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
 // Accelerations and multipliers of a state, with Baumgarte's feedback if the settings ask for it.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state);
 
-// Largest growth factor of a constraint error per step, above 1 if the error diverges; 0 without
-// feedback or without a fixed step.
+// The largest growth factor of a constraint error per step, above 1 if the error diverges; 0
+// without feedback or without a fixed step.
 //
 // To first order the feedback is linear. Its rates s are the roots of s^2 + 2 alpha s + beta^2 for
 // the positions and -2 alpha for f1; a step of size dt multiplies each part of the error by the

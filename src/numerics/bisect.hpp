@@ -1,4 +1,4 @@
-// Bisection to the last bit, a faster search for a change of sign, and golden sections.
+// Bisection to the last bit, a faster search for a sign change, and golden-section search.
 #pragma once
 
 #include <algorithm>
@@ -25,16 +25,16 @@ Bracket bisect(double low, double high, const Predicate& is_high) {
     }
 }
 
-// A change of sign of a function between two numbers, by the secants of the Illinois method (M.
-// Dowell, P. Jarratt, BIT 11 (1971) 168). A secant that hits next to an end of the bracket is moved
-// a few doubles inwards, so that the other end comes near, too. The caller evaluates the function:
+// Finds a sign change of a function between two points by the secants of the Illinois method (M.
+// Dowell, P. Jarratt, BIT 11 (1971) 168). A secant that lands close to an end is moved a few
+// doubles inwards, so that the other end approaches, too. The caller evaluates the function:
 //     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
 class RootBracket {
   public:
     RootBracket(double low, double high, double f_low, double f_high)
         : ends_{low, high}, f_low_(f_low), f_high_(f_high), rises_(f_high > 0) {}
 
-    // The next place to evaluate; none if the ends are neighbours.
+    // The next point at which to evaluate; empty if the ends are neighbouring doubles.
     std::optional<double> next() {
         constexpr int most_secants = 40;
         const auto [low, high] = ends_;
@@ -71,10 +71,10 @@ class RootBracket {
     double f_high_;
     bool rises_;
     int secants_ = 0;
-    int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none yet
+    int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none so far
 };
 
-// With a guess of the root and of the slope there, two places about it are evaluated first.
+// A guess of the root and of the slope there; two points around it are evaluated first.
 struct RootGuess {
     double root;
     double slope;
@@ -94,9 +94,9 @@ Bracket bisect_root(double low, double high, const Function& f,
     return bracket.ends();
 }
 
-// The place of a single extremum in an interval by golden sections, to 1e-8 of the interval:
-// closer, the function is flat. The comparison takes two places, the lower one first; it is true if
-// the extremum is below the upper one.
+// Finds the single extremum in an interval by golden-section search, to 1e-8 of the interval: any
+// closer, the function is flat. The comparison takes two points, the lower one first, and is true
+// if the extremum lies below the upper one.
 template <class Comparison>
 double golden_section(double low, double high, const Comparison& is_below_upper) {
     constexpr double golden = 0.6180339887498949;

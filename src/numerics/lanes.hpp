@@ -1,13 +1,13 @@
-// Several doubles side by side, a Pack, and functions that give the same bits for a double and for
-// a Pack: templates over the number T. Some files that include this are compiled for every vector
-// level (rolling/level/kernel_code.hpp), the others once. All names are in an anonymous namespace,
-// so that no function of a wide level can be linked into code for machines without it.
+// Several doubles side by side (a Pack), and functions that give the same bits for a double and for
+// a Pack: templates over the number type T. Some files that include this are compiled for every
+// vector level (rolling/level/kernel_code.hpp), the others once. All names are in an anonymous
+// namespace, so that no function of a wide level can be linked into code for machines without it.
 //
 // Every function that takes or returns a Pack is inlined: a call would pass it in other registers
 // in the wide version of a function (numerics/wide.hpp).
 //
 // Operations and their order are the same at every level. Only two_product uses a fused
-// multiply-add; its result is exact with and without.
+// multiply-add; its result is exact with or without it.
 #pragma once
 
 #include <type_traits>
@@ -18,7 +18,7 @@
 #include <immintrin.h>
 #endif
 
-#if defined(ROLLING_ELLIPSE_LANES)  // chosen for a file
+#if defined(ROLLING_ELLIPSE_LANES)  // the including file chooses
 #elif defined(__AVX512F__)
 #define ROLLING_ELLIPSE_LANES 8
 #elif defined(__AVX2__)
@@ -39,7 +39,7 @@ using PackPair = TwoParts<Pack>;
 template <class T>
 using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, PackBits>;
 
-// A number in all lanes; a Pack stays as it is.
+// A value copied to all lanes; a Pack stays as it is.
 template <class T, class Number>
 [[gnu::always_inline]] inline T filled(Number value) {
     return value - T{};
@@ -105,7 +105,7 @@ template <class T>
     return found;
 }
 
-// from[index] lane by lane: each lane takes its value from the element with its own index.
+// from[index] for each lane, which has its own index.
 template <class T>
 [[gnu::always_inline]] inline T element(const T* from, T index) {
     T found{};
@@ -151,7 +151,7 @@ template <class T>
     return x < y ? x : y;
 }
 
-// The nearest whole number, if |x| < 2^51; rounded_down and rounded_up: the next below and above.
+// The nearest whole number, for |x| < 2^51; rounded_down and rounded_up are floor and ceiling.
 template <class T>
 [[gnu::always_inline]] inline T nearest(T x) {
     return (x + to_integer) - to_integer;
@@ -179,7 +179,7 @@ template <class T>
     return number<T>((bits<T>(n + to_integer) << 52) + (1023ULL << 52));
 }
 
-// A polynomial by Horner's scheme; the coefficients are in the order of falling powers.
+// A polynomial by Horner's scheme; coefficients in descending powers.
 template <class T, class... Doubles>
 [[gnu::always_inline]] inline T horner(T x, double highest, Doubles... lower) {
     T sum = filled<T>(highest);
@@ -190,8 +190,8 @@ template <class T, class... Doubles>
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
 constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
-// sinh v and e^-v for 0 <= v < 700, by the addition theorems from sinh r and cosh r with
-// v = n ln 2 + r, so that a small sinh keeps its digits.
+// sinh v and e^-v for 0 <= v < 700, from sinh r and cosh r with v = n ln 2 + r by the addition
+// theorems, so that a small sinh stays accurate.
 template <class T>
 struct Hyperbolic {
     T sinh;
@@ -204,7 +204,7 @@ template <class T>
     const T r = (v - n * ln2_high) - n * ln2_low;
     const T x = r * r;
     const T x2 = x * x;
-    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms are
+    // Taylor series for |r| <= 0.35; the first omitted terms are below 5e-18. Pairs of terms are
     // independent of each other, which shortens the chain of operations.
     const T odd = r * x *
                   (((x * (1.0 / 120) + 1.0 / 6) + x2 * (x * (1.0 / 362880) + 1.0 / 5040)) +
@@ -219,8 +219,8 @@ template <class T>
     return {sinh_n + (sinh_n * even + cosh_n * sinh_r), 2 * down * (1 + (even - sinh_r))};
 }
 
-// The natural logarithm of a normal positive number 2^n m, m between sqrt(1/2) and sqrt(2), by the
-// series of 2 artanh((m - 1)/(m + 1)).
+// The natural logarithm of a normal positive number 2^n m with m between sqrt(1/2) and sqrt(2), by
+// the series of 2 artanh((m - 1)/(m + 1)).
 template <class T>
 [[gnu::always_inline]] inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
@@ -235,8 +235,8 @@ template <class T>
     return n * ln2_high + (2 * f + (2 * f * s * sum + n * ln2_low));
 }
 
-// The inverse of sinh for 0 <= x < 1e150: e^asinh(x) = 1 + gain; the rounding of this sum is
-// corrected.
+// The inverse of sinh for 0 <= x < 1e150: e^asinh(x) = 1 + gain, corrected for the rounding of this
+// sum.
 template <class T>
 [[gnu::always_inline]] inline T asinh(T x) {
     const T gain = x + x * x / (1 + sqrt(1 + x * x));
@@ -244,8 +244,8 @@ template <class T>
     return log(one_more) + (gain - (one_more - 1)) / one_more;
 }
 
-// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A polynomial of least
-// error (2e-19) serves up to 22.5 degrees; above, it takes the distance from 45 degrees.
+// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A minimax polynomial
+// (error 2e-19) is used up to 22.5 degrees; beyond, it is applied to the angle from 45 degrees.
 template <class T>
 [[gnu::always_inline]] inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
@@ -273,7 +273,7 @@ template <class T>
 using rolling_ellipse::two_product;
 
 #if !defined(__FMA__)
-// A number as a sum of two numbers of 26 bits.
+// A double as the sum of two doubles of 26 bits each.
 [[gnu::always_inline]] inline PackPair halves(Pack x) {
     const Pack shifted = 134217729.0 * x;  // 2^27 + 1
     const Pack high = shifted - (shifted - x);

@@ -1,6 +1,6 @@
-// Systems of a few linear equations by LU decomposition with partial pivoting: G. H. Golub, C. F.
-// Van Loan, Matrix Computations, 4th ed., 3.4. The loops are plain: for so few equations the
-// blocked loops of Eigen gain nothing, and take seconds to compile for each size.
+// Solves small systems of linear equations by LU decomposition with partial pivoting: G. H. Golub,
+// C. F. Van Loan, Matrix Computations, 4th ed., 3.4. The loops are plain: for so few equations
+// Eigen's blocked loops gain nothing and take seconds to compile for each size.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,8 @@ namespace rolling_ellipse {
 
 inline double reciprocal(double x) { return 1.0 / x; }
 
-// 1/z, scaled so that no square overflows. The division of the compiler is a call of its library,
-// whose steps differ from version to version and are fused on some processors.
+// 1/z, scaled so that no square overflows. The compiler's complex division calls a library
+// function, whose operations differ between versions and are fused on some processors.
 inline std::complex<double> reciprocal(std::complex<double> z) {
     const double size = std::fmax(std::abs(z.real()), std::abs(z.imag()));
     const double x = z.real() / size;
@@ -44,7 +44,7 @@ class LU {
         }
     }
 
-    // The solution for a right side; infinite or NaN if the matrix is singular.
+    // The solution for a right-hand side; infinite or NaN if the matrix is singular.
     Vector solve(Vector v) const {
         for (int k = 0; k < N; ++k) std::swap(v[k], v[pivots_[k]]);
         for (int k = 0; k < N; ++k) subtract(v[k], k, v.data());
@@ -56,14 +56,14 @@ class LU {
     }
 
   private:
-    // Subtracts a multiple of column k of the lower factor, below its diagonal.
+    // Subtracts a multiple of column k of the lower factor, as far as it lies below the diagonal.
     void subtract(const Number times, int k, Number* column) const {
         for (int i = k + 1; i < N; ++i) column[i] -= factors_(i, k) * times;
     }
 
     Matrix factors_;  // both factors; the lower one without its unit diagonal
     std::array<Number, N> inverses_;
-    std::array<int, N> pivots_;  // the row exchanged with each row
+    std::array<int, N> pivots_;  // the row with which each row is exchanged
 };
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,4 @@
-// Names of the values of an enum, which count from 0; they stand below the enum.
+// The names of the values of an enum, which count from 0; each enum is followed by its names.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Constants, very small functions, sums of two doubles with 106 bits, and sine and cosine for inner
+// Constants, tiny functions, double-double numbers of 106 bits, and sine and cosine for inner
 // loops.
 #pragma once
 
@@ -15,24 +15,24 @@ inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
 inline constexpr double pi = 3.14159265358979311600e+00;
 inline constexpr double half_pi = 1.57079632679489655800e+00;
 
-// Largest difference [ulp] of numbers that count as equal: the rounding of a few operations.
+// Largest difference [ulp] between values that count as equal: the rounding of a few operations.
 inline constexpr double equal_ulps = 8;
 
-// Largest size of positions, velocities, impulses and components of states: products of a few of
-// them stay within the doubles.
+// Largest magnitude of positions, velocities, impulses and components of states; products of a few
+// of them do not overflow.
 inline constexpr double largest_number = 1e50;
 
-// 1.5 2^52: a sum with it is rounded to a whole number.
+// 1.5 * 2^52: adding it rounds a number to a whole number.
 inline constexpr double to_integer = 6755399441055744.0;
 
-// Result of a comparison of numbers: bool for doubles, the truth of each lane for several lanes.
+// Result of a comparison: bool for doubles, one truth value per lane for several lanes.
 template <class T>
 using Mask = decltype(T{} < T{});
 
 constexpr double square(double x) { return x * x; }
 
-// sqrt(x^2 + y^2) within 1.5 ulp, for numbers whose squares stay within the doubles. The hypot of C
-// libraries is within 1 ulp, in bits that differ from version to version.
+// sqrt(x^2 + y^2) to within 1.5 ulp, for numbers whose squares do not overflow. The hypot of C
+// libraries is within 1 ulp, but its bits differ between versions.
 inline double root_of_squares(double x, double y) { return std::sqrt(x * x + y * y); }
 
 // The sum high + low with |low| <= ulp(high)/2, for periods, phases and multiples of pi; T is a
@@ -47,7 +47,7 @@ struct TwoParts {
 };
 using DoubleDouble = TwoParts<double>;
 
-// Inlined always, as packs of numbers are passed in other registers where wider ones are used.
+// Always inlined, since code for wider vectors passes packs of doubles in other registers.
 template <class T>
 [[gnu::always_inline]] inline TwoParts<T> quick_two_sum(T large, T small) {
     const T sum = large + small;
@@ -98,11 +98,11 @@ inline DoubleDouble operator/(const DoubleDouble& x, double y) {
 
 inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-17};
 
-// Largest angle [rad] that nearest_quarter takes.
+// Largest angle [rad] that nearest_quarter accepts.
 inline constexpr double largest_in_quarters = 1e5;
 
-// An angle less the nearest multiple of pi/2, to the last bit, and whether the multiple is odd.
-// W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, chapter 8.
+// An angle minus the nearest multiple of pi/2, to the last bit, and whether the multiple is odd. W.
+// J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, chapter 8.
 struct QuarterAngle {
     double rest;
     bool odd;
@@ -110,7 +110,7 @@ struct QuarterAngle {
 
 inline QuarterAngle nearest_quarter(double angle) {
     constexpr double per_radian = 6.36619772367581382433e-01;
-    // pi/2 in parts of 33 bits, whose multiples are exact, and the rest
+    // pi/2 in parts of 33 bits, whose multiples are exact, plus the rest
     constexpr double first = 1.5707963267341256;
     constexpr double second = 6.077100506303966e-11;
     constexpr double third = 2.0222662487959506e-21;
@@ -127,8 +127,8 @@ struct SineCosine {
     double cosine;
 };
 
-// Sine and cosine for |angle| <= pi/4, without calls and branches; the bits are the same with every
-// C library. The terms left out of the series are 5e-17 of the sine and 2e-18 of the cosine. Pairs
+// Sine and cosine for |angle| <= pi/4, without calls or branches; the bits are the same with every
+// C library. The omitted terms of the series are 5e-17 of the sine and 2e-18 of the cosine. Pairs
 // of terms are independent of each other.
 inline SineCosine sine_cosine_of_rest(double angle) {
     const double z = angle * angle;
@@ -152,7 +152,7 @@ struct LongSineCosine {
     DoubleDouble cosine;
 };
 
-// Sine and cosine for |angle| <= pi/4 to 1e-18: their first terms have 106 bits.
+// Sine and cosine for |angle| <= pi/4 to 1e-18; the first terms are computed to 106 bits.
 inline LongSineCosine sine_cosine_of_rest(const DoubleDouble& angle) {
     const DoubleDouble squared = angle * angle;
     const double z = squared.high;

@@ -1,4 +1,4 @@
-// Functions on a part, -1 ... 1, as polynomials through its Gauss nodes, several lanes at a time.
+// Functions on a part, -1 ... 1, as polynomials through its Gauss nodes, in several lanes at once.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 namespace rolling_ellipse {
 namespace {
 
-using PartMatrix = std::array<PartArray, part_order>;  // [j] belongs to the value at the node j
+using PartMatrix = std::array<PartArray, part_order>;  // [j] belongs to the value at node j
 
 struct PartRule {
     PartArray places;
     PartArray weights;
-    PartMatrix integrals;  // from -1 to the nodes
+    PartMatrix integrals;  // integrals from -1 to the nodes
     PartMatrix legendre;   // coefficients of the Legendre polynomials
-    PartMatrix powers;     // coefficients of the powers, from those of the Legendre polynomials
+    PartMatrix powers;     // power coefficients from Legendre coefficients
 };
 
 // The Legendre polynomials P_0 ... P_part_order at x.
@@ -53,7 +53,7 @@ inline const PartRule& part_rule() {
                 rule.integrals[j][i] = sum;
             }
         }
-        auto& powers = rule.powers;  // of P_0 = 1, P_1 = x and the others by their recurrence
+        auto& powers = rule.powers;  // powers of P_0 = 1, P_1 = x and, by recurrence, the others
         powers[0][0] = powers[1][1] = 1.0;
         for (int k = 1; k + 1 < part_order; ++k) {
             for (int i = 0; i <= k + 1; ++i) {

@@ -1,5 +1,5 @@
-// Polynomials of a small degree fixed at compile time, with a bound of the rounding of every
-// coefficient; on one interval, their proved signs and all roots.
+// Polynomials of a small degree fixed at compile time, with a bound on the rounding of every
+// coefficient; their proved signs and all roots on one interval.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace rolling_ellipse {
 
-// A number, and the sum of the magnitudes of the terms from which it was computed.
+// A value and the sum of the magnitudes of the terms from which it was computed.
 struct Tracked {
     double value = 0.0;
     double magnitude = 0.0;
@@ -32,27 +32,26 @@ inline Tracked operator*(Tracked x, Tracked y) {
     return {x.value * y.value, x.magnitude * y.magnitude};
 }
 
-// Two numbers in one register where the processor has one.
+// Two doubles in one register, where the processor has one.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };
 
-// A rounding is half an ulp, epsilon/2, of a number that is at most its magnitude. If a number
-// comes from at most this many of them on any way from the parameters, they sum to less than the
-// margin.
+// The most roundings between the parameters and a result, along any chain of operations. Each is at
+// most epsilon/2 of the magnitude, so that together they stay below the margin.
 //   * The law of rolling, degree 10, is the longest: counted along the lines of force_polynomials
 //     and grip_polynomial, with n + m + 1 + min(M, N) for the product of polynomials of degrees M,
 //     N with n, m roundings, it has 37.
-//   * A series of degree 24 (slides) has 25 in the powers of its reach, and those of its terms.
-//   * Bernstein's form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is 31
-//     for degree 10, 73 for degree 24.
-//   * Division at another place than the middle adds 3N: 30 for degree 10, the only one.
-// So there are 98 in the law, and 98 and those of its terms in the series. Division in the middle
-// adds N sums each time, up to 48 times; `divided` adds their roundings to the magnitude.
-// The parameters themselves are rounded: then the sign is that of a body and a start as close.
+//   * A series of degree 24 (slides) has 25 in the powers of its reach, plus those of its terms.
+//   * The Bernstein form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is
+//     31 for degree 10, 73 for degree 24.
+//   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
+// So the law has 98, and the series 98 plus those of its terms. Subdivision in the middle adds N
+// sums each time, up to 48 times; `divided` adds their roundings to the magnitude. The parameters
+// themselves are rounded: the sign is that of a body and a start just as close to the exact ones.
 constexpr double most_roundings = 128;
 
-// Bound of the rounding error of a number.
+// Bound on the rounding error of a number.
 inline double margin(Tracked number) { return most_roundings * (epsilon / 2) * number.magnitude; }
 
 inline Sign sign(Tracked number) {
@@ -110,7 +109,8 @@ Polynomial<N - 1> derivative(const Polynomial<N>& p) {
     return result;
 }
 
-// A polynomial by its Bernstein coefficients on [0, 1]. The least and the largest of them bound it.
+// A polynomial given by its Bernstein coefficients on [0, 1]; the least and the largest coefficient
+// bound it.
 template <int Degree>
 struct Bernstein {
     std::array<Tracked, Degree + 1> coefficients{};
@@ -126,7 +126,7 @@ constexpr auto binomials() {
 
 template <int N>
 Bernstein<N> bernstein(const Polynomial<N>& p) {
-    // Matrix from powers to Bernstein's form: binomial(i, j)/binomial(N, j), physics (37).
+    // Matrix from powers to the Bernstein form: binomial(i, j)/binomial(N, j), physics (37).
     static constexpr auto matrix = [] {
         std::array<std::array<double, N + 1>, N + 1> rows{};
         for (int i = 0; i <= N; ++i) {
@@ -135,7 +135,7 @@ Bernstein<N> bernstein(const Polynomial<N>& p) {
         }
         return rows;
     }();
-    // Values and magnitudes are multiplied side by side.
+    // Values and magnitudes are computed side by side.
     std::array<Pair, N + 1> powers;
     for (int j = 0; j <= N; ++j) {
         powers[j] = Pair{p.coefficients[j].value, p.coefficients[j].magnitude};
@@ -165,7 +165,7 @@ double value(const Bernstein<N>& p, double x) {
     return sum * power;
 }
 
-// One polynomial in two parts, on [0, at] and on [at, 1], by de Casteljau's subdivision.
+// A polynomial split into two parts, on [0, at] and on [at, 1], by de Casteljau's subdivision.
 template <int N>
 struct Parts {
     Bernstein<N> left;
@@ -180,7 +180,7 @@ Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
         parts.left.coefficients[level] = work[0];
         for (int i = 0; i < N - level; ++i) {
             work[i] = tracked(1 - at) * work[i] + tracked(at) * work[i + 1];
-            work[i].magnitude += std::abs(work[i].value) / most_roundings;  // one rounding more
+            work[i].magnitude += std::abs(work[i].value) / most_roundings;  // one more rounding
         }
     }
     parts.left.coefficients[N] = work[0];
@@ -210,7 +210,7 @@ int sign_changes(const Bernstein<N>& p) {
     return changes;
 }
 
-// The root of a p that changes its sign once in (0, 1).
+// The root of p, which changes its sign once in (0, 1).
 template <int N>
 double single_root(const Bernstein<N>& p) {
     const auto [low, high] = bisect_root(0.0, 1.0, [&](double x) { return value(p, x); });
@@ -240,7 +240,7 @@ void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
 
 }  // namespace detail
 
-// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided by
+// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided within
 // rounding.
 template <int N>
 Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
@@ -255,8 +255,8 @@ Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
     return right == Sign::positive ? left : right;
 }
 
-// The first place in [0, 1] from which p is provably negative. A value within rounding of zero
-// does not count as negative. The place is 0 if only such values come before negative ones.
+// The first point in [0, 1] from which p is provably negative. Values within rounding of zero do
+// not count as negative; if only such values come before, the result is 0.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     int changes = 0;
@@ -280,7 +280,7 @@ std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     return right ? std::optional(0.5 + 0.5 * *right) : std::nullopt;
 }
 
-// All places in [0, 1] where p changes its sign or may touch zero, ascending.
+// All points in [0, 1] where p changes its sign or may touch zero, ascending.
 template <int N>
 std::vector<double> roots_on_unit_interval(const Bernstein<N>& p) {
     std::vector<double> roots;

@@ -10,7 +10,7 @@
 
 namespace rolling_ellipse {
 
-// The smallest tabled rule with at least n nodes; the largest rule if n exceeds the table.
+// The smallest tabulated rule with at least n nodes; the largest rule if n exceeds the table.
 inline const GaussRule& gauss_rule(int n) {
     for (const GaussRule& rule : gauss_rules) {
         if (rule.size >= n) return rule;
@@ -30,18 +30,18 @@ inline Node node_of(const GaussRule& rule, int i) {
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
 
-// Nodes of the rule on a part: a function there is the polynomial through its numbers at the nodes.
+// Nodes of the rule on a part; a function there is known by its values at these nodes.
 inline constexpr int part_order = 20;
 using PartArray = std::array<double, part_order>;
 
-// A polynomial on a part, -1 ... 1, and its integral from -1, by powers of the place; the highest
-// power of the value is 0.
+// A polynomial on a part, -1 ... 1, and its integral from -1, in powers of the position in the
+// part; the highest coefficient of the value is 0.
 struct PartPolynomial {
     std::array<double, part_order + 1> value;
     std::array<double, part_order + 1> integral;
 };
 
-// The integral of f from v0 to v1 as a double-double: the summation adds no rounding.
+// The integral of f from v0 to v1, summed in double-double so that summing adds no rounding error.
 template <class Function>
 DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
     const double middle = 0.5 * (v0 + v1);

@@ -1,4 +1,4 @@
-// Truncated power series in one variable and the rules for their coefficients (A. Jorba, M. Zou,
+// Truncated power series in one variable and rules for their coefficients (A. Jorba, M. Zou,
 // Experiment. Math. 14 (2005) 99), for doubles or several lanes.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace rolling_ellipse {
 inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
-// The terms first .. last of the coefficient k of a product, as two independent sums.
+// The terms first .. last of coefficient k of a product, as two independent sums.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
                                          int first, int last) {
@@ -33,20 +33,20 @@ template <class Coefficients>
     return even + odd;
 }
 
-// The coefficient k of the product of two series.
+// Coefficient k of the product of two series.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto product(const Coefficients& p, const Coefficients& q, int k) {
     return terms(p, q, k, 0, k);
 }
 
-// The coefficient k of the square of a series, without its first `from` and last `from` terms.
+// Coefficient k of the square of a series, omitting the first and last `from` terms of the sum.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto self_product(const Coefficients& p, int k, int from = 0) {
     const auto pairs = 2 * terms(p, p, k, from, (k + 1) / 2 - 1);
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// The value of a series at z, or its values in several lanes. Two independent sums halve the time
+// The value of a series at z, or its values in several lanes. Two independent sums halve the length
 // of the chain of operations.
 template <std::size_t Size, class Number>
 [[gnu::always_inline]] inline Number value(const std::array<double, Size>& series, Number z) {
@@ -72,13 +72,13 @@ double derivative(const std::array<double, Size>& series, double z) {
 // are the same as for single doubles.
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 
-// Order of power series that solve an arc in a few pieces. Higher orders have a larger radius at
-// nearly proportional cost, and each piece has a fixed cost.
+// Order of the power series that cover an arc in a few pieces. A higher order gives a larger radius
+// at a nearly proportional cost, but each piece also has a fixed cost.
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
 
-// The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor. The
-// terms with the newest coefficients are added last: the others need not wait for them.
+// The terms 1 .. k-1 of coefficient k of a product, which need coefficient k of neither factor. The
+// terms with the newest coefficients are added last, so that the others need not wait for them.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
     using Number = std::decay_t<decltype(p[0])>;
@@ -87,14 +87,14 @@ template <class Coefficients>
     return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
 }
 
-// The factors 1/(k + 1) that integrate the coefficient k of a rate.
+// The factors 1/(k + 1), which integrate coefficient k of a rate.
 inline constexpr auto over_next = [] {
     std::array<double, long_order + 1> found{};
     for (int k = 0; k <= long_order; ++k) found[k] = 1.0 / (k + 1);
     return found;
 }();
 
-// Calls a function with 0 ... long_order as constants of the compiler.
+// Calls a function with 0 ... long_order as compile-time constants.
 template <class Function, int... numbers>
 [[gnu::always_inline]] inline void for_each_order(const Function& call,
                                                   std::integer_sequence<int, numbers...>) {
@@ -105,10 +105,10 @@ template <class Function>
     for_each_order(call, std::make_integer_sequence<int, long_order + 1>{});
 }
 
-// The radius at which the last terms of all these series are a twentieth of an ulp of their size;
-// the terms left out are smaller by another fifth. Half an ulp would be too much, since it may have
-// the same sign in one step after another. Four terms count, as symmetry may hide three, each
-// scaled to the end of a series that falls by a fifth from term to term. Each step of the
+// The radius at which the last terms of all these series are a twentieth of an ulp of the series;
+// the omitted terms are a fifth of that. Half an ulp would be too much, since the error may have
+// the same sign step after step. The last four terms count, since three may vanish by symmetry;
+// each is scaled to the end of the series as if terms fell by a factor of five. Each step of the
 // fixed-point iteration divides the error of the logarithm by eight.
 inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;

@@ -12,10 +12,11 @@
 namespace rolling_ellipse {
 namespace {
 
-// Degree of fitted polynomials. Dense outputs have at most 7; other quantities are halved more.
+// Degree of the fitted polynomials. Dense output has at most 7; other quantities need more
+// halvings.
 constexpr int degree = 8;
 
-// Chebyshev's nodes on [0, 1], to four digits. At one more place between them, `compared`, the
+// Chebyshev nodes on [0, 1], to four digits. At one more point between them, `compared`, the
 // polynomial is compared with the quantity.
 constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329, 0.41,
                                                    0.5,    0.671, 0.8214, 0.933, 0.9924};
@@ -54,12 +55,13 @@ struct Part {
     int depth = 0;
 };
 
-// Adds the turning points in some intervals; false if a polynomial misses the quantity.
+// Adds the turning points in the given intervals; false if some polynomial does not fit the
+// quantity.
 bool add_turns_in(const Measure& measure, double size, std::vector<Part> parts,
                   std::vector<double>& times) {
-    constexpr double roundings = 1000;  // roundings allowed: the inverse basis has a norm of 300
+    constexpr double roundings = 1000;  // rounding errors allowed; the inverse basis has norm 300
     constexpr int deepest = 16;
-    std::size_t halvings = 64 * parts.size();  // most halvings, which do not help against noise
+    std::size_t halvings = 64 * parts.size();  // limit, as halving does not help against noise
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;

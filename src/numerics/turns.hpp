@@ -1,4 +1,4 @@
-// Turning points of a quantity that is known by its values.
+// Turning points of a quantity known only by its values.
 #pragma once
 
 #include <functional>
@@ -9,14 +9,14 @@ namespace rolling_ellipse {
 // The quantity at ascending times.
 using Measure = std::function<std::vector<double>(const std::vector<double>& times)>;
 
-// Sorts times and keeps each once.
+// Sorts times and removes duplicates.
 void sort_once(std::vector<double>& times);
 
 // Adds the turning points of a quantity to ascending times between which it is smooth. They are
-// those of polynomials of degree 8 through nine places, by their Bernstein coefficients. If a
-// polynomial misses a tenth place by more than rounding, its interval is halved, which divides the
-// error by 2^9. Returns false if halving does not help somewhere: turning points may be missing
-// there. Rounding is measured by the largest value of the quantity and by `length`.
+// those of polynomials of degree 8 through nine points, found from their Bernstein coefficients. If
+// a polynomial misses a tenth point by more than rounding, its interval is halved, which divides
+// the error by 2^9. Returns false if halving does not help somewhere, so that turning points may be
+// missing there. Rounding is judged by the largest value of the quantity and by `length`.
 bool add_turns(const Measure& measure, double length, std::vector<double>& times);
 
 }  // namespace rolling_ellipse

@@ -9,10 +9,10 @@
 namespace rolling_ellipse {
 namespace {
 
-// A position of rolling, by its angle and the height of its centre.
+// A position of a rolling body: the angle and the height of the centre.
 struct Position : ShapePlace {
     double angle;      // phi, the angle from the flat position
-    double over_flat;  // h - S, its height over the flat position
+    double over_flat;  // h - S, its height above the flat position
 };
 
 Position position(const Shape& shape, double sin2, double cos2) {
@@ -21,18 +21,18 @@ Position position(const Shape& shape, double sin2, double cos2) {
             shape.c2 * sin2 / (at.h + shape.short_axis)};
 }
 
-// Energy over the flat position, H - S, of a motion with omega^2 at a position: physics (26).
+// The energy above the flat position, H - S, of a motion with omega^2 at a position: physics (26).
 double energy_over_flat(const Position& at, double omega2) {
     return 0.5 * at.inertia() * omega2 + at.over_flat;
 }
 
-// The energies between which the law of friction holds at a position.
+// The energies between which the friction law holds at a position.
 struct Grip {
     double lower;
     double upper;
 };
 
-// The law on either side, physics (47), with rho h = S^2/h^2:
+// The law for either sign of friction, physics (47), with rho h = S^2/h^2:
 //     mu kh + side h |h'| > omega^2 (side |h'| (D - h rho) - mu normal_part).
 Grip grip(const Shape& shape, const Position& at, double friction) {
     const double dh = std::sqrt(at.dh2);
@@ -51,8 +51,8 @@ Grip grip(const Shape& shape, const Position& at, double friction) {
     return {energy_over_flat(at, least), energy_over_flat(at, most)};
 }
 
-// A range of positions by ln tan phi: near the flat forces change over (b/a)^2, near the tip over
-// 1/mu.
+// A range of positions in terms of ln tan phi: near the flat position forces vary on the scale of
+// (b/a)^2, near the tip on that of 1/mu.
 struct Scan {
     double first;
     double last;
@@ -68,14 +68,14 @@ Position position(const Shape& shape, double log_tan) {
     return position(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
 }
 
-// The least value of a function within a step from a place.
+// The minimum of a function within one step of a point.
 template <class Function>
 double refined(double place, double step, const Function& f) {
     return golden_section(place - step, place + step,
                           [&](double left, double right) { return !(f(left) > f(right)); });
 }
 
-// The place of the least value of a function.
+// The point at which a function is least.
 template <class Function>
 double least_place(const Scan& scan, const Function& f) {
     double best = scan.first;
@@ -90,7 +90,7 @@ double least_place(const Scan& scan, const Function& f) {
     return refined(best, scan.step(), f);
 }
 
-// A body with one coefficient of friction, that rolls with any energy.
+// A body with a given coefficient of friction that rolls with any energy.
 struct Rolling {
     const Shape& shape;
     double friction;
@@ -99,7 +99,7 @@ struct Rolling {
         return energy_range(shape, energy, energy - shape.c2 / (1 + shape.short_axis));
     }
 
-    // The proved sign of the law on all heights that the motion reaches.
+    // The proved sign of the law over all heights that the motion reaches.
     Sign law(const ForcePolynomials& forces) const {
         const Sign contact = sign_on_unit_interval(bernstein(forces.normal));
         if (contact == Sign::negative) return contact;
@@ -111,7 +111,7 @@ struct Rolling {
         return law(force_polynomials(range(energy))) == Sign::positive;
     }
 
-    // The position, as ln tan phi, that needs the most friction, if it provably needs too much.
+    // The position, as ln tan phi, that needs the most friction, if that is provably too much.
     std::optional<double> broken_place(double energy) const {
         const EnergyRange heights = range(energy);
         const ForcePolynomials forces = force_polynomials(heights);
@@ -121,12 +121,12 @@ struct Rolling {
     }
 };
 
-// Rounding of an energy and of the polynomials of its motion.
+// Rounding errors of an energy and of the polynomials of the motion.
 constexpr double rounding = 16 * epsilon;
-// A correction is a step of Newton's method for an extremum; two are many.
+// Each correction is a step of Newton's method for an extremum; more than two are rarely needed.
 constexpr int most_corrections = 50;
 
-// The least of the upper energies.
+// The least upper energy of all positions.
 Onset upper_onset(const Rolling& body) {
     const auto upper_at = [&](double log_tan) {
         return grip(body.shape, position(body.shape, log_tan), body.friction).upper;
@@ -146,7 +146,7 @@ Onset upper_onset(const Rolling& body) {
 }
 
 // The window of a body that slips when released from rest, h |h'| > mu (k^2 + h^2): between the
-// roots of a quadratic equation in y = h^2 - B, physics (48). It ends with the largest of the lower
+// roots of a quadratic equation in y = h^2 - B, physics (48). It ends at the largest of the lower
 // energies there.
 std::optional<SlipWindow> window_of_rest(const Rolling& body) {
     const Shape& shape = body.shape;
@@ -185,8 +185,8 @@ std::optional<SlipWindow> window_of_rest(const Rolling& body) {
 
 }  // namespace
 
-// The least such energy H = h - r/p, with r = normal_at_rest, p = normal_moving, is at a root of
-// h' p^2 - r' p + r p'.
+// The least energy at which contact is lost, H = h - r/p with r = normal_at_rest,
+// p = normal_moving, lies at a root of h' p^2 - r' p + r p'.
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape);
     const ForcePolynomials p = force_polynomials(range);
@@ -215,7 +215,7 @@ std::vector<SlipWindow> slip_windows(const Shape& shape, double friction) {
     const Onset upper = upper_onset(body);
     const std::optional<SlipWindow> rest = window_of_rest(body);
     if (!rest) return {{upper}};
-    // Between the windows rolling is valid; too narrow a gap for a proof is none.
+    // Between the windows rolling is valid; a gap too narrow for a proof does not count.
     if (rest->end < upper.value && body.is_valid(0.5 * (rest->end + upper.value))) {
         return {*rest, {upper}};
     }

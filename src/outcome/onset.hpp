@@ -1,15 +1,15 @@
 // The energies at which rolling on level ground breaks the law of contact somewhere.
 //
-// Energies are heights H - S over the flat position, lengths in units of the long semi-axis,
-// omega^2 in units of g over it. At a position of height h the law is linear in omega^2, and so in
-// H = h + D omega^2/2, on either side of friction, physics (47): N > 0 below one energy, |F| < mu N
-// between two. So contact is lost from one energy on, and friction is too little
-//   * above the least of the upper energies of all positions, for all larger energies;
+// Energies are given as heights H - S above the flat position, lengths in units of the long
+// semi-axis L, omega^2 in units of g/L. At a position of height h the law is linear in omega^2, and
+// so in H = h + D omega^2/2, for either sign of friction, physics (47): N > 0 below one energy, |F|
+// < mu N between two. So contact is lost above some energy, and friction is too small
+//   * at all energies above the least upper energy of all positions;
 //   * from the lowest position at which a body at rest slips, mu (k^2 + h^2) < h |h'|, up to the
-//     largest of the lower energies. These positions are one interval, physics (48); with less
-//     energy the body passes the position of the largest one too slowly, or stops in the interval
-//     before it.
-// So there are one or two windows of energies that slip, and the last one has no upper end.
+//     largest of the lower energies. These positions form one interval, physics (48); with less
+//     energy the body passes the position of that largest lower energy too slowly, or stops in the
+//     interval before it.
+// So there are one or two energy windows with slip, and the last one has no upper end.
 #pragma once
 
 #include <optional>
@@ -29,18 +29,18 @@ struct Onset {
     }
 };
 
-// The energy from which N of rolling vanishes somewhere, physics (46).
+// The energy above which N of rolling vanishes somewhere, physics (46).
 Onset contact_loss(const Shape& shape);
 
-// Energies between which rolling needs more friction than there is.
+// A range of energies in which rolling needs more friction than available.
 struct SlipWindow {
     Onset start;
     double end = infinity;
 };
 
-// The windows of a body that is no circle, ascending: one or two. Their ends are found by a scan
-// over the positions and refined; the certificate then proves that rolling holds beside them, or
-// names a position that the scan has missed.
+// The windows of a body other than a circle, ascending: one or two. A scan over the positions finds
+// their ends, which are then refined; the certificate proves that rolling holds just outside them,
+// or names a position that the scan has missed.
 std::vector<SlipWindow> slip_windows(const Shape& shape, double friction);
 
 }  // namespace rolling_ellipse

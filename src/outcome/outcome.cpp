@@ -10,16 +10,16 @@
 namespace rolling_ellipse {
 namespace {
 
-// A slip out of rolling never begins inside the Painleve region. Where |F| exceeds mu N > 0, with
-// side s = -sign F and c = Gnn N + Gtn F in rolling too, physics (50), the response of sliding
-// B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
-// c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where
-// N <= 0 and c > 0, a body without slip finds a side on which B > 0. So `jams` is not returned.
+// A slip after rolling never starts inside the Painleve region. Where |F| exceeds mu N > 0, with
+// side s = -sign F, and as c = Gnn N + Gtn F holds in rolling, too, physics (50), the response of
+// sliding B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
+// c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where N
+// <= 0 and c > 0, a body without slip has a side on which B > 0. So `jams` never follows rolling.
 // Nor does a body that rolls on level ground leave it before it slips: the same c is positive where
-// N vanishes, so that with infinite friction, too, it starts to slide.
+// N vanishes, so that it starts to slide even with infinite friction.
 
-// The outcome for a body that rolls up to the top: it passes the tip or turns back, if rounding can
-// decide it.
+// The outcome for a body that rolls up to the top: it passes the tip or turns back; `edge` if
+// rounding hides which of the two.
 Outcome at_the_top(const RollingStart& from) {
     const FlatView& at = from.view;
     const EnergyHeight& height = from.height;
@@ -45,14 +45,14 @@ Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }
 
-// The outcome for a circle that rolls, within half a turn: it has no tip.
+// The outcome within half a turn for a rolling circle, which has no tip.
 Outcome outcome_of_circle(const SlopeFlow& flow) {
     const double uphill = flow.start.omega;
     if (uphill >= 0) return Outcome::rolls_over;
     return square(uphill) < 2 * pi * flow.acceleration ? Outcome::rocks : Outcome::rolls_over;
 }
 
-// The outcome for a body that rolls on a slope, from its series.
+// The outcome for a body that rolls on a slope, from its power series.
 Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoint& checkpoint) {
     constexpr int most_pieces = 100'000;
     constexpr int pieces_between_checks = 64;
@@ -93,8 +93,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (from.rests) return Outcome::rests;
     if (at.c2 == 0) return friction > 0 ? Outcome::rolls_over : Outcome::slips;
 
-    // The view has the angle without its half turns, which change only signs of sin and cos: h, h''
-    // and rho are even in both.
+    // The view drops the half turns of the angle, which change only the signs of sin and cos: h,
+    // h'' and rho are even in both.
     const bool a_is_long = body.a >= body.b;
     const Geometry here =
         geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);
@@ -105,8 +105,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (pressed == Sign::undecided) return Outcome::edge;
     if (friction == 0) return Outcome::slips;
 
-    // A body that rises passes only the heights above its start. A body that falls, or starts at
-    // the tip (within rounding), passes all heights before it is at the top.
+    // A rising body passes only the heights above its start. A falling body, or one that starts at
+    // the tip (within rounding), passes through all heights before it reaches the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
     const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;
@@ -171,7 +171,7 @@ double required_friction(const Scene& scene) {
     return std::max(in_the_blow, *certificate.largest_friction_needed);
 }
 
-// The contact leads the centre by h' at a height h, and |h'|/h is at most |a^2 - b^2|/(2 a b).
+// The contact is h' ahead of the centre at height h, and |h'|/h is at most |a^2 - b^2|/(2 a b).
 double friction_to_rest(const Scene& scene) {
     const double needed = std::tan(std::abs(scene.slope));
     const double steepest = std::abs(scene.axes().c2()) / (2 * scene.a * scene.b);

@@ -17,8 +17,8 @@ enum class Outcome : std::int8_t {
     rolls_over,     // it passes the tip before anything else happens
     slips,          // the contact slides
     loses_contact,  // it leaves the ground, or is in the air
-    jams,           // the contact jams; never out of rolling, see outcome/outcome.cpp
-    edge,           // undecided between two outcomes within rounding
+    jams,           // the contact jams; never directly after rolling, see outcome/outcome.cpp
+    edge,           // two outcomes that rounding cannot tell apart
 };
 
 template <>
@@ -26,29 +26,29 @@ inline constexpr std::array names<Outcome>{"RESTS",         "ROCKS", "ROLLS_OVER
                                            "LOSES_CONTACT", "JAMS",  "EDGE"};
 
 // The outcome for a body that rolls (or rests) on level ground with the given angle and angular
-// velocity, from signs of polynomials alone.
+// velocity, from the signs of polynomials alone.
 Outcome classify(const Body& body, double friction, double theta, double omega);
 
-// The first event after the blow of a scene. On level ground it is known
-// without integration. On a slope the rolling motion is followed until it turns back, passes the
-// tip (a circle: half a turn) or ends; `edge` if it does none of these for long.
+// The first event after the blow of a scene. On level ground it needs no integration. On a slope
+// the rolling motion is followed until it turns back, passes the tip (for a circle: half a turn) or
+// ends; `edge` if it does none of these for a long time.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
 // The downward impulse at a horizontal distance from the centre that gives the body the angular
-// velocity omega, if the contact sticks: physics (38, 40). Negative if it would have to be a pull;
-// infinite if its lever is so small that no impulse of a scene would do.
+// velocity omega, if the contact sticks: physics (38, 40). Negative if a pull is needed; infinite
+// if the lever is so small that no valid impulse suffices.
 double press_to(const Scene& scene, double distance, double omega);
 
 // The angular velocity at the angle of the scene with which a body that rolls on level ground just
 // reaches the tip: physics (26).
 double speed_to_the_tip(const Scene& scene);
 
-// The least friction coefficient with which neither the blow nor the rolling after it ever slips,
-// whatever the friction of the scene; infinite where no finite one does.
+// The least friction coefficient with which neither the blow nor the rolling after it ever causes
+// slip, whatever the friction of the scene; infinite if no finite one suffices.
 double required_friction(const Scene& scene);
 
 // The least friction coefficient with which a body can lie still on the slope of the scene,
-// whatever its start; infinite where the slope is steeper than any contact leads its centre.
+// whatever its start; infinite if the slope is too steep for any equilibrium.
 double friction_to_rest(const Scene& scene);
 
 // Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
@@ -57,24 +57,24 @@ struct SpeedRange {
     double upper;
 };
 
-// The speeds and friction coefficients at which the motion on level ground changes its kind. Speeds
-// are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2]. A speed
-// or friction is infinite, and its angle absent, where the change never happens.
+// The speeds and friction coefficients at which the kind of motion on level ground changes. Speeds
+// are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2]. A speed or
+// friction is infinite, and its angle absent, if the change never happens.
 struct Thresholds {
-    double roll_over_speed;                // above it the body turns over
-    double contact_loss_speed = infinity;  // from it up, rolling needs N < 0 somewhere
+    double roll_over_speed;                // above it, the body turns over
+    double contact_loss_speed = infinity;  // above it, rolling needs N < 0 somewhere
     std::optional<double> contact_loss_angle;
-    // Between these speeds rolling needs more friction than there is somewhere: none for a circle,
-    // one, or two, see outcome/onset.hpp. The last one has no upper end.
+    // Ranges of speeds in which rolling somewhere needs more friction than available: none for a
+    // circle, else one or two, see outcome/onset.hpp. The last one has no upper end.
     std::vector<SpeedRange> slip_windows;
     std::optional<double> slip_angle;     // where friction first fails at the least of these speeds
     double friction_to_roll_over;         // max |F|/N of rolling at the roll-over speed
     double painleve_friction = infinity;  // least mu for which sliding may jam
     std::optional<double> painleve_angle;
     double rocking_rate;  // angular frequency of small rocking [rad/s]
-    double tip_rate;      // growth rate of falling from the tip [1/s]
+    double tip_rate;      // growth rate of the fall from the tip [1/s]
 
-    // The least speed at which rolling needs more friction than there is.
+    // The least speed at which rolling needs more friction than available.
     double slip_speed() const {
         return slip_windows.empty() ? infinity : slip_windows.front().lower;
     }
@@ -82,7 +82,7 @@ struct Thresholds {
 
 Thresholds thresholds(const Body& body, double friction);
 
-// The roll-over speed alone, physics (44): it needs no search.
+// The roll-over speed alone, physics (44), which needs no search.
 double roll_over_speed(const Body& body);
 
 struct LiftOff {
@@ -91,8 +91,8 @@ struct LiftOff {
 };
 
 // Lift-off of a body between its first slip and the tip; below slip_speed it does not slip. Above
-// Painleve's friction it may jam instead of leaving the ground, and leave it again at higher
-// speeds. A scan finds those ranges, and bisection refines them to the last bit.
+// the Painleve friction it may jam instead of leaving the ground, and at higher speeds leave the
+// ground again. A scan finds these ranges, and bisection refines them to the last bit.
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint);
 

@@ -10,7 +10,8 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// A time, and the observable there less the value searched: exactly 0 for a touch within rounding.
+// A time, and the observable there minus the requested value; exactly 0 if it touches within
+// rounding.
 struct Reading {
     double t;
     double excess;
@@ -60,7 +61,7 @@ struct Search {
 
     bool is_wanted(int sense) const { return direction == 0 || direction == sense; }
 
-    // The times of zeros, and of changes of sign between readings in the wanted direction.
+    // The times of zeros, and of sign changes between readings, in the requested direction.
     std::vector<double> passages_in(const std::vector<Reading>& readings, double value) const {
         std::vector<double> passed;
         struct Crossing {
@@ -74,14 +75,15 @@ struct Search {
             const int now = sign_of(readings[i].excess);
             if (now == 0) continue;
             const bool crosses = before == -now;
-            if (i > next) {  // zeros since the last sign; readings[next] is the first
+            if (i > next) {  // zeros after the last nonzero reading; readings[next] is the first
                 const int sense = before == 0 || crosses ? now : 0;
                 if (is_wanted(sense)) passed.push_back(readings[next].t);
             } else if (crosses && is_wanted(now)) {
                 if (readings[i - 1].is_last) {
                     passed.push_back(readings[i].t);
                 } else {
-                    // Excess times -now, which falls: a time with excess 0 is the upper end.
+                    // -now times the excess is falling, so that a time with excess 0 is the upper
+                    // end.
                     const RootBracket bracket(readings[i - 1].t, readings[i].t,
                                               -now * readings[i - 1].excess,
                                               -now * readings[i].excess);
@@ -92,7 +94,7 @@ struct Search {
             before = now;
         }
         if (next < readings.size() && is_wanted(-before)) passed.push_back(readings[next].t);
-        for (;;) {  // all brackets side by side, since many samples at once are cheaper
+        for (;;) {  // all brackets in parallel, since many samples at once are cheaper
             std::vector<double> times;
             std::vector<Crossing*> open;
             for (Crossing& crossing : crossings) {
@@ -112,7 +114,7 @@ struct Search {
     }
 
     // Adds the passages between the first and the last periods: copies of those in one period,
-    // which begins where the observable, in the first period, is farthest from the value.
+    // which starts where the observable, in the first period, is farthest from the value.
     void repeat(const Stretch& stretch, double value, std::vector<double>& times) const {
         constexpr double most = 1'000'000;
         const auto& at = stretch.times;

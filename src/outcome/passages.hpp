@@ -1,6 +1,6 @@
 // The times at which a quantity of a motion passes a value. They belong to the motion itself, not
-// to samples of it. They are searched between times from each of which to the next the quantity
-// only rises or only falls.
+// to samples of it. The search examines intervals on each of which the quantity only rises or only
+// falls.
 #pragma once
 
 #include <array>
@@ -19,24 +19,24 @@ enum class Quantity { theta, x, z, omega, contact_x };
 template <>
 inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact_x"};
 
-// A quantity as a function of time, in SI units; or the caller's function of time.
+// A quantity as a function of time, in SI units, or a function of time given by the caller.
 struct Observable {
-    std::optional<Quantity> quantity;  // absent for a function of the caller
+    std::optional<Quantity> quantity;  // absent for the caller's function
     Measure measure;
-    double length;  // a length [m] whose rounding counts, too: paths are sums
+    double length;  // a length [m] whose rounding counts, too, since paths are sums
 };
 
-// Observes a quantity of a motion. Motion and checkpoint have to live as long as the observable.
+// Observes a quantity of a motion. Motion and checkpoint must outlive the observable.
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
 
 // One segment of a motion with the turning points of an observable.
 struct Stretch {
-    const char* where;           // phrase for messages: "while it rolls"
-    std::vector<double> times;   // begin, turning points, end [s], ascending
+    const char* where;           // phrase for messages, such as "while it rolls"
+    std::vector<double> times;   // start, turning points, end [s], ascending
     std::vector<double> values;  // values of the observable
-    bool proved = true;          // is the observable monotone from each time to the next?
-    // The period [s] of a motion that repeats itself often: `times` then cover the first two and
-    // the last two periods.
+    bool proved = true;          // the observable is monotone between the times
+    // The period [s] of a motion with many periods, of which `times` cover the first and the last
+    // two.
     std::optional<DoubleDouble> period = {};
 };
 
@@ -50,13 +50,13 @@ std::vector<Stretch> stretches(const Motion& motion, double last, const Observab
                                 const std::string& got);
 
 struct Passages {
-    std::vector<std::vector<double>> times;  // passages of each value [s], ascending
-    std::vector<std::string> unproved;       // phrases: where passages may be missing
+    std::vector<std::vector<double>> times;  // times of passing each value [s], ascending
+    std::vector<std::string> unproved;       // phrases that say where passages may be missing
 };
 
-// All passages up to a last time. Direction: +1 where the observable rises through the value, -1
-// where it falls, 0 for both and for touches. A jump of omega across the value at an event counts
-// as a passage.
+// All passages up to the time `last`. Direction: +1 where the observable rises through the value,
+// -1 where it falls, 0 for both and for touches. A jump of omega across the value at an event
+// counts as a passage.
 Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint);
 

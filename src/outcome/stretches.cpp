@@ -36,17 +36,17 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// Facts of a law from which its turning points are searched. Times are since the start of the
-// segment, in units of the motion.
+// What the search for turning points needs to know about a law. Times are measured from the start
+// of the segment, in units of the motion.
 struct Course {
     const char* where;
     std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
-    bool monotone = false;                 // the observable is monotone between knots, provably
+    bool monotone = false;                 // the observable is provably monotone between knots
     std::optional<DoubleDouble> period = {};
-    double swung = 0.0;  // quarter turns in a period that leads back to its start
+    double swung = 0.0;  // quarter turns in a period, if the body swings back
 };
 
-// The course of each law, for one observable.
+// Determines the course of each law for one observable.
 struct CourseOf {
     static constexpr const char* rolling = "while it rolls";
     static constexpr const char* resting = "while it rests";
@@ -98,7 +98,7 @@ struct CourseOf {
     Course operator()(const Standing&) const { return {resting}; }
 
   private:
-    // Is the quantity monotone in the angle of a body that rolls?
+    // Whether the quantity is monotone in the angle of a rolling body.
     bool is_along() const { return quantity != Quantity::z && quantity != Quantity::omega; }
 
     template <class Steps>
@@ -154,10 +154,10 @@ struct Survey {
         times.insert(times.end(), ending.begin(), ending.end());
     }
 
-    // Adds the turning points between times from each of which to the next the motion is smooth.
-    // Each interval is divided into at least `least` parts, and each quarter turn into four. A
-    // function of the caller gets 16 parts in all, since it may change while the body rests.
-    // Returns whether the observable is proved to be monotone between the times.
+    // Adds the turning points between the times, between which the motion is smooth. Each interval
+    // is divided into at least `least` parts, and each quarter turn into four. A caller's function
+    // gets 16 parts in all, since it may change while the body rests. Returns whether the
+    // observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
         if (!of.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
@@ -192,7 +192,7 @@ void refuse_length(const Observable& of, const std::string& requirement, const s
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
-    constexpr std::size_t many = 1000;  // samples expected: so many that a table of the motion pays
+    constexpr std::size_t many = 1000;  // expected samples, enough for a table to pay
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;

@@ -11,8 +11,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The least friction with which sliding may jam, mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h
-// h')^2: stationary where -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
+// The least friction with which sliding may jam: mu = (K + Y/u)/sqrt(Y),
+// Y = (1 - u)(u - B) = (h h')^2, is stationary where -K Y' u^2 + Y Y' u - 2 Y^2 = 0, physics (49).
 Onset painleve(const Shape& shape) {
     const double b2 = square(shape.short_axis);
     const double k2 = shape.gyration2;
@@ -31,10 +31,10 @@ Onset painleve(const Shape& shape) {
     return onset;
 }
 
-// Does a slide under infinite friction get to the tip? It has N = 0: its centre is in free fall,
-// and h'^2 omega^2 + 2 g h is constant, physics (52). Below 2 g L it turns back under the tip with
-// c > 0: from the flat to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls, too,
-// but to g h'^2 where omega vanishes.
+// Whether a slide under infinite friction reaches the tip. N = 0 there: the centre is in free fall,
+// and h'^2 omega^2 + 2 g h is constant, physics (52). Below 2 g L the body turns back before the
+// tip with c > 0: from the flat position to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2
+// omega^2 falls, too, but only to g h'^2 where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
     const double h = geometry(scene.axes(), start.theta).h;
     const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
@@ -46,32 +46,32 @@ double flat_inertia(const Body& body, const FlatView& at) {
     return body.gyration2 + square(at.short_axis);
 }
 
-// The speed when passing the flat position of a motion with an energy over it, in units of the long
-// semi-axis: physics (44).
+// The speed at the flat position of a motion with the given energy above that position, in units of
+// the long semi-axis: physics (44).
 double flat_speed(const Body& body, const FlatView& at, double over_flat) {
     return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia(body, at));
 }
 
-// Fate of a body that rolls over the flat position, before it passes the tip.
+// The fate of a body that rolls over the flat position, before it passes the tip.
 enum class Fate { stays, leaves, jams };
 
-// The state at the end of a segment, and the motion that follows.
+// The state at the end of a segment and the motion that follows.
 struct EndOfSegment {
     State state;
     Continuation next;
 };
 
-// The climb of a body from the flat position to the tip, for any speed.
+// The climb of a body from the flat position to the tip, at any speed.
 struct Climb {
     const Scene& scene;
     const Checkpoint& checkpoint;
     double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta of the flat position
     double tip = flat + half_pi;
 
-    // The fate of a climb from the flat to the tip. c can vanish only on the way up, where its rate
-    // is h''' omega^3, physics (53), since h'' falls from the flat to the tip.
+    // The fate of a climb from the flat position to the tip. c can vanish only on the way up, where
+    // its rate is h''' omega^3, physics (53), since h'' falls from the flat position to the tip.
     Fate fate(double omega) const {
-        // A climb of more segments has slides of no length: N and c vanish together, right at the
+        // A climb with more segments has slides of zero length: N and c then vanish together at the
         // tip.
         constexpr int most_segments = 64;
         checkpoint();
@@ -89,7 +89,7 @@ struct Climb {
         return next.mode == Mode::flight ? Fate::leaves : Fate::stays;
     }
 
-    // The end of a segment of rolling; empty if the body gets over the tip or turns back.
+    // The end of a segment of rolling; empty if the body passes the tip or turns back.
     std::optional<EndOfSegment> end_of_rolling(const State& from) const {
         const RollingStart start = rolling_start(scene.body(), from.theta, from.omega);
         const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene.friction);
@@ -120,17 +120,17 @@ struct Climb {
 };
 
 // A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/c^2,
-// physics (53), with no more energy than at the start.
+// physics (53), and it has no more energy than at the start.
 double too_slow(const Body& body, const FlatView& at) {
     return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia(body, at));
 }
 
-// The least speed of lift-off, by steps of a factor: coarse without jams, since a body that leaves
+// The least speed of lift-off, by a geometric scan: coarse without jams, since a body that leaves
 // the ground does so at any higher speed; fine up to `high` with jams, since fates may alternate.
 LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
     const int most_growths = may_jam ? int(std::log(high / low) / std::log(growth)) + 1 : 200;
-    constexpr double known = 1e-5;   // share of a speed; closer to a change last digits decide
+    constexpr double known = 1e-5;   // fraction of a speed; closer to a change, rounding decides
     constexpr int most_changes = 8;  // in one step
     LiftOff lift_off;
     Fate before = Fate::stays;
@@ -212,8 +212,8 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const Units units = natural_units(body);
     const Scene scene = in_units(level_scene(body, friction), units);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
-    // At 50 times the speeds that weight decides gravity is 2500 times weaker in units of omega^2,
-    // and no longer matters. The slip speed may be far below them: that of a body that slips at
+    // At 50 times the speeds that weight determines, gravity is 2500 times weaker in units of
+    // omega^2 and no longer matters. The slip speed may be far lower, for a body that slips at
     // rest.
     const double loss = flat_speed(body, at, contact_loss(shape(body, at)).value);
     const double high = 50 * std::max(low, std::max(roll_over_speed(body), loss) * units.time);

@@ -18,17 +18,17 @@ double direction_of(const RollingStart& from) {
     return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
 }
 
-// The law on the quarter turn whose mirror images make up the motion. A place is the angle from the
-// flat position, or the negative angle from the tip if the motion starts nearer to the tip: places
-// next to its start then have all their digits.
+// The law on the quarter turn whose mirror images make up the motion. A position (`place`) is given
+// by the angle from the flat position, or by minus the angle from the tip if the motion starts
+// nearer the tip, so that positions near the start have full precision.
 struct Quarter {
     const EnergyRange& range;
     double friction;
     bool from_tip;
     double direction;    // sign of omega at the start
-    bool rises;          // whether it moves towards the tip; true if flat or upright
+    bool rises;          // moves towards the tip; true if flat or upright
     ContactForce force;  // contact force at the start
-    double start;        // place of the start
+    double start;        // position at the start
 
     Quarter(const RollingStart& from, const EnergyRange& energies, double mu)
         : range(energies),
@@ -59,10 +59,10 @@ struct Quarter {
     }
 };
 
-// The place from which the law holds: the start, or a place just ahead of a start at which the
-// law is at its limit; empty where the law is broken.
+// The position from which the law holds: the start, or a position just ahead if the law is at its
+// limit at the start; empty if the law is broken.
 std::optional<double> holds_from(const Quarter& quarter) {
-    constexpr double ahead = 1e-8;  // share of way to flat or tip, far enough to pass rounding
+    constexpr double ahead = 1e-8;  // fraction of the angle to flat or tip, more than rounding
     if (!at_the_limit(quarter.force, quarter.friction)) {
         const bool holds = law_margin(quarter.force, quarter.friction) > 0;
         return holds ? std::optional(quarter.start) : std::nullopt;
@@ -72,9 +72,9 @@ std::optional<double> holds_from(const Quarter& quarter) {
     return quarter.holds(next) ? std::optional(next) : std::nullopt;
 }
 
-// Append the zeros of the law between `from` and `to` about a zero of its squared form. Near the
-// tip both forces may be small, and squaring halves their digits. Where F vanishes, too, the law
-// may hold at this zero and fail on both sides of it.
+// Appends the zeros of the law between `from` and `to` near a zero of its squared form. Near the
+// tip both forces may be small, and squaring halves the number of accurate digits. Where F
+// vanishes, too, the law may hold at this zero and fail on both sides of it.
 void add_refined(std::vector<double>& places, const Quarter& quarter, double zero, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };
@@ -96,12 +96,12 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double zer
     add_between(zero, high);
 }
 
-// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N. A zero
-// of the squared form at a negative N is none of the law.
+// The positions, ascending, beyond which the law may be broken: its zeros and those of N. A zero of
+// the squared form at a negative N is not a zero of the law.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {
-    constexpr double clearly_negative = 1e-3;  // share of the weight, many times its rounding
+    constexpr double clearly_negative = 1e-3;  // fraction of the weight, far above rounding
     const auto place_at = [&](double x) { return quarter.place(rolling_forces(quarter.range, x)); };
     const std::vector<double> roots = roots_on_unit_interval(law);
     std::vector<double> places;
@@ -117,9 +117,9 @@ std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& 
     return places;
 }
 
-// Append the ends of the interval about the start on which the law holds. A tiny friction suffices
-// where F vanishes, as flat and on the tip: such an interval may be narrower than the roots of the
-// squared form can resolve.
+// Appends the ends of the interval about the start on which the law holds. Where F vanishes, as in
+// the flat position and on the tip, a tiny friction suffices; the interval may then be too narrow
+// to be resolved by the roots of the squared form.
 void add_ends_about(std::vector<double>& places, double start, const Quarter& quarter) {
     const auto holds = [&](double place) { return quarter.holds(place); };
     const auto broken = [&](double place) { return !holds(place); };
@@ -133,14 +133,14 @@ void add_ends_about(std::vector<double>& places, double start, const Quarter& qu
     std::sort(places.begin(), places.end());
 }
 
-// An angle of turning from the start, and the sign of omega at its end.
+// The angle turned from the start, and the sign of omega at its end.
 struct Turn {
     double angle;
     double heading;
 };
 
-// The turn to the first of the places (ascending, at least one) after `from`, on either side of the
-// flat position; empty if the body never reaches one: on the separatrix it ends at the tip.
+// The turn to the first of the positions (ascending, at least one) after `from`, on either side of
+// the flat position; empty if the body never reaches one: on the separatrix it ends at the tip.
 std::optional<Turn> first_meeting(const Quarter& quarter, double from,
                                   const std::vector<double>& places) {
     const double on = quarter.direction;
@@ -153,12 +153,12 @@ std::optional<Turn> first_meeting(const Quarter& quarter, double from,
     if (quarter.rises && above != places.end()) return Turn{on * (*above - start), on};
     if (!quarter.rises) return Turn{on * ((start - flat) + (places.front() - flat)), on};
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
-    // The last place, met again beyond the tip or after the turning point.
+    // The last position is reached again beyond the tip or after the turning point.
     if (range.libration) return Turn{on * (places.back() - start), -on};
     return Turn{on * ((tip - start) + (tip - places.back())), on};
 }
 
-// Where rolling ends: the first place at which N or the law's polynomial turns negative.
+// Where rolling ends: the first position at which N or the law's polynomial turns negative.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
                            const Polynomial<N>& law_polynomial, double theta) {
@@ -174,7 +174,7 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     if (!from) return end;
     std::vector<double> places = breaking_places(quarter, contact, law);
     add_ends_about(places, *from, quarter);
-    if (places.empty()) {  // on the edge: the law may be broken at its least margin
+    if (places.empty()) {  // edge: the law may be broken where its margin is least
         const ForceExtremes extremes = force_extremes(quarter.range, polynomials);
         places.push_back(quarter.place(std::isinf(quarter.friction) ? extremes.least_normal
                                                                     : extremes.most_friction));
@@ -184,8 +184,8 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     return {end.validity, theta + turn->angle, turn->heading};
 }
 
-// The end of rolling of a body that needs no friction, at rest or a circle, or that has none and
-// slides from the start; empty for all others.
+// The end of rolling for a body that needs no friction (at rest or a circle), or that has no
+// friction and slides from the start; empty for all others.
 std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double friction) {
     if (from.rests) return EndOfRolling{Validity::valid};
     if (friction == 0) return EndOfRolling{Validity::invalid, from.theta, direction_of(from)};
@@ -222,7 +222,7 @@ EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
     if (!end.angle) return infinity;
     if (*end.angle == flow.from.theta) return 0.0;
-    // The body stands on its tip with a speed that underflows in its units.
+    // The body stands on its tip with a speed that underflows in natural units.
     if (flow.kind == MotionKind::rest) return infinity;
     return time_of_passing(flow, *end.angle, end.heading);
 }

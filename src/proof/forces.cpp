@@ -124,7 +124,8 @@ ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& p
         if (forces.normal < extremes.least_normal.normal) extremes.least_normal = forces;
         if (forces.needed() > extremes.most_friction.needed()) extremes.most_friction = forces;
     };
-    // The zeros of N come first: of all places with infinite |F|/N they are reported.
+    // The zeros of N come first: of all positions with infinite |F|/N, one of them is then
+    // reported.
     for (const double x : roots_on_unit_interval(bernstein(polynomials.normal))) {
         RollingForces forces = rolling_forces(range, x);
         forces.normal = 0.0;

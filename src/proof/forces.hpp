@@ -1,13 +1,13 @@
-// Heights h of a rolling motion, and its contact forces as rational functions of h.
+// The heights h of a rolling motion, and its contact forces as rational functions of h.
 //
 // Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
-// k^2, u = h^2, y = u - B, s = K + 1 + B and the energy over the height e = H - h, H = E/(m g):
+// k^2, u = h^2, y = u - B, s = K + 1 + B and the energy above the height e = H - h, H = E/(m g):
 //     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D    physics (32)
 //     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
 //     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
 //     G = (h h')^2 = (1 - u) y                                               physics (35)
-// from N and F of rolling, physics (23, 24). No term cancels: c2 has all its digits for a nearly
-// circular body, e for a thin body near a turning point.
+// from N and F of rolling, physics (23, 24). There is no cancellation: c2 is accurate even for a
+// nearly circular body, and e even for a thin body near a turning point.
 #pragma once
 
 #include "numerics/polynomial.hpp"
@@ -25,9 +25,8 @@ struct Shape {
 
 Shape shape(const Body& body, const FlatView& view);
 
-// A place of a body in rolling, by the squares of the sine and cosine of its angle from the flat
-// position, with the parts of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16,
-// 23).
+// A position of a rolling body, given by sin^2 and cos^2 of its angle from the flat position, with
+// the parts of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16, 23).
 struct ShapePlace {
     double h2;
     double h;
@@ -40,23 +39,23 @@ struct ShapePlace {
 
 ShapePlace place_at(const Shape& shape, double sin2, double cos2);
 
-// The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape and an energy reaches.
+// The heights h = short_axis + width x, 0 <= x <= 1, that a body of given shape and energy reaches.
 struct EnergyRange : Shape {
     double width;       // width of the range of heights
-    double energy_gap;  // H minus the greatest height reached (0 in libration)
-    double tip_gap;     // 1 minus the greatest height reached (0 in rotation)
+    double energy_gap;  // H minus the greatest height reached; 0 in libration
+    double tip_gap;     // 1 minus the greatest height reached; 0 in rotation
     bool libration;
 };
 
 EnergyRange energy_range(const RollingStart& start);
 
-// The same for an energy by its heights H - S over the flat position and H - 1 over the tip.
+// The same for an energy at heights H - S above the flat position and H - 1 above the tip.
 EnergyRange energy_range(const Shape& shape, double over_flat, double over_tip);
 
 // The range of a rotation with the energy of the separatrix, H = 1.
 EnergyRange separatrix_range(const Shape& shape);
 
-// Polynomials in x of the forces; P = normal_at_rest + e normal_moving.
+// The polynomials of the forces in x; P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
     Polynomial<1> height;
     Polynomial<2> weight;  // V, of D = V/u
@@ -69,10 +68,10 @@ struct ForcePolynomials {
 
 ForcePolynomials force_polynomials(const EnergyRange& range);
 
-// Contact forces at one place, from the equations of rolling.
+// Contact forces at one position, from the equations of rolling.
 struct RollingForces {
     double sin;       // sine of the angle from the flat position
-    double cos;       // cosine of the angle from the flat; both are >= 0
+    double cos;       // cosine of that angle; both are >= 0
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
@@ -86,10 +85,10 @@ struct RollingForces {
 // Contact forces at the height h = short_axis + width x.
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// Contact forces by sin^2 and cos^2 of the angle, which near the tip have more digits than x.
+// Contact forces from sin^2 and cos^2 of the angle, which near the tip are more accurate than x.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2);
 
-// Contact forces by sin^2 and cos^2 of the angle and by omega^2 in units of g/L.
+// Contact forces from sin^2 and cos^2 of the angle and omega^2 in units of g/L.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {

@@ -8,8 +8,7 @@
 
 namespace rolling_ellipse {
 
-// Margin of the law for friction to one side, -1 or 1; with infinite friction only the normal force
-// counts.
+// Margin of the law for friction to one side, -1 or 1; with infinite friction, the normal force.
 inline double law_margin(const ContactForce& force, double friction, double side) {
     if (std::isinf(friction)) return force.normal;
     return friction * force.normal - side * force.friction;
@@ -20,29 +19,30 @@ inline double law_margin(const ContactForce& force, double friction) {
     return law_margin(force, friction, std::copysign(1.0, force.friction));
 }
 
-// The sum of the sizes of the terms of a margin.
+// The sum of the magnitudes of the terms of a margin.
 inline double law_size(const ContactForce& force, double friction) {
     const double normal = std::abs(force.normal);
     return std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
 }
 
-// Rounding of a margin, relative to its size, by the operations from the angle to the margin.
+// Rounding error of a margin relative to its size, from all operations between angle and margin.
 inline constexpr double law_rounding = 64 * epsilon;
-// Smallest normal double: below it friction has lost digits.
+// Smallest normal double, below which friction loses precision.
 inline constexpr double least_friction = std::numeric_limits<double>::min();
 
-// Whether the margin of the law is 0 but for rounding.
+// Whether the margin of the law is 0 to within rounding.
 inline bool at_the_limit(const ContactForce& force, double friction) {
     return std::abs(law_margin(force, friction)) <=
            law_rounding * law_size(force, friction) + least_friction * std::abs(force.normal);
 }
 
-// A friction coefficient a little larger, for which a law at its limit holds beyond rounding.
+// A slightly larger friction coefficient, with which a law at its limit holds by more than
+// rounding.
 inline double beyond_the_limit(double friction) {
     return friction * (1 + 8 * law_rounding) + 8 * least_friction;
 }
 
-// The friction coefficient that the forces need, |F|/N; infinite where N <= 0, unless both vanish.
+// The friction coefficient |F|/N that the forces need; infinite where N <= 0, unless both vanish.
 inline double friction_needed(const ContactForce& force) {
     if (force.normal > 0) return std::abs(force.friction) / force.normal;
     return force.normal == 0 && force.friction == 0 ? 0.0 : infinity;

@@ -11,15 +11,17 @@
 namespace rolling_ellipse {
 namespace {
 
-// The scene seen with the slope falling to growing angles and the long axis along the ground at 0.
+// The scene, seen so that the slope falls towards growing angles and the long axis is along the
+// ground at angle 0.
 Scene downhill(Scene scene) {
     if (scene.a < scene.b) std::swap(scene.a, scene.b);
     scene.slope = std::abs(scene.slope);
     return scene;
 }
 
-// The well between two upright equilibria, half a turn apart: W = D omega^2/2 rises to the lying
-// one and falls from there: dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics (18).
+// The well between two upright equilibria, half a turn apart: W = D omega^2/2 rises up to the lying
+// equilibrium and falls beyond it, as dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics
+// (18).
 class Well {
   public:
     // The well of a body that rolls from a state.
@@ -66,8 +68,8 @@ class Well {
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
-    // W at an angle minus W at the start. Over small angles the difference of two heights, or of
-    // two paths, would have lost its digits: there it is a quadrature of physics (62).
+    // W at an angle minus W at the start. Over small angles, where a difference of two heights or
+    // paths would be inaccurate, it is a quadrature of physics (62).
     double gained(double angle) const {
         const double turned = angle - start_;
         const Geometry from = geometry(axes_, start_);
@@ -94,8 +96,8 @@ class Well {
 
     double needed(double angle) const { return friction_needed(force(angle)); }
 
-    // Angles from first to last: evenly spaced, and denser about the axes of a thin body, where its
-    // forces change within b/a and its square.
+    // Angles from first to last, evenly spaced, but denser near the axes of a thin body, where the
+    // forces change over angles of b/a and (b/a)^2.
     std::vector<double> places(double first, double last) const {
         constexpr int count = 512;
         std::vector<double> angles{first, last};
@@ -112,8 +114,8 @@ class Well {
         return angles;
     }
 
-    // The angle of the largest value of a measure: golden section about every angle whose value is
-    // no smaller than those of its neighbours.
+    // The angle at which a measure is largest, by golden-section search about every angle whose
+    // value is no smaller than its neighbours'.
     template <class Measure>
     static double highest(const std::vector<double>& at, const Measure& measure) {
         std::vector<double> values(at.size());
@@ -153,7 +155,8 @@ class Well {
     bool holds_ = false;
 };
 
-// The friction needed by a motion with constant forces, of a body in equilibrium or of a circle.
+// The friction needed in a motion with constant forces: that of a body in equilibrium or of a
+// circle.
 std::optional<double> constant_friction(const Scene& scene, const State& start) {
     const double incline = std::tan(scene.slope);
     const Geometry here = geometry(scene.axes(), start.theta);

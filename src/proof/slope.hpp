@@ -7,22 +7,23 @@
 
 namespace rolling_ellipse {
 
-// A meeting with the limit of the law: time [s] since the start, angle and sign of omega then.
+// A point at which the motion is at the limit of the law: time [s] from the start, angle and sign
+// of omega.
 struct Meeting {
     double time;
     double theta;
     double heading;
 };
 
-// `touched`: the first place at which the margin of the law is 0 within rounding, and not less.
-// `broken`: the first place at which the law fails; the search ends there.
+// `touched`: the first point at which the margin of the law is 0 within rounding, not negative.
+// `broken`: the first point at which the law fails; the search ends there.
 struct LawMeetings {
     std::optional<Meeting> touched;
     std::optional<Meeting> broken;
 };
 
-// Examines the law on the stretches of a motion in the order of time, up to a time in units of the
-// body at least.
+// Examines the law on the stretches of a motion in order of time, at least up to the time `until`
+// in units of the body.
 class LawWatch {
   public:
     LawWatch(const SlopeFlow& flow, double friction, double until = infinity)
@@ -32,11 +33,11 @@ class LawWatch {
     bool examine(const Even&);
     bool examine(const SlopePiece& piece);
     bool examine(Sum& sum);
-    // The forces are those of the motion before.
+    // These stretches only repeat the forces of earlier ones.
     bool examine(const Mirror&) { return false; }
     bool examine(const Repeat&) { return false; }
 
-    // The meetings found so far. A motion that ends close to the limit has touched it.
+    // The limits found so far. A motion that ends close to the limit counts as having touched it.
     LawMeetings met() const;
 
   private:
@@ -45,7 +46,7 @@ class LawWatch {
     // A stretch of time on which the margin is within rounding of 0.
     struct Stretch {
         bool open = false;
-        std::optional<Meeting> begin;  // empty if the stretch begins with the motion
+        std::optional<Meeting> begin;  // empty if it starts with the motion
     };
 
     bool examine_parts(const SlopePiece& piece);
@@ -56,23 +57,24 @@ class LawWatch {
     const SlopeFlow& flow_;
     const double friction_;
     const double until_;
-    Stretch near_[2];  // stretches of the laws for friction to each side
+    Stretch near_[2];  // one stretch for friction to each side
     bool at_start_ = true;
     LawMeetings met_;
 };
 
-// The meetings over the whole motion, or up to a time [s] at least; extends the flow as needed.
+// The limits reached over the whole motion, or at least up to a time [s]; extends the flow as
+// needed.
 LawMeetings law_meetings(SlopeFlow& flow, double friction, double until = infinity);
 
-// The end of rolling for a certificate: a touch is an edge.
+// The end of rolling for a certificate, in which a touch counts as an edge.
 EndOfRolling end_of_rolling(const LawMeetings& met);
 
-// Whether the rolling motion from a state on a slope may be valid for ever. A circle and a body in
-// equilibrium have the same forces all the time; a body that rocks has turning points; all others
-// run downhill faster and faster until no ground holds them.
+// Whether the rolling motion from a state on a slope may stay valid forever. A circle and a body in
+// equilibrium have constant forces; a rocking body has turning points; all others run downhill
+// faster and faster until the law fails.
 bool may_hold_for_ever(const Scene& scene, const State& start);
 
-// The certificate of rolling on a slope that ends as given.
+// The certificate of rolling on a slope, given the end of rolling.
 Certificate certify_on_slope(const Scene& scene, const State& start, const EndOfRolling& end);
 
 }  // namespace rolling_ellipse

@@ -1,11 +1,10 @@
 // The end of rolling on a slope: the law of the contact along the motion.
 //
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
-// that the first place at which the law is broken is the first root of a polynomial. In a half turn
-// of a run or climb polynomials on its parts may prove faster that the law holds. Half turns need
-// not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), so
-// that the law holds for an interval of W. A law that holds in two half turns holds in all between
-// them.
+// that the law first breaks at the first root of a polynomial. In a half turn of a run or climb,
+// polynomials on its parts may provide a faster proof that the law holds. Half turns need not be
+// followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), so that
+// the law holds on an interval of W. A law that holds in two half turns holds in all between.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -18,17 +17,18 @@ namespace {
 
 constexpr int law_degree = long_order - 2;
 
-// Error of a law's polynomial, relative to the sum of the sizes of its terms. The series of the
-// motion end where their last terms are a rounding; the second derivative of the terms left out is
-// up to some thousand roundings.
+// Error of a law's polynomial, relative to the sum of the magnitudes of its terms. The series of
+// the motion end where their last terms are as small as a rounding error; the second derivative of
+// the omitted terms reaches several thousand rounding errors.
 constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The margin of the law for friction to one side, a polynomial of the share 0 <= x <= 1 of a piece.
+// The margin of the law for friction to one side, a polynomial in x, where x in [0, 1] is the
+// position in a piece.
 struct LawWatch::Law {
     double side;
-    double size;  // sum of the sizes of the terms of the law
+    double size;  // sum of the magnitudes of the terms of the law
     std::array<double, law_degree + 1> coefficients;
 
     Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
@@ -53,9 +53,9 @@ struct LawWatch::Law {
 
     double tolerance() const { return rounding * size; }
 
-    // Whether the terms left out are within the tolerance. Pieces are as long as angle, speed and
-    // path allow; the law of a nearly round body is so much smaller than these that it needs
-    // shorter pieces.
+    // Whether the omitted terms are within the tolerance. Pieces are as long as the series of
+    // angle, speed and path allow; for a nearly round body the law is so much smaller than these
+    // that it needs shorter pieces.
     bool is_resolved() const {
         return !(std::abs(coefficients[law_degree - 1]) + std::abs(coefficients[law_degree]) >
                  tolerance());
@@ -67,7 +67,7 @@ struct LawWatch::Law {
         return least > tolerance();
     }
 
-    // 0, 1 and the places between them at which the margin passes +tolerance or -tolerance.
+    // 0, 1 and the points between them at which the margin passes +tolerance or -tolerance.
     std::vector<double> divisions() const {
         std::vector<double> places{0.0, 1.0};
         for (const double level : {tolerance(), -tolerance()}) {
@@ -112,7 +112,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
             if (!met_.touched) met_.touched = near.begin;
             near = {};
         } else if (here >= -law.tolerance()) {
-            // The rounding of the forces, smaller than the error of their polynomials.
+            // The rounding error of the forces, smaller than the error of their polynomials.
             const double fine = law_rounding * law.size;
             double least = at(low) < at(high) ? low : high;
             if (at(least) >= -fine) {
@@ -131,7 +131,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
                 if (!at_start_ || i > 0) near.begin = meeting(piece, least);
             }
         } else {
-            // Newton's method on the forces, from the root of the polynomial.
+            // Newton's method on the forces, starting at the root of the polynomial.
             double share = low;
             for (int j = 0; j < 2; ++j) {
                 const double rate = derivative(law.coefficients, share);
@@ -145,7 +145,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
 
 bool LawWatch::examine(const SlopePiece& piece) {
     if (std::isinf(piece.lasts)) return false;
-    const int count = std::isinf(friction_) ? 1 : 2;  // infinite friction leaves the law N > 0
+    const int count = std::isinf(friction_) ? 1 : 2;  // under infinite friction only N > 0 remains
     std::optional<Law> laws[2];
     for (int i = 0; i < count; ++i) {
         laws[i].emplace(flow_.body, piece, friction_, i == 0 ? 1.0 : -1.0);
@@ -182,10 +182,11 @@ LawMeetings LawWatch::met() const {
 
 namespace {
 
-// Whether the law provably holds on a part with the given forces: its margin at each node is larger
-// than what it may change up to the nearest node, as |P_k'| <= k (k + 1)/2 on -1 ... 1.
+// Whether the law provably holds on a part with the given forces: its margin at each node exceeds
+// the largest possible change of the margin between a node and the points around it, since |P_k'|
+// <= k (k + 1)/2 on -1 ... 1.
 bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, double friction) {
-    constexpr double to_a_node = 0.077;  // largest distance of a place from the nearest node
+    constexpr double to_a_node = 0.077;  // largest distance of a point from the nearest node
     static_assert(part_order == 20);
     const PartArray normal = legendre_coefficients(forces.normal);
     const PartArray tangential = legendre_coefficients(forces.friction);
@@ -203,8 +204,8 @@ bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, doubl
     return ends <= rounding * size && least - to_a_node * change > rounding * size;
 }
 
-// The meetings with the law in the half turn after the first n of a run, as far as its parts go: by
-// the parts, where they prove that it holds, or by series.
+// The limits reached in the half turn after the first n of a run, as far as its parts extend. The
+// parts are used if they prove that the law holds, otherwise series.
 LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double friction,
                              double half_turns) {
     const bool holds = std::all_of(run.parts.begin(), run.parts.end(), [&](const RunPart& part) {
@@ -228,7 +229,7 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double 
     return watch.met();
 }
 
-// First guess of the half turn of a complete run in which the law is broken, from the nodes of its
+// First guess of the half turn of a complete run in which the law breaks, from the nodes of its
 // parts. The forces at a node are linear in W, hence in the number of half turns.
 double broken_about(const SlopeRun& run, double friction) {
     const double later =
@@ -250,14 +251,15 @@ double broken_about(const SlopeRun& run, double friction) {
     return least;
 }
 
-// The meetings in one stretch of a motion and in a later one, or at a later time of it.
+// Combines the results for a stretch of a motion and for a later one, or a later part of the same
+// one.
 LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
     return {met.touched ? met.touched : later.touched, met.broken ? met.broken : later.broken};
 }
 
-// The meetings in the first half turn of a run in which the law is broken; it is broken in all
-// later ones, too. The search takes growing steps from a guess, then halves. A run is followed up
-// at least to a time since its start.
+// The limits reached in the first half turn of a run in which the law breaks; the law then breaks
+// in all later half turns, too. The search takes growing steps from a guess, then bisects. The run
+// is followed at least up to a time from its start.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
     const double all = run.half_turns - 1;
@@ -285,7 +287,7 @@ Meeting start_of(const SlopeFlow& flow) {
 
 }  // namespace
 
-// A circle and a body in equilibrium need the same friction all the time.
+// A circle and a body in equilibrium need the same friction at all times.
 bool LawWatch::examine(const Even&) {
     if (std::isinf(friction_)) return false;
     const auto [into, along] = flow_.body.gravity;

@@ -3,7 +3,7 @@
 
 namespace rolling_ellipse {
 
-// Numbers, or packs of them, along the normal and along the ground.
+// The components of a vector along the normal and along the ground; T is a double or a Pack.
 template <class T>
 struct Components {
     T normal;
@@ -16,13 +16,12 @@ struct CentreOfRolling {
     Components<T> acceleration;
 };
 
-// Both without differences of accelerations, which would lose digits where a thin body is light on
-// its tip. With w = h h'' - h'^2 = (a^2 - b^2) (b^2 cos^2 - a^2 sin^2)/h^2, D the inertia about the
-// contact, and gravity into the ground and along it:
+// Computes both without differences of accelerations, which are inaccurate where a thin body has
+// little weight on its tip. With w = h h'' - h'^2 = (a^2 - b^2) (b^2 cos^2 - a^2 sin^2)/h^2, D the
+// inertia about the contact, and gravity into the ground and along it:
 //     N/m = ((k^2 h'' + h w) omega^2 + (k^2 + h^2) into + h h' along)/D,      physics (23)
 //     F/m = (h' (k^2 - w) omega^2 - h h' into - (k^2 + h'^2) along)/D,        physics (24)
-// and for the acceleration -h'^2 into instead of the second term of N/m, h^2 along instead of the
-// last one of F/m.
+// For the acceleration, -h'^2 into replaces the second term of N/m, and h^2 along the last of F/m.
 template <class T>
 [[gnu::always_inline]] inline CentreOfRolling<T> centre_of_rolling(double k2, double into,
                                                                    double along, T h, T dh, T ddh,

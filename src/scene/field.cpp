@@ -9,7 +9,7 @@
 
 namespace rolling_ellipse {
 
-// The fewest digits that distinguish the number from its neighbours; 17 do for any.
+// The fewest digits, at least 15, that distinguish a number from its neighbours; 17 always suffice.
 std::string text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -48,7 +48,7 @@ void require_positive(std::string_view name, std::string_view kind, double value
     if (!(value > 0 && std::isfinite(value))) {
         refuse(name, "a positive finite " + std::string(kind), value);
     }
-    // Products of four lengths, an energy and gravity of these sizes stay in the range of doubles.
+    // Within these bounds products of four lengths, an energy and gravity do not overflow.
     if (value < 1e-30 || value > 1e30) {
         refuse(name, "a " + std::string(kind) + " between 1e-30 and 1e30", value);
     }

@@ -1,5 +1,5 @@
-// The numbers of a struct by name and unit, and refusals of wrong ones. A table of the numbers
-// stands below the struct; code that copies, scales or names all of them reads the table.
+// The fields of a struct by name and unit, and the rejection of invalid values. Code that copies,
+// scales or names all fields of a struct reads the table that follows the struct.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// A unit as printed (in UTF-8; C2 B2 is a raised 2), and its exponents of metre, second, kilogram.
+// A unit as printed (UTF-8; C2 B2 is a superscript 2) and its exponents of metre, second, kilogram.
 struct Unit {
     const char* symbol;
     int length = 0;
@@ -44,7 +44,7 @@ struct Field {
     Unit unit;
 };
 
-// A double as Python prints it; 1e+15 and subnormal numbers in other digits.
+// A double as Python prints it, except that 1e+15 and subnormals may be printed differently.
 std::string text(double value);
 
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got
@@ -53,14 +53,13 @@ std::string text(double value);
 [[noreturn]] void refuse(std::string_view name, const std::string& requirement,
                          const std::string& value);
 
-// A unit as messages have it: " [m]".
+// A unit as it appears in messages: " [m]".
 std::string in_brackets(const Unit& unit);
 
-// Throws unless a position, velocity or impulse is finite and small enough.
+// Throws unless a position, velocity or impulse is finite and at most 1e50 in magnitude.
 void require_finite(const char* name, const Unit& unit, double value);
 
-// Throws unless a quantity of a kind ("length [m]") is positive and of a size whose products stay
-// within the range of doubles.
+// Throws unless a quantity of a kind ("length [m]") is positive and between 1e-30 and 1e30.
 void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

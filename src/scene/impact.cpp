@@ -7,8 +7,8 @@ namespace rolling_ellipse {
 namespace {
 
 // The velocity of the material contact point, physics (12), v along the ground and u away from it,
-// and its change by an impulse there (Delassus matrix), physics (39). W. J. Stronge, Impact
-// Mechanics (2000), ch. 3.
+// and the matrix by which an impulse there changes it (Delassus matrix), physics (39). W. J.
+// Stronge, Impact Mechanics (2000), ch. 3.
 struct Contact {
     double v;
     double u;
@@ -19,7 +19,7 @@ struct Contact {
     double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
 };
 
-// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) has more digits for
+// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) is more accurate for
 // a light body that turns fast, u - v gtn/gtt for a body that hardly moves into the ground.
 Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate,
                 const LowParts& low = {}) {
@@ -50,7 +50,7 @@ struct Reaction {
     bool sticks = false;   // whether the collision ends with v = 0
 };
 
-// Infinite friction: the limit of the law below, physics (42), without a product infinity * 0.
+// Infinite friction: the limit of the law below, physics (42), avoiding a product infinity * 0.
 Reaction unlimited_friction(const Contact& c, double restitution, Restitution law) {
     const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
@@ -67,16 +67,16 @@ Reaction unlimited_friction(const Contact& c, double restitution, Restitution la
     return {(rebound - c.u) / c.gtn, 0.0, rebound, false};  // friction alone stops the approach
 }
 
-// The impulse path of Coulomb friction, physics (41), by the normal impulse p: u and v change
-// linearly while the contact slips, and while it sticks. Compression ends with u = 0, restitution
-// by its law.
+// The impulse path of Coulomb friction, physics (41), with the normal impulse p as its parameter: u
+// and v change linearly while the contact slips, and while it sticks. Compression ends at u = 0,
+// and restitution ends as its law prescribes.
 class ImpulsePath {
   public:
     ImpulsePath(const Contact& c, double restitution, Restitution law)
         : u_(c.u), restitution_(restitution), rebound_(-restitution * c.u), law_(law) {}
 
-    // Follows the path with du/dp = `du` and `tangential` impulse per normal one, for a normal
-    // impulse of at most `most`; false if restitution ends before.
+    // Follows the path with du/dp = `du` and a tangential impulse of `tangential` per unit of
+    // normal impulse, for a normal impulse of at most `most`; false if restitution ends earlier.
     bool follow(double du, double tangential, double most) {
         double left = most;
         if (u_ < 0) {
@@ -98,13 +98,13 @@ class ImpulsePath {
         return true;
     }
 
-    // The slip has stopped: u is the sum of u_without_slip and the effect of the normal impulse.
+    // Called when the slip has stopped: u is u_without_slip plus the effect of the normal impulse.
     void stop_slip(const Contact& c) { u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt); }
 
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
-    // The normal impulse still to come until restitution ends, and u at that end.
+    // The normal impulse that remains until restitution ends, and u at that end.
     struct End {
         double p;
         double u;
@@ -115,7 +115,7 @@ class ImpulsePath {
             const double p = last_normal_ - normal_;
             return {p, u_ + du * p};
         }
-        // The rest of the work, u p + du p^2/2: physics (56).
+        // The remaining work is u p + du p^2/2: physics (56).
         const double end = std::sqrt(u_ * u_ + 2 * du * work_);
         return {work_ == 0 ? 0.0 : 2 * work_ / (u_ + end), end};
     }
@@ -128,10 +128,10 @@ class ImpulsePath {
 
     double u_;
     double restitution_;
-    double rebound_;  // final u by Newton's law
+    double rebound_;  // final u under Newton's law
     Restitution law_;
-    double work_ = 0.0;         // work left for restitution by Stronge's law
-    double last_normal_ = 0.0;  // normal impulse at the end by Poisson's law
+    double work_ = 0.0;         // work left for restitution under Stronge's law
+    double last_normal_ = 0.0;  // final normal impulse under Poisson's law
     double normal_ = 0.0;
     double tangential_ = 0.0;
 };
@@ -157,20 +157,20 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
     return path.result(sticks);
 }
 
-// Adds a change to a number with its low part.
+// Adds a change to a number and its low part.
 void add(double change, double& number, double& low) {
     const DoubleDouble sum = DoubleDouble{number, low} + change;
     number = sum.high;
     low = sum.low;
 }
 
-// The gap rate afterwards is exactly the rebound, and exactly v = 0 if the contact sticks. The
+// The gap rate afterwards is exactly the rebound, and v exactly 0 if the contact sticks. The
 // angular momentum about the contact, which no reaction changes, gives the sticking angular
 // velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
-// rebound; its change, by v and u before, where that is the smaller part. If the contact slips on,
-// the impulse gives x_dot and omega. If little is left of the omega of a light and fast body, the
-// angular momentum about another point of the line of the impulse, at the height of the centre,
-// gives omega with more digits. If little is left of h' omega, the impulse gives z_dot.
+// rebound; if omega changes little, its change is computed from v and u before. If the contact
+// keeps slipping, the impulse gives x_dot and omega. If little is left of the omega of a light and
+// fast body, the angular momentum about another point of the line of the impulse, at the height of
+// the centre, gives omega more accurately. If little is left of h' omega, the impulse gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;
@@ -223,8 +223,8 @@ bool is_struck(const Scene& scene) {
     return scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
 }
 
-// Applies the impulse to a body that nothing holds, physics (38). Returns the rate of its gap, of
-// which the difference of the new velocities would have fewer digits.
+// Applies the impulse to a free body, physics (38). Returns the rate of its gap, which would be
+// less accurate as a difference of the new velocities.
 double strike(const Scene& scene, const Impulse& j, const Geometry& at, State& state) {
     const double lifted = j.jz / scene.mass;
     const double spun = (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
@@ -252,8 +252,8 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // So small an angle counts as 0: the slide would end at a time that doubles cannot distinguish
-    // from 0.
+    // An angle this small counts as 0: the slide would end at a time that doubles cannot tell from
+    // 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;
@@ -300,7 +300,7 @@ double sticking_friction(const Scene& scene) {
     const double rate = strike(scene, *scene.impulse, at, state);
     const Contact c = contact(scene, at, state, rate);
     if (c.u > 0) return infinity;
-    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // without pressure there is no friction
+    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // without normal force there is no friction
     const double to_stay = std::abs(c.gtn) / c.gtt;
     const double towards = c.v == 0 ? 0.0 : std::copysign(c.gtn, c.gtn * c.v);  // s Gtn
     const double normal = std::abs(c.u) * c.gtt + std::abs(c.v) * towards;

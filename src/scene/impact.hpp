@@ -1,14 +1,14 @@
 // Collisions with the ground: Coulomb friction along the impulse path, energetic restitution (W. J.
-// Stronge, Impact Mechanics (2000), ch. 3 to 5). The applied impulse is a collision without
-// restitution of a body that the impulse has just moved.
+// Stronge, Impact Mechanics (2000), ch. 3 to 5). An applied impulse is a collision without
+// restitution, of a body that the impulse has just set in motion.
 #pragma once
 
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
 
-// The law of restitution with a coefficient e. Stronge: restitution does e^2 of the work of
-// compression. Poisson: it has e times the normal impulse of compression (Traite de mecanique,
+// The law of restitution with a coefficient e. Stronge: restitution returns e^2 of the work of
+// compression. Poisson: its normal impulse is e times that of compression (Traite de mecanique,
 // 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
 
@@ -22,9 +22,9 @@ struct InitialState {
     double reaction_x;  // impulse of the ground [N s]
     double reaction_z;
     double free_omega;          // angular velocity without the ground: the report's eq 48
-    double slip_removed = 0.0;  // given slip that infinite friction stops at once [m/s]
+    double slip_removed = 0.0;  // initial slip that infinite friction stops at once [m/s]
     double energy_lost = 0.0;   // energy lost when the slip stops [J]
-    double gap_rate = 0.0;      // rate of the gap, with its own digits; 0 in contact [m/s]
+    double gap_rate = 0.0;      // rate of the gap, without cancellation; 0 in contact [m/s]
     bool touching = false;      // the body was on the ground before the impulse
 };
 
@@ -36,23 +36,23 @@ inline constexpr Field<InitialState> start_fields[] = {
 
 InitialState initial_state(const Scene& scene);
 
-// The kinetic energy after the impulse if there were no ground, which can only lower it, in units
-// of m g times the long semi-axis.
+// The kinetic energy after the impulse as if there were no ground (the ground can only lower it),
+// in units of m g times the long semi-axis.
 double energy_after_impulse(const Scene& scene, const Geometry& at);
 
 // The least coefficient of friction with which the contact does not slip after the applied impulse;
-// infinite if no finite one is enough. The coefficient of the scene itself has no influence. Any
-// larger one leads to the same state.
+// infinite if no finite one is enough. The scene's own coefficient is ignored; every larger one
+// leads to the same state.
 double sticking_friction(const Scene& scene);
 
-// The kinetic energy [J] lost in a collision; rounding does not make it negative.
+// The kinetic energy [J] lost in a collision, never negative even with rounding.
 double energy_lost(const Scene& scene, const State& before, const State& after);
 
 // The rate of the gap: the velocity of the lowest point away from the ground.
 double gap_rate(const State& state, const Geometry& at);
 
-// The low parts of numbers of a state. Many impacts that change a number by nearly the same amount
-// would otherwise add their roundings, which are then nearly the same, too.
+// The low parts of the values of a state. Without them, the nearly equal rounding errors of many
+// nearly equal impacts would add up.
 struct LowParts {
     double theta = 0.0;
     double omega = 0.0;
@@ -60,9 +60,8 @@ struct LowParts {
     double x_dot = 0.0;
 };
 
-// The state just after the collision of a body that touches the ground, with the mode it had, and
-// the rate of its gap. The rate before is an argument, as a low hop has more digits of it than
-// z_dot.
+// The state just after the collision of a body that touches the ground (its mode unchanged) and the
+// rate of the gap. The rate before is an argument: after a low hop it is more accurate than z_dot.
 struct Collision {
     State after;
     LowParts low;

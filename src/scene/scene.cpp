@@ -9,10 +9,10 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr double aspect_limit = 1e3;
-constexpr double blow_margin = 1e-12;  // for rounding, as a share of the long semi-axis
+constexpr double blow_margin = 1e-12;  // for rounding, as a fraction of the long semi-axis
 
-// Refuses an inertia, a moment or k^2, out of bounds. They compare k^2 with the square of the long
-// semi-axis, so that the k^2 of a valid scene is valid for a body, too.
+// Rejects an inertia (a moment or k^2) out of bounds. The bounds compare k^2 with the square of the
+// long semi-axis, so that the k^2 of a valid scene is valid for a body, too.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-6;
@@ -26,12 +26,12 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
     }
 }
 
-// Refuses a blow whose line of action misses the body. A tangent parallel to that line has the
+// Rejects a blow whose line of action misses the body. A tangent parallel to that line lies at the
 // distance `reach` from the centre: h of physics (1), in the direction across the line.
 void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
-    const double jx = blow.jx / larger;  // jx scaled: its square is in range for every blow
+    const double jx = blow.jx / larger;  // jx scaled, so that its square never overflows
     const double jz = blow.jz / larger;
     const double size = root_of_squares(jx, jz);
     const double across_x = -jz / size;
@@ -46,7 +46,7 @@ void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) 
            distance);
 }
 
-// Refuses a start that touches the ground and moves into it.
+// Rejects a start in which the body touches the ground and moves into it.
 void require_no_approach(const State& start, const Geometry& at) {
     const double rolling = at.dh * start.omega;
     if (start.z != at.h || start.z_dot >= rolling) return;

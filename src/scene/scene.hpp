@@ -1,4 +1,4 @@
-// The body, its ground, its start and its state as plain numbers, and the rules that they obey.
+// The body, its ground, its start and its state as plain values, and the rules they must obey.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ inline GroundGravity ground_gravity(double gravity, double slope) {
     return {gravity * std::cos(slope), gravity * std::sin(slope)};
 }
 
-// k^2 of a uniform disc, physics (16): the default wherever a body is given.
+// k^2 of a uniform disc, physics (16), the default for every body.
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
 struct Scene {
@@ -65,7 +65,7 @@ struct Scene {
     double theta;
     double omega;
     double x;
-    // If absent, the body touches the ground and moves as rolling does (in the air: is at rest).
+    // If absent, the body touches the ground and its velocity is that of rolling (0 in the air).
     std::optional<double> z;
     std::optional<double> x_dot;
     std::optional<double> z_dot;
@@ -76,16 +76,16 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
-// A number of a Scene, and its default if that follows from the fields before it.
+// A field of a Scene, and its default value if the fields before it determine one.
 struct SceneField {
     const char* name;
     std::variant<double Scene::*, std::optional<double> Scene::*> number;
     Unit unit;
     double (*otherwise)(const Scene&) = nullptr;
 
-    // Null if the number is absent.
+    // Null if the value is absent.
     double* of(Scene& scene) const;
-    // A number that must be given and is absent becomes NaN, which `validate` refuses.
+    // A required value that is absent becomes NaN, which `validate` rejects.
     void set(Scene& scene, std::optional<double> value) const;
 };
 
@@ -108,12 +108,12 @@ inline constexpr SceneField scene_fields[] = {
     {"x_dot", &Scene::x_dot, unit::speed},
     {"z_dot", &Scene::z_dot, unit::speed}};
 
-// The scene by its numbers in the order of the table; not validated. Without arguments every number
-// that must be given is NaN.
+// The scene with these values, in the order of the table; not validated. Without arguments every
+// required value is NaN.
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
-// A body of unit mass on level ground; the other numbers that must be given are NaN.
+// A body of unit mass on level ground; the other required values are NaN.
 Scene level_scene(const Body& body, double friction);
 
 enum class Mode : std::int8_t { rolling, sliding, flight, rest };
@@ -142,7 +142,7 @@ inline bool is_finite(const State& state) {
                        [&](const auto& field) { return std::isfinite(state.*field.number); });
 }
 
-// Whether the contact has no slip.
+// Whether the body moves without slip.
 inline bool rolls(const State& state) {
     return state.mode == Mode::rolling || state.mode == Mode::rest;
 }
@@ -162,32 +162,32 @@ struct ContactSample {
     ContactForce force;
 };
 
-// An angular velocity below 1e-100 rad/s counts as rest. Where the square of an angle matters, an
-// angle of that size counts as 0, too.
+// Returns 0 for an angular velocity below 1e-100 rad/s, which counts as rest. Where the square of
+// an angle matters, such a small angle counts as 0, too.
 inline double zero_if_negligible(double value) {
     return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }
 
-// Whether two numbers are equal within the rounding of a few operations.
+// Whether two values are equal to within the rounding of a few operations.
 inline bool nearly_equal(double value, double target, double ulps = equal_ulps) {
     const double ulp =
         std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
     return std::abs(value - target) <= ulps * ulp;
 }
 
-// Whether x_dot is that of rolling, h omega, to within eight roundings of its terms: x_dot and
-// omega are rounded by half an ulp, the product with its h by 3 ulp.
+// Whether x_dot is that of rolling, h omega, to within eight rounding errors of its terms: x_dot
+// and omega are rounded by half an ulp each, the product with h by 3 ulp.
 inline bool is_rolling_speed(double x_dot, double h_omega) {
     constexpr double ulps_of_terms = 4;
     return nearly_equal(x_dot, h_omega, equal_ulps * ulps_of_terms);
 }
 
-// The largest angle [rad] for which states on the ground have the h and h' of its double, which may
-// be off by 6e-8 rad.
+// The largest angle [rad] for which states on the ground take h and h' from the rounded angle,
+// which is off by up to 6e-8 rad.
 inline constexpr double most_turned = 1e9;
 
-// Eight roundings of an angle, half an ulp each [rad]; of a larger angle no more than of the
-// largest.
+// Eight rounding errors of an angle, half an ulp each [rad]; beyond `most_turned` they stop
+// growing.
 inline double angle_roundings(double theta) {
     const double size = std::min(std::abs(resolved(theta)), most_turned);
     return 0.5 * equal_ulps * (std::nextafter(size, infinity) - size);
@@ -198,7 +198,7 @@ inline double slip_velocity(const State& state, const Geometry& at) {
     return state.x_dot - at.h * state.omega;
 }
 
-// The state of a body on the ground, which slides with x_dot.
+// The state of a body that slides on the ground with the velocity x_dot.
 inline State on_ground(const Geometry& at, double theta, double omega, double x, double x_dot,
                        Mode mode) {
     return {theta, omega, x, at.h, x_dot, at.dh * omega, mode};
@@ -212,26 +212,26 @@ inline State without_slip(const Axes& axes, double theta, double omega, double x
     return without_slip(geometry(axes, theta), theta, omega, x, mode);
 }
 
-// The acceleration c into the ground that the lowest point has without a contact force: gravity
-// into the ground and h'' omega^2, physics (43, 53).
+// The acceleration c of the lowest point into the ground without a contact force: gravity into the
+// ground plus h'' omega^2, physics (43, 53).
 inline double free_acceleration(const Geometry& at, double gravity_into_ground, double omega) {
     return gravity_into_ground + at.ddh * omega * omega;
 }
 
-// The size of its change by theta, with h''' = -(3 rho/h + 1) h'.
+// The magnitude of dc/dtheta, from h''' = -(3 rho/h + 1) h'.
 inline double free_acceleration_rate(const Geometry& at, double omega) {
     return (3 * at.rho / at.h + 1) * std::abs(at.dh) * square(omega);
 }
 
-// Whether the free acceleration is 0 within rounding and a blur of theta [rad].
+// Whether the free acceleration is 0 to within rounding and an uncertainty `blur` of theta [rad].
 inline bool is_weightless(const Geometry& at, double gravity_into_ground, double omega,
                           double blur = 0.0) {
     return std::abs(free_acceleration(at, gravity_into_ground, omega)) <=
            equal_ulps * epsilon * gravity_into_ground + free_acceleration_rate(at, omega) * blur;
 }
 
-// Units of a body's own size, powers of two: a number in them keeps its bits. Results computed in
-// them do not depend on the units of the input and stay in the range of doubles.
+// Units matched to the size of a body, powers of two, so that conversion is exact. Results computed
+// in them do not depend on the units of the input and stay in the range of doubles.
 struct Units {
     double length = 1.0;  // unit of length [m]
     double time = 1.0;    // unit of time [s]
@@ -245,15 +245,15 @@ struct Units {
     bool are_si() const { return length == 1 && time == 1 && mass == 1; }
 };
 
-// The powers of two next to the long semi-axis L, sqrt(L/g) and the mass.
+// The powers of two near the long semi-axis L, sqrt(L/g) and the mass.
 Units natural_units(const Body& body, double mass = 1.0);
 
-// A scene in other units, except its impulse.
+// Converts a scene to other units, except its impulse.
 Scene in_units(Scene scene, const Units& units);
 
 State in_units(const State& state, const Units& units);
 
-// A state in SI units; written out and inline, since every sample goes through it.
+// Converts a state to SI units; written out and inline, since it is called for every sample.
 inline State in_si(const State& state, const Units& units) {
     const auto& [theta, omega, x, z, x_dot, z_dot, mode] = state;
     const auto& [length, time, mass] = units;
@@ -266,14 +266,14 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
-// Where a scene comes from: typed, or the state that a motion has reached. The latter may have
-// gained energy down a slope, and be about to hit the ground that it touches.
+// Where a scene comes from: typed by a user, or reached by a motion. A body whose state was reached
+// by a motion may have gained energy down a slope, and may be about to hit the ground it touches.
 enum class Origin { typed, reached };
 
-// The largest energy, by m g times the long semi-axis.
+// The largest energy, in units of m g times the long semi-axis.
 inline constexpr double most_energy = 1e12;
 
-// Throw std::invalid_argument naming the argument, what was required and what came.
+// These throw std::invalid_argument, naming the argument, the requirement and the value given.
 void validate_length(std::string_view name, double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
@@ -283,12 +283,14 @@ void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene, Origin origin = Origin::typed);
 
-// The impulse must be finite, meet the body and not make it too fast.
+// Throws unless the impulse is finite, its line of action meets the body and the resulting motion
+// is not too fast.
 void validate_blow(const Scene& scene, const Geometry& at);
 
-// The state before any impulse, by the geometry at its angle. Absent values are filled in; values
-// within rounding of touching or of rolling are set exactly. A body that touches the ground and
-// moves into it flies: it hits at once. Throws if the body is under the ground.
+// The state before any impulse, given the geometry at its angle. Absent values are filled in;
+// values within rounding of touching or of rolling are set exactly. A body that touches the ground
+// and moves into it counts as flying, since it hits the ground at once. Throws if the body is below
+// the ground.
 State state_before_impulse(const Scene& scene, const Geometry& at);
 
 }  // namespace rolling_ellipse

@@ -21,7 +21,7 @@ void require_count(const std::string& name, long count) {
 }
 
 void validate_step(const Settings& settings, double t_end) {
-    constexpr double smallest_step_ulps = 10;  // in ulps of the last time, as with error control
+    constexpr double smallest_step_ulps = 10;  // in ulps of the end time, as with error control
     const Method method = settings.method;
     const std::string for_method = " for method " + quoted(name(method));
     if (!settings.step) {
@@ -44,7 +44,7 @@ void validate_step(const Settings& settings, double t_end) {
     }
 }
 
-// Refuses a method that the model does not have, and a stabilization that the method does not have.
+// Rejects a method that the model lacks, and a stabilization that the method lacks.
 void validate_method(const Settings& settings) {
     const Method method = settings.method;
     const std::string chosen = quoted(name(method));
@@ -94,7 +94,7 @@ void validate(const Settings& settings, double t_end) {
         throw std::invalid_argument("rtol and atol must not both be 0, got 0.0 and 0.0");
     }
     validate_method(settings);
-    constexpr double largest_gain = 1e50;  // largest gain: its square times a residual is a force
+    constexpr double largest_gain = 1e50;  // its square times a residual is a force
     for (const double gain : settings.baumgarte) {
         if (!(gain >= 0 && gain <= largest_gain)) {
             refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);

@@ -1,4 +1,4 @@
-// The choices of how a motion is computed, and the rules that they must obey.
+// The settings that choose how a motion is computed, and the rules they must obey.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ enum class Model { automatic, rolling, multipliers, contact };
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 
 // The stabilization of the multiplier model's constraints: none (an index-1 system), Baumgarte's
-// feedback, projection after each step, projection onto the energy, too, or the index-2 system of
+// feedback, projection after each step (optionally onto the energy, too), or the index-2 system of
 // Gear, Gupta and Leimkuhler.
 enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
@@ -34,13 +34,13 @@ struct Settings {
     Method method;
     double rtol;
     double atol;
-    std::optional<double> step;  // size of steps [s]; absent: error control chooses it
+    std::optional<double> step;  // step size [s]; if absent, error control chooses it
     std::optional<int> stages;   // stages of "gauss"; 4 if absent
     Stabilization stabilization;
     std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;
     long max_events;
-    std::optional<double> rest_speed;  // slower bounces are summed [m/s]; absent: by size
+    std::optional<double> rest_speed;  // slower bounces are summed [m/s]; if absent, by size
 };
 
 inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model},
@@ -55,10 +55,10 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
                                             std::pair{"max_events", &Settings::max_events},
                                             std::pair{"rest_speed", &Settings::rest_speed}};
 
-// Called now and then during long work; throws to stop it.
+// Called now and then during a long computation; throws to stop it.
 using Checkpoint = std::function<void()>;
 
-// Throws std::invalid_argument naming the argument, what was required and what came.
+// Throws std::invalid_argument, naming the argument, the requirement and the value given.
 void validate(const Settings& settings, double t_end);
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,4 @@
-// Steps and samples allocate nothing: twice as many of them make the same number of allocations.
+// Steps and samples allocate nothing: twice as many of them make no more allocations.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -85,8 +85,8 @@ const Job sampled[] = {
     {"a slide", skidding(0.1, 0.0, 3.0, 0.1), settings_of(Model::contact, Method::automatic), 1.0},
 };
 
-// The knots and the dense output are in two vectors that double their size: twice as many steps
-// make one more allocation for each.
+// The knots and the dense output are in two vectors that double their size, so that twice as many
+// steps make one more allocation for each.
 void steps_allocate_nothing() {
     constexpr long vectors = 2;
     for (const Job& job : stepped) {
@@ -98,13 +98,13 @@ void steps_allocate_nothing() {
                 steps[times - 1] = solution.counts.steps;
             });
         }
-        // One allocation per step would make a difference of 50 at least.
+        // One allocation per step would make a difference of at least 50.
         check(steps[1] - steps[0] >= 50 && found[1] - found[0] <= vectors, job.name, found[0],
               found[1]);
     }
 }
 
-// Twice as many samples of the same segments: each segment may allocate once.
+// Takes twice as many samples of the same segments, each of which may allocate once.
 template <class Sample>
 void kind_of_sample(const Job& job, const Solution& solution) {
     const Sampler sampler(solution.motion, 1000);
@@ -157,7 +157,7 @@ void bodies_allocate_nothing() {
     }
 }
 
-// The counter counts the allocation of one vector.
+// The counter sees the allocation of one vector.
 void it_counts() {
     const long once = allocations([] { std::vector<double> one(3); });
     check(once == 1, "a vector", once, 1);

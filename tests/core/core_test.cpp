@@ -1,4 +1,4 @@
-// Parts of the core that Python does not reach, and the core used by a C++ program.
+// Parts of the core that Python does not reach, and the core as used by a C++ program.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -52,7 +52,7 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// Elimination permutes the rows; all multipliers are halves, so no operation rounds.
+// Elimination permutes the rows; all multipliers are halves, so that no operation rounds.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
@@ -62,7 +62,7 @@ void equations_are_solved_whatever_their_order(Number unit) {
     CHECK(!LU<Number, 3>(0.0 * rows).solve(right).allFinite());
 }
 
-// A polynomial that is negative from 0.25 to 0.75; a constant makes it touch zero, or stay above.
+// A polynomial that is negative from 0.25 to 0.75; a constant makes it touch zero or stay above.
 void the_first_place_where_a_polynomial_is_negative() {
     const Polynomial<2> dips = polynomial(-0.25, 1.0) * polynomial(-0.75, 1.0);
     const auto place = first_negative(bernstein(dips));
@@ -85,7 +85,7 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// Each segment gives coordinates, states and flow samples of the same motion: of a body that rolls,
+// Each segment gives coordinates, states and flow samples of the same motion, of a body that rolls,
 // slides, leaves the ground and lands.
 void every_segment_knows_every_kind_of_sample() {
     const Scene scene = bouncing(0.0, 5.5, 0.3);
@@ -106,7 +106,7 @@ void every_segment_knows_every_kind_of_sample() {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        // Flow samples of rolling use another formula.
+        // Flow samples of rolling come from another formula.
         const auto close = [](double one, double other) {
             return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
         };
@@ -124,7 +124,7 @@ void needed_friction_of_special_forces() {
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
 }
 
-// Places, series and times of one motion by the kernel of each level.
+// Compares places, series and times of one motion from the kernel of each level.
 void every_vector_level_has_the_same_bits() {
     const Body body{2.0, 1.0, 1.25, 9.81};
     for (const double omega : {1.0, 3.2}) {  // libration and rotation

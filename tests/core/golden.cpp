@@ -1,10 +1,10 @@
-// The bits of motions of every model and of answers of every proof. tests/core/test_core.py and
-// tools/same_bits.py compare those of several builds.
+// Prints the bits of motions of every model and of the answers of every proof.
+// tests/core/test_core.py and tools/same_bits.py compare those of several builds.
 //
 //     golden > tests/core/golden.txt
 //
-// A line is a record: its kind, words, then numbers as hexadecimal floats. The arguments of a
-// motion stand before its answers.
+// Each line is a record: its kind, words, then numbers as hexadecimal floats. The arguments of a
+// motion precede its answers.
 
 #include <cmath>
 #include <cstdint>
@@ -34,7 +34,7 @@ void print(const std::string& words, const std::vector<double>& numbers) {
     std::printf("\n");
 }
 
-// Pseudo-random multiples of 2^-32 in [0, 1), by a generator without rounding.
+// Pseudo-random multiples of 2^-32 in [0, 1), from a generator without rounding.
 class Draw {
   public:
     double operator()() {
@@ -291,7 +291,7 @@ void print_certificate(const Asked& asked) {
 
 // ---------------------------------------------------------------------------- many bodies
 
-// Bodies of all aspect ratios in all kinds of motion, at times of both signs.
+// Prints bodies of all aspect ratios in all kinds of motion, at times of both signs.
 void print_bodies() {
     constexpr int count = 96;
     Draw draw;
@@ -300,7 +300,7 @@ void print_bodies() {
     for (int i = 0; i < count; ++i) {
         const double b = i % 3 == 0 ? 0.001 + draw() : 0.3 + draw();
         const Body body{1.0, b, (1 + b * b) / 4, 9.81};
-        const double theta = 6 * draw() - 3;  // drawn before omega by every compiler
+        const double theta = 6 * draw() - 3;  // drawn before omega with every compiler
         const double omega = 8 * draw() - 4;
         starts.push_back(rolling_start(body, theta, omega));
         times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e4 : 20.0));

@@ -1,5 +1,5 @@
-// The functions of numerics/lanes.hpp against the C library in long double, at the narrowest level.
-// tests/rolling/test_lanes.py shows that all levels give the same bits.
+// Compares the functions of numerics/lanes.hpp, at the narrowest level, with the C library in long
+// double. tests/rolling/test_lanes.py shows that all levels give the same bits.
 
 #include "numerics/lanes.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 int failures = 0;
 
 // Checks the largest error of a function, in ulp of the exact value, at places from low to high in
-// equal ratios.
+// geometric progression.
 template <class Function, class Exact>
 void within(double ulps, const char* what, double low, double high, const Function& function,
             const Exact& exact) {
@@ -40,8 +40,8 @@ void within(double ulps, const char* what, double low, double high, const Functi
 
 }  // namespace
 
-// Bounds: the last rounding is half an ulp, and each step before it, a quotient or a sum of two
-// terms of one size, adds half an ulp: up to three steps, four in sinh, five in asinh.
+// The bounds allow half an ulp for the last rounding and half an ulp for each earlier step, a
+// quotient or a sum of two terms of similar size: up to three steps, four in sinh, five in asinh.
 int main() {
     within(
         2.5, "sinh", 1e-300, 20.0, [](Pack v) { return hyperbolic(v).sinh; },

@@ -1,4 +1,4 @@
-// Scenes and settings for the test programs.
+// Scenes and settings shared by the test programs.
 #pragma once
 
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 namespace rolling_ellipse {
 
-// The 2:1 disc of 10 kg.
+// The 2:1 elliptical disc of 10 kg.
 inline Scene ellipse(double theta, double omega, double friction = infinity) {
     Scene scene{};
     scene.a = 2.0;

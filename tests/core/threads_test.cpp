@@ -1,6 +1,6 @@
-// Several threads in the core at once give the bits of one thread. Python's lock would keep them
-// apart in much of the package. ThreadSanitizer (preset tsan) shows that they share no state that
-// changes.
+// Several threads in the core at once give the same bits as one thread. (Python's lock separates
+// them in much of the package.) ThreadSanitizer (preset tsan) shows that they share no mutable
+// state.
 //
 //     cmake --preset tsan && cmake --build --preset tsan && ctest --preset tsan
 
@@ -21,7 +21,7 @@ using namespace rolling_ellipse;
 namespace {
 
 constexpr int threads = 8;
-// Rounds of each thread, with works 5 apart: 8 threads do all works, and most of them twice.
+// Rounds of each thread, through jobs 5 apart, so that 8 threads do all jobs, most of them twice.
 constexpr int rounds = 8;
 
 using Numbers = std::vector<double>;
@@ -92,7 +92,7 @@ Numbers judgements(double omega) {
             period(scene_of(omega))};
 }
 
-// The works of a thread; one of them samples a motion that all threads share.
+// The jobs of a thread; one of them samples a motion that all threads share.
 std::vector<Work> works() {
     static const Solution shared =
         simulate(scene_of(6.0), loose(Model::contact, Method::automatic), 2.0, [] {});

@@ -1,11 +1,11 @@
-// The core for a web page: a scene is asked for its motion and for sentences about it, then for
-// samples at any times. tools/live/build.sh compiles it.
+// The core for a web page: simulates a scene, describes its motion in sentences, then samples it at
+// any times. tools/live/build.sh compiles it.
 #include "describe.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-// The settings of `simulate`, with the limits of a page.
+// The settings of `simulate`, with limits for a page.
 Settings settings_of_page() {
     Settings settings{};
     settings.rtol = 1e-10;
@@ -17,13 +17,13 @@ Settings settings_of_page() {
     return settings;
 }
 
-// The last scene with its motion, and the last answers, which stay until the next call.
+// The last scene and its motion, and the last answers, which stay valid until the next call.
 Scene scene;
 Solution solution;
 std::string answer;
 std::vector<double> numbers;
 
-// The scene of numbers in the order of their names; an absent one is NaN, and so is the jx of a
+// The scene with these numbers, in the order of `columns`; an absent number is NaN, as is jx in a
 // scene without a blow.
 Scene scene_from(const double* asked) {
     SceneNumbers known;
@@ -42,7 +42,7 @@ std::string json(const std::string& name) { return '"' + name + '"'; }
 
 std::string json(double value) { return value == infinity ? "1e999" : text(value); }
 
-// The values in brackets, each as `write` has it.
+// The values in brackets, each formatted by `write`.
 template <class Values, class Write>
 std::string json(const char* brackets, const Values& values, const Write& write) {
     std::string found(1, brackets[0]);
@@ -75,7 +75,7 @@ std::string json_of_description() {
 
 }  // namespace
 
-// The names of the numbers of a scene and of a sample, in their order.
+// The names of the numbers of a scene and of a sample, in order.
 extern "C" const char* columns() {
     std::vector<std::string> of_scene, of_sample;
     for (const auto& field : scene_fields) of_scene.push_back(field.name);
@@ -87,8 +87,8 @@ extern "C" const char* columns() {
     return answer.c_str();
 }
 
-// Simulates a scene up to an end, the last of the numbers. The answer is JSON, with sentences if
-// they are wanted, or the text of a refusal.
+// Simulates a scene up to an end time, the last of the numbers. The answer is JSON, with sentences
+// if `in_words` is set, or the text of a refusal.
 extern "C" const char* ask(const double* asked, int in_words) {
     try {
         scene = scene_from(asked);
@@ -106,7 +106,7 @@ extern "C" const char* ask(const double* asked, int in_words) {
     return answer.c_str();
 }
 
-// Samples of the last motion; after its end they have its last state.
+// Samples of the last motion; beyond its end they repeat its last state.
 extern "C" const double* samples(const double* asked, int n) {
     std::vector<double> times(asked, asked + n);
     for (double& t : times) t = std::min(t, solution.followed_until);

@@ -9,7 +9,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The height of the energy over the ground, the tip and the flat position [m], physics (26).
+// The energy as a height above the ground, the tip and the flat position [m], physics (26).
 EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
     const double h = std::sqrt(h2);
@@ -18,8 +18,8 @@ EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     return {kinetic + h, kinetic - under_tip(at, h), kinetic + over_flat(at, h)};
 }
 
-// The radius at which the last terms of a series are half an ulp of its size. The terms left out
-// are smaller by another tenth.
+// The radius at which the last terms of a series are half an ulp of the series; the omitted terms
+// are a tenth of that.
 double radius_of(const Series& series) {
     constexpr double half_ulp = 1e-16;
     double radius = 1.0;
@@ -36,7 +36,7 @@ double radius_of(const Series& series) {
     return radius;
 }
 
-// The state after a short move by one power series, which keeps the digits of the change; none if
+// The state after a short move, by one power series, which keeps small changes accurate; empty if
 // the move is too long for it.
 std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
     const auto [unit, short_axis, c2, sin, cos] = flow.from.view;
@@ -56,7 +56,7 @@ std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
 RollingStart rolling_start(const Body& body, double theta, double omega) {
     omega = zero_if_negligible(omega);
     FlatView view = flat_view(body.axes(), theta);
-    // A body that starts on the tip moves down, with the same bits to either side.
+    // A body that starts on the tip moves down; both sides give the same bits.
     if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
     const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
     return {body, theta, omega, view, energy_height(view, body, omega), rests};
@@ -70,7 +70,8 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     if (from.rests || from.view.c2 == 0) return flow;
     set_motion(flow, phase_start(from));
     flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
-    // With a tail the steps end 1e-9 of the path too early: the quarter's path is computed again.
+    // With a tail the steps end 1e-9 of the path too early, so the path of the quarter is
+    // recomputed.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path = path_from_flat(from.view.lying(), 1.0, 0.0);
     }
@@ -119,7 +120,7 @@ DoubleDouble time_since_flat(const RollingFlow& flow, const PhasePoint<double>& 
 }
 
 double time_of_passing(const RollingFlow& flow, double theta, double heading) {
-    // The angle from the start to theta, by which the ellipse of the start is turned on.
+    // The angle by which the ellipse turns from the start to theta.
     const double turn = theta - flow.from.theta;
     const FlatView& at = flow.from.view;
     double sin = at.sin * std::cos(turn) + at.cos * std::sin(turn);
@@ -131,8 +132,8 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         sin = flow.direction * (cos < 0 ? -sin : sin);
         cos = std::abs(cos);
     } else {
-        // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller numbers has more
-        // digits.
+        // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller values is more
+        // accurate.
         const double amplitude = flow.amplitude;
         const double kappa = flow.phase.integrand.kappa;
         const double left = std::abs(sin) < cos ? (amplitude - sin) * (amplitude + sin)

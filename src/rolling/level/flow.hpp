@@ -1,8 +1,8 @@
-// Exact rolling on level ground: its start and the state at any time. Nothing is stepped; the cost
-// of one time does not depend on its distance from the start.
+// Exact rolling on level ground: its start and the state at any time. There are no steps: a state
+// costs the same however far it is from the start.
 //
-// A motion is known by its phase: the integrand of the time, the coordinate in which it is
-// integrated, and the integrals; of one body, T = double, or of as many bodies as a Pack has lanes.
+// A motion is described by its phase: the integrand of the time, the coordinate of the integration,
+// and the integrals; for one body (T = double) or for one body per lane of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
@@ -12,15 +12,15 @@
 // rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
 //     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
-// No term is a difference that cancels, but for H - L itself.
+// There is no cancellation, except in H - L itself.
 //
-// In the coordinate y no integrand has a peak, physics (61): neither at the flat of a thin body nor
-// at the tip of a motion near the separatrix.
+// In the coordinate y no integrand has a peak, physics (61): neither at the flat position of a thin
+// body nor at the tip of a motion near the separatrix.
 //     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
 // sc = sn/cn of Jacobi with the complementary modulus k'. The flat position is at y = 0, the tip or
-// turning point at y = Y, and all is symmetric about both. The integrand of the time is singular
-// where tan phase is imaginary, between g and 1/kappa: on the line Im y = pi/2 (DLMF 22.4). Near
-// either end y is the v of physics (31).
+// turning point at y = Y, and everything is symmetric about both. The integrand of the time is
+// singular where tan phase is imaginary, between g and 1/kappa: on the line Im y = pi/2 (DLMF
+// 22.4). Near either end y is the v of physics (31).
 #pragma once
 
 #include <cmath>
@@ -31,9 +31,8 @@
 
 namespace rolling_ellipse {
 
-// The height H = E/(m g) of the energy [m], its distance from the height of the tip (H - L,
-// negative in libration) and from that of the flat position (H - S), by forms that do not cancel:
-// physics (26).
+// The energy as a height H = E/(m g) [m], and its heights above the tip (H - L, negative in
+// libration) and above the flat position (H - S), in forms without cancellation: physics (26).
 struct EnergyHeight {
     double total;
     double over_tip;
@@ -70,8 +69,8 @@ template <class T>
 struct PhaseMap {
     T quarter;  // Y, the tip or turning point; infinite on the separatrix
     T step;     // step of the trapezoidal rule for a quarter
-    T steps;    // number of steps in a quarter, or from the flat to where the tail begins
-    // Whether the quarter is longer than its steps, which end at the tip within rounding. A body
+    T steps;    // steps in a quarter, or from the flat position to the tail
+    // Whether the quarter is longer than its steps, which end within rounding of the tip. A body
     // with a tail is computed alone.
     Mask<T> has_tail;
     T grade;  // g of physics (61)
@@ -84,7 +83,7 @@ struct PhaseMap {
     T b[3];
 };
 
-// A place in the coordinate, y = quarters Y + offset; `quarters` is the nearest quarter unless a
+// A point in the coordinate y = quarters Y + offset; `quarters` is the nearest quarter unless a
 // function says otherwise.
 template <class T>
 struct PhasePlace {
@@ -92,14 +91,14 @@ struct PhasePlace {
     T offset;
 };
 
-// A phase, as its sine and cosine.
+// A phase, given by its sine and cosine.
 template <class T>
 struct PhasePoint {
     T sin;
     T cos;
 };
 
-// Time [s], angle [rad] and path of the centre [m] along an interval of y, or their rates in y.
+// Time [s], angle [rad] and path of the centre [m] over an interval of y, or their rates in y.
 template <class T>
 struct PhaseIncrement {
     T time;
@@ -107,10 +106,10 @@ struct PhaseIncrement {
     T path;
 };
 
-// Doubles in the widest Pack: the rates of one body are computed at several places side by side,
+// Doubles in the widest Pack. The rates of one body are computed at several points side by side,
 // one such Pack at a time.
 inline constexpr int widest_pack = 8;
-inline constexpr int most_places = 48;  // room for nodes of a panel and its end
+inline constexpr int most_places = 48;  // room for the nodes of a panel and its end
 
 template <class T>
 struct alignas(64) PhaseRates {
@@ -127,14 +126,14 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // time in which the phase advances by pi
     T quarter_path;            // path of the centre in a quarter of a rotation
-    // For the first guess of the place at a time:
-    static constexpr int most_steps = 160;  // largest number of steps of a map
+    // The following give a first guess of the point at a time:
+    static constexpr int most_steps = 160;  // largest number of steps in a map
     T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond both ends
-    T time[most_steps + 2];                 // time since the flat at the steps, by cubics for dt/dy
+    T time[most_steps + 2];                 // time from flat to the steps, by cubics for dt/dy
 };
 
-// The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis
-// as the unit of length and time in a unit of its own.
+// The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis as the
+// unit of length and a unit of time of their own.
 struct SeriesConstants {
     double short_axis2;
     double c2;
@@ -143,14 +142,14 @@ struct SeriesConstants {
     double d1;
 };
 
-// A libration or rotation from its start on.
+// A libration or rotation that starts at a given phase.
 template <class T>
 struct PhaseMotion {
     PhaseTime<T> phase;
     T direction;                // direction of a rotation; +1 for libration
     T amplitude;                // sin phi_max of a libration; 1 for rotation
-    Mask<T> on_way_back;        // whether a libration starts with its phase beyond +-pi/2
-    PhasePoint<T> start_phase;  // phase of the start, less half a turn on the way back
+    Mask<T> on_way_back;        // whether a libration starts with a phase beyond +-pi/2
+    PhasePoint<T> start_phase;  // initial phase, minus half a turn on the way back
     PhasePlace<T> start_place;
 };
 
@@ -174,8 +173,8 @@ struct RollingFlow : PhaseMotion<double> {
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
-// Whether one power series about the start may cover a move: a bound by the time scales of the flat
-// position and of turning.
+// Whether one power series about the start may cover a move, judged by the time scales of the flat
+// position and of the rotation.
 inline bool may_be_short(const RollingStart& from, double t) {
     const double rate = std::sqrt(from.body.gravity / from.view.short_axis);
     return std::abs(t) * (std::abs(from.omega) + rate) < 0.05;
@@ -184,22 +183,22 @@ inline bool may_be_short(const RollingStart& from, double t) {
 // The state at a time |t| <= longest_time.
 FlowSample sample(const RollingFlow& flow, double t);
 
-// The state of one body at a time, which is validated.
+// The state of one body at a time, after validating the time.
 FlowSample sample_alone(const RollingStart& from, double t);
 
-// The time of 1e15 half turns [s]; beyond, a double does not resolve the phase.
+// The time of 1e15 half turns [s]; beyond it, a double does not resolve the phase.
 double longest_time(const RollingFlow& flow);
 
 // Throws std::invalid_argument for a time that is not finite or beyond +-`longest`.
 void validate_time(double t, double longest, const std::string& name = "t");
 
-// Time of a full swing or of a full turn [s]; infinite for a body at rest and on the separatrix.
+// Time of a full swing or turn [s]; infinite for a body at rest and on the separatrix.
 double period(const RollingFlow& flow);
 
-// Time from the flat position to a phase of the same half turn.
+// Time from the flat position to a phase in the same half turn.
 DoubleDouble time_since_flat(const RollingFlow& flow, const PhasePoint<double>& phase);
 
-// The first time t >= 0 at which an ellipse that moves passes the angle theta with velocity of the
+// The first time t >= 0 at which a moving ellipse passes the angle theta with a velocity of the
 // given sign.
 double time_of_passing(const RollingFlow& flow, double theta, double heading);
 

@@ -11,21 +11,21 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr std::size_t most_bodies = 512;  // bodies of one kernel call
+constexpr std::size_t most_bodies = 512;  // bodies per kernel call
 
 constexpr int most_keys = 144;
 constexpr int no_key = -1;
 
-// The key by which bodies are sorted, so that those side by side have as many steps in a quarter;
-// `no_key` for a body that the kernel cannot take.
+// The key by which bodies are sorted, so that bodies side by side have similar numbers of steps in
+// a quarter; `no_key` for a body that the kernel cannot take.
 int key_of(const RollingStart& start, double t) {
     const bool is_finite = std::abs(t) <= std::numeric_limits<double>::max();
     if (start.rests || start.view.c2 == 0 || t == 0 || !is_finite) return no_key;
-    // A short move is the small difference of two times; only its power series keeps the digits.
+    // A short move is the small difference of two times; only its power series stays accurate.
     if (may_be_short(start, t)) return no_key;
     const PhaseIntegrand<double> integrand = phase_integrand(phase_start(start));
     const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
-    // The square of kappa g, 0 on the separatrix: the smaller it is, the longer is a quarter.
+    // The square of kappa g, 0 on the separatrix; the smaller it is, the longer the quarter.
     const double complement2 = square(integrand.kappa) * grade2;
     if (!(complement2 > 1e-20 && integrand.kappa > largest_tail_kappa)) return no_key;
     return 2 * std::min(-std::ilogb(complement2), most_keys / 2 - 1) + integrand.rotates;
@@ -75,7 +75,7 @@ void sample(const Kernel& kernel, const RollingStart* starts, const double* time
                 ++ends[keys[k]];
             }
         }
-        // Counting sort: `ends` become begins, and each moves on to its end.
+        // Counting sort: `ends` first holds the starts, and each of them then advances to its end.
         int sorted = 0;
         for (int& end : ends) sorted += std::exchange(end, sorted);
         std::array<std::uint32_t, most_bodies> places;

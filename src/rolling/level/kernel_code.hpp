@@ -1,4 +1,4 @@
-// The functions of a Kernel. Each vector level compiles them in its own source, so they call no
+// The functions of a Kernel. Each vector level compiles them in a separate source, so they call no
 // function of the standard library (numerics/lanes.hpp).
 #pragma once
 
@@ -10,7 +10,7 @@ namespace {
 
 void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseRates<double>& found) {
-    // Local copies, which the compiler need not load again after a store into `found`.
+    // Local copies, which the compiler need not reload after a store into `found`.
     const PhaseIntegrand<double> constants = integrand;
     const PhaseMap<double> coordinate = map;
     for (int i = 0; i < count; i += lanes) {
@@ -22,7 +22,7 @@ void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
     }
 }
 
-// States of bodies side by side. `is_open` marks bodies that must be sampled alone: at late times.
+// States of bodies side by side. `is_open` marks bodies to be sampled alone, at late times.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
@@ -44,7 +44,7 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
     }
 }
 
-// A number of several places side by side; the first or last one fills lanes beyond the ends.
+// One value of several points side by side; the first or last point fills lanes beyond the ends.
 inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
     Pack found{};
     for (int lane = 0; lane < lanes; ++lane) {
@@ -56,7 +56,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Between neighbouring places eight nodes are exact within rounding.
+    // Between neighbouring points eight nodes are exact to within rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {
@@ -93,8 +93,8 @@ void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map
     }
 }
 
-// Whether the last two terms of a series, of which one may be small by chance, are a few roundings
-// of the sum to which it is added. The terms left out are smaller by another twentieth.
+// Whether the last two terms of a series, one of which may be small by chance, are only a few
+// rounding errors of the sum to which it is added. The omitted terms are a twentieth of that.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -132,7 +132,7 @@ void series(const SeriesConstants& body, double time_unit, double length_unit, T
     }
 }
 
-// Largest number of times that `read` takes through its stages together.
+// Number of times that `read` processes together in each of its stages.
 constexpr int block = 64;
 static_assert(block % lanes == 0);
 
@@ -140,14 +140,14 @@ struct alignas(64) Block {
     double turns[block];  // whole half turns
     double time[block];   // time since the nearest flat position, in two parts
     double low[block];
-    // Angle and path since the nearest flat position, or since the tip `quarters` from it.
+    // Angle and path from the nearest flat position, or from the tip `quarters` away from it.
     double angle[block];
     double omega[block];
     double path[block];
     double quarters[block];
 };
 
-// Reduces t + start by n half turns without rounding. At late times even the low part of n T is
+// Subtracts n half turns from t + start without rounding. At late times even the low part of n T is
 // longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& block) {
     const DoubleDouble period = motion.half_turn;
@@ -166,8 +166,7 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& block) 
     }
 }
 
-// Evaluates one series at several times. The sums of even and odd powers are independent of each
-// other.
+// Evaluates one series at several times, with independent sums of even and odd powers.
 inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     const auto& rows = series.rows;
     const Pack z2 = z * z;
@@ -211,8 +210,8 @@ inline void alone(const TableSeries& series, double z, Block& block, int i) {
     block.path[i] = sum[2];
 }
 
-// The piece at a time by bisection, without a branch that the processor would mispredict for times
-// in any order.
+// The piece at a time by bisection, without branches, which would be mispredicted for unsorted
+// times.
 inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     int i = 0;
     for (int half = motion.half; half > 0; half /= 2) {
@@ -221,7 +220,7 @@ inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     return motion.pieces[i];
 }
 
-// Evaluates for each time of the block the series of the piece that holds it.
+// Evaluates, for each time of the block, the series of the piece that contains it.
 void sample_series(const FlowReader& motion, int n, Block& block) {
     const FlowPiece* recent = motion.pieces;
     for (int i = 0; i < n; i += lanes) {
@@ -254,7 +253,8 @@ void sample_series(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// The samples of a block from its series. Beyond the pieces theta is NaN; returns whether one is.
+// The samples of a block from its series. theta is NaN beyond the pieces; returns whether that
+// occurs.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;

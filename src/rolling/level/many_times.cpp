@@ -1,9 +1,9 @@
 // Exact rolling at many times, by Taylor series in time about points of the exact solution.
 //
-// The series cover the quarter turn (or swing) from the flat position on; all other times are
-// mirror images. One more series starts at t = 0, so that small moves keep their digits. The
-// coefficients follow from the equation of motion by the rules for products, quotients and roots of
-// series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
+// The series cover the quarter turn (or swing) that starts at the flat position; the motion at all
+// other times is a mirror image of that. One more series starts at t = 0, so that small moves are
+// accurate. The coefficients follow from the equation of motion by the rules for products,
+// quotients and roots of series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,11 +14,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// Most pieces of a quarter turn. Usual motions have 15 to 85; on the separatrix it is over 200.
+// Largest number of pieces in a quarter turn. Most motions have 15 to 85; the separatrix needs over
+// 200.
 constexpr std::size_t most_pieces = 1000;
 
-// The path since the flat position or tip from which `quarter_view` counts the angle: differences
-// keep their digits near both.
+// Path length from the flat position or the tip, whichever `quarter_view` measures the angle from,
+// so that differences stay accurate near both.
 double path_in_quarter(const FlatView& body, double sin, double cos) {
     const double s = std::abs(sin);
     const Axes lying = body.lying();
@@ -38,10 +39,10 @@ class TableMaker {
         body_ = series_constants(flow, unit_);
     }
 
-    // The table of the motion; empty where no series holds.
+    // The table of the motion; empty if no series is accurate enough.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
-        // The first one suffices for series of this order in nearly all motions.
+        // For nearly all motions the first one suffices at this order.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -56,11 +57,10 @@ class TableMaker {
     }
 
   private:
-    // Sets the places of the series, from the flat position to the end of the quarter.
+    // Sets the points of the series, from the flat position to the end of the quarter.
     void place(double spacing) {
-        constexpr double wider = 1.5;  // factor of the spacing beyond 45 degrees of the phase
-        // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
-        // rounding.
+        constexpr double wider = 1.5;  // factor of the spacing beyond a phase of 45 degrees
+        // This far beyond 45 degrees, a body on the separatrix is on the tip to within rounding.
         constexpr double longest_rise = 38.0;
         const PhaseMap<double>& map = flow_.phase.map;
         const double middle = asinh(1 / map.grade);
@@ -76,12 +76,12 @@ class TableMaker {
 
     std::size_t count() const { return places_.size(); }
 
-    // Half the time to the place before; half_way_on: half the time to the next place.
+    // Half the time to the previous point; half_way_on: half the time to the next one.
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // Computes the motion at all places and the series about them; false if two neighbouring series
-    // do not meet half way.
+    // Computes the motion at all points and the series about them; false if neighbouring series do
+    // not meet halfway.
     bool expand() {
         const int n = static_cast<int>(count());
         kernel_.states(flow_.phase.integrand, flow_.phase.map, flow_.amplitude, places_.data(), n);
@@ -94,7 +94,7 @@ class TableMaker {
                            [](const TablePlace& place) { return place.holds > 0; });
     }
 
-    // Sets the times of the pieces, counted from the nearer end of the quarter.
+    // Sets the times of the pieces, measured from the nearer end of the quarter.
     void add_times() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
@@ -118,7 +118,7 @@ class TableMaker {
         }
     }
 
-    // Sets the paths of the pieces, counted from the flat position or, near the tip, from the tip.
+    // Sets the paths of the pieces, measured from the flat position or, near the tip, from the tip.
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
@@ -137,11 +137,11 @@ class TableMaker {
             path(i - 1) = path(i) - places_[i].path;
     }
 
-    // Adds the series about t = 0, with the largest radius of some tries.
+    // Adds the series about t = 0, with the largest of several trial radii at which it is accurate.
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
-        // First guess of the radius: the length of the table's piece that holds the start.
+        // First guess of the radius: the length of the table's piece that contains the start.
         const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
@@ -163,14 +163,15 @@ class TableMaker {
         table_.reader.start_radius = first == same.end() ? 0.0 : unit_ * first->radius;
     }
 
-    // Sets the numbers by which a kernel reads the table.
+    // Sets the values that a kernel needs to read the table.
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
         reader.pieces = pieces.data();
-        // The ends beyond the last piece are infinite: it is taken for all later times.
+        // The ends beyond the last piece are infinite, so that this piece is used for all later
+        // times.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
         reader.ends = table_.ends.data();
@@ -210,8 +211,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // Number of times below which there is no table: it costs as much as ten single times. A search
-    // for a root, which samples a few times again and again, thus always gets the same bits.
+    // Below this number of times no table is made, since it costs as much as ten single times. A
+    // root search, which samples a few times again and again, thus always gets the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

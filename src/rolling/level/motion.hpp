@@ -1,5 +1,5 @@
-// An exact rolling motion: by its phase, from its start on, and by power series in time about a
-// place of it. One body or place, T = double, has the same bits as several side by side.
+// An exact rolling motion, by its phase from the start, and by power series in time about one of
+// its points. One body or point (T = double) gets the same bits as several side by side.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 namespace rolling_ellipse {
 namespace {
 
-// The numbers of a RollingStart, for one body or for one in each lane.
+// The values of a RollingStart, for one body or for one per lane.
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
     T sin, cos;  // sine and cosine of the angle from the flat position
     T gyration2, gravity;
     T theta, omega;
-    T total, over_tip, over_flat;  // H and its distances from the tip and the flat
+    T total, over_tip, over_flat;  // H and its distances from tip and flat position
 };
 
 inline PhaseStart<double> phase_start(const RollingStart& from) {
@@ -63,7 +63,7 @@ inline PhaseIntegrand<T> phase_integrand(const PhaseStart<T>& at) {
     return integrand;
 }
 
-// The factor scale sqrt(D (H + h)) at an angle phi with this sine, physics (28, 29).
+// The factor scale sqrt(D (H + h)) at an angle phi, given sin phi: physics (28, 29).
 template <class C, class T>
 inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
     const T sin2 = sin_phi * sin_phi;
@@ -72,18 +72,18 @@ inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
                 (integrand.energy_height + sqrt(h2)) / h2);
 }
 
-// Sets the motion that begins at a start.
+// Sets the motion of a given start.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     set_phase_time(motion.phase, phase_integrand(at));
     const auto rotates = motion.phase.integrand.rotates;
     const T one = filled<T>(1.0);
     motion.direction = rotates ? copysign(one, at.omega) : one;
-    // The start as a phase, times the amplitude; the cosine is negative on the way back.
+    // The initial phase times the amplitude; the cosine is negative on the way back.
     const T sin = motion.direction * at.sin;
     const T cos = rotates ? at.cos : at.omega * shape_factor(motion.phase.integrand, at.sin);
     motion.amplitude = sqrt(sin * sin + cos * cos);
-    // A body at rest on the upper side is at its turning point, on the way back.
+    // A body at rest on the upper side is at its turning point and counts as being on the way back.
     const auto rests_beyond = (cos == 0) & (sin > 0) & negated(rotates);
     motion.on_way_back = (cos < 0) | rests_beyond;
     motion.start_phase = {motion.on_way_back ? -sin : sin, abs(cos)};
@@ -98,7 +98,7 @@ struct MotionPoint {
     T omega;
 };
 
-// The point of a motion at a phase, on the way up: physics (30), the energy integral at the point.
+// The point of a motion at a phase, on the way up, from the energy integral, physics (30).
 template <class C, class T>
 inline MotionPoint<T> motion_point(const PhaseIntegrand<C>& integrand, C amplitude,
                                    const PhasePoint<T>& at) {
@@ -117,13 +117,13 @@ inline T heading_of(const PhaseMotion<T>& motion) {
     return motion.phase.integrand.rotates ? motion.direction : libration;
 }
 
-// The state at a time; x is the path since the start.
+// The state at a time; x is the path from the start.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.integrand.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
-    // Whole turns (of a libration: swings) are taken off the time.
+    // Whole turns (in a libration, whole swings) are subtracted from the time.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
     const T turns = nearest<T>(t / turn.high);
     const TwoParts<T> in_turns = two_product(turns, turn.high);
@@ -142,7 +142,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
     const auto is_endless = rotates & (phase.half_turn.high == infinity);
-    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body, which creeps to the tip
+    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body creeping to the tip
         const PhasePoint<T>& start = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(start.sin, start.cos);
         turned = two_sum(filled<T>(half_pi_exact.high), -rest);
@@ -151,8 +151,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
-    // The place of a libration beyond a turning point is the mirror image before it. The path
-    // between the places omits the part to the turning point and back, which cancels.
+    // In a libration a point beyond a turning point mirrors one before it. The path between the two
+    // omits the part to the turning point and back, which cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {
@@ -178,7 +178,7 @@ struct MotionSeries {
     std::array<T, order + 1> path;
 };
 
-// The constants of the series of a motion, with `time_unit` [s] as the unit of time.
+// The constants for the series of a motion, with `time_unit` [s] as the unit of time.
 inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
     const PhaseIntegrand<double>& integrand = flow.phase.integrand;
     const double length = flow.from.view.long_axis;
@@ -188,10 +188,9 @@ inline SeriesConstants series_constants(const RollingFlow& flow, double time_uni
             integrand.d1 / (area * area)};
 }
 
-// The series about the place with this sine and cosine of the angle from the flat position and this
-// angular velocity.
-// Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
-// sine and cosine of the angle:
+// The series about the point with the given angular velocity and sine and cosine of the angle from
+// the flat position. It follows physics (18) with D h^2 = d0 + d1 q, u = h^2, q = sin^2, p = sin
+// cos of the angle:
 //     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
 template <int order, class T>
 inline MotionSeries<T, order> motion_series(const SeriesConstants& body, T sin, T cos, T omega) {

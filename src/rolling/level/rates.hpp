@@ -1,8 +1,8 @@
-// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path in it. By the
-// theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
+// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path in it. In terms
+// of theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
 //     sc = C sinh(y) B(c)/A(c),   sc(Y - y) = 1/(k' sc(y)),
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
-// whose last root cancels the root of the integrand. The path of the centre grows by h dphi.
+// whose second factor cancels the root in the integrand. The path of the centre grows by h dphi.
 #pragma once
 
 #include "numerics/lanes.hpp"
@@ -11,13 +11,13 @@
 namespace rolling_ellipse {
 namespace {
 
-// At this offset the tip is reached within rounding, and the square of sinh is still a double.
+// At this offset the tip is reached to within rounding, and sinh^2 does not yet overflow.
 constexpr double largest_offset = 300.0;
 
-// Bound of kappa for a quarter with a tail: the largest such kappa is a little below it.
+// Upper bound on kappa for a quarter with a tail; the largest such kappa is slightly smaller.
 constexpr double largest_tail_kappa = 5e-9;
 
-// Sets A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
+// Sets A and B as polynomials in c; the omitted terms are below rounding for q <= 1/32.
 template <class T>
 void set_theta_functions(PhaseMap<T>& map, T q) {
     const T q2 = q * q;
@@ -45,18 +45,18 @@ inline T sine_ratio(const PhaseMap<C>& map, T x) {
     return map.sine_scale * x * b / a;
 }
 
-// Sets the map for kappa and a g of at most the given one.
+// Sets the map for kappa, with g at most `largest_grade`.
 template <class T>
 void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     constexpr double steps_per_unit = 4.0;
     constexpr double largest_complement = 0.70710678118654752;  // largest kappa g, with q = 1/32
-    constexpr double before_tail = 20.0;                        // y of the last step, less log(2/g)
+    constexpr double before_tail = 20.0;                        // y of the last step minus log(2/g)
     constexpr double falling_at_tail = 2.0611536224385579e-9;   // e^-before_tail
     map.kappa = kappa;
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_at_tail * largest_grade;
-    // Rounded to whole steps, this length gives a nome a little below the nome of k'.
+    // When rounded up to whole steps, this length gives a nome slightly below that of k'.
     const T length = any(map.has_tail) ? before_tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
@@ -78,7 +78,7 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     const T cos = abs(phase.cos);
     const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
     const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
-    // x = sinh y with sc(y) = ratio: Newton's method, from the root with B = 1, A = A_0 - 2 q c.
+    // Newton's method for x = sinh y with sc(y) = ratio, from the root for B = 1, A = A_0 - 2 q c.
     const T complement = map.kappa * map.grade;
     const T q2 = -map.a[1];
     T x = 2 * ratio * (1 - q2) /
@@ -98,8 +98,8 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     return {at_tip ? side : T{}, side * (at_tip ? -offset : offset)};
 }
 
-// Sine and cosine of the phase, each to full relative accuracy; `at` must count from the nearest
-// quarter of the phase.
+// Sine and cosine of the phase, each to full relative accuracy; `at` must be measured from the
+// nearest quarter.
 template <class C, class T>
 PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     const auto at_tip = is_odd(at.quarters);
@@ -113,7 +113,7 @@ PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     return {sign * (at_tip ? cos : sin), sign * (at_tip ? -sin : cos)};
 }
 
-// The place at a distance in y from another one, counted from its nearest quarter.
+// The point at a distance in y from another point, measured from the nearest quarter.
 template <class T>
 PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distance) {
     const T offset = from.offset + distance;
@@ -123,21 +123,21 @@ PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distanc
             is_beyond ? from.offset - quarters * map.quarter + distance : offset};
 }
 
-// The rates at y = quarters Y + offset, |quarters| <= 1. The constants C are those of one motion
-// for all places T, or of one motion for each. The phase is known as sin^2/q and cos^2/q, and h^2 =
-// N/q, so that all factors share one quotient. Terms without the offset are computed once for all
-// places of a loop.
+// The rates at y = quarters Y + offset, |quarters| <= 1. The constants C belong to one motion for
+// all points T, or to one motion for each point. The phase is expressed by sin^2/q and cos^2/q, and
+// h^2 = N/q, so that all factors share one quotient. Terms without the offset are computed once for
+// all points of a loop.
 template <class C, class T>
 inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
                                        C quarters, T offset) {
-    constexpr double farthest = 150.0;  // e^(4 farthest) is a double
+    constexpr double farthest = 150.0;  // e^(4 farthest) does not overflow
     const C one = filled<C>(1.0);
     const C half_turn = 2 * map.quarter;
     const T tip_here = filled<T>(quarters != 0 ? one : C{});
     const T scale2_here = filled<T>(quarters != 0 ? map.tip_scale2 : map.flat_scale2);
     const T scale2_there = filled<T>(quarters != 0 ? map.flat_scale2 : map.tip_scale2);
-    // The distance to the nearest flat position or tip: the origin of the offset, or a place one or
-    // two quarters on.
+    // The distance to the nearest flat position or tip, which is the origin of the offset or lies
+    // one or two quarters further on.
     const T from_here = abs(offset);
     const T a_turn_on = abs(from_here - half_turn);
     const T same = from_here < a_turn_on ? from_here : a_turn_on;
@@ -180,7 +180,7 @@ inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const
     return {time, angle, h * angle};
 }
 
-// The rates of bodies side by side, at a few places of each.
+// The rates of bodies side by side, each at a few points.
 inline void phase_rates(const PhaseIntegrand<Pack>& integrand, const PhaseMap<Pack>& map,
                         Pack quarters, const Pack* offsets, int count, PhaseRates<Pack>& found) {
     for (int i = 0; i < count; ++i) {
@@ -191,7 +191,8 @@ inline void phase_rates(const PhaseIntegrand<Pack>& integrand, const PhaseMap<Pa
     }
 }
 
-// The rates of one body at places side by side; the arrays have room for a Pack after the last.
+// The rates of one body at points side by side; the arrays have room for a Pack after the last
+// point.
 inline void phase_rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                         double quarters, double* offsets, int count, PhaseRates<double>& found) {
     for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];

@@ -1,11 +1,11 @@
-// Time as a function of the phase of an exact rolling motion, and its inverse, by integrals of the
-// rates of rolling/level/rates.hpp.
+// Time as a function of the phase of an exact rolling motion, and its inverse, from integrals of
+// the rates of rolling/level/rates.hpp.
 //
-// The rates are even about the flat and the tip and analytic for |Im y| < pi/2. So the trapezoidal
-// rule gives the time of a quarter, with an error that falls like exp(-pi^2/step) (L. N. Trefethen,
-// J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated from its start
-// by Gauss-Legendre quadrature, so that a short interval has the same relative accuracy as a long
-// one.
+// The rates are even about the flat position and the tip and analytic for |Im y| < pi/2. So the
+// trapezoidal rule gives the time of a quarter with an error that falls like exp(-pi^2/step) (L. N.
+// Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated from
+// its start by Gauss-Legendre quadrature, so that a short interval has the same relative accuracy
+// as a long one.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Adds a term to a sum; `low` collects the roundings.
+// Adds a term to a sum; `low` collects the rounding errors.
 template <class T>
 inline void add(TwoParts<T>& sum, T term) {
     const TwoParts<T> next = two_sum(sum.high, term);
@@ -27,9 +27,9 @@ inline void add(TwoParts<T>& sum, T term) {
 constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
-// The longest intervals on which the rules of the table have full double precision, in units of
-// twice the distance of the nearest complex singularity. The error falls like rho^(-2n), rho the
-// sum of the semi-axes of the ellipse with the ends as foci and that distance as its height (L. N.
+// The longest intervals on which the tabulated rules have full double precision, in units of twice
+// the distance to the nearest complex singularity. The error falls like rho^(-2n), with rho the sum
+// of the semi-axes of the ellipse whose foci are the ends and whose height is that distance (L. N.
 // Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5): rho = exp(asinh(1/length)).
 constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17), for a relative error of 3e-17
@@ -44,8 +44,8 @@ constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     return lengths;
 }();
 
-// Gauss-Legendre rules as pairs of nodes -x and +x. Zeros fill a rule with fewer nodes than another
-// lane has.
+// Gauss-Legendre rules as pairs of nodes -x and +x. Zeros pad a rule with fewer nodes than that of
+// another lane.
 template <class T>
 struct NodePairs {
     int count;
@@ -53,8 +53,7 @@ struct NodePairs {
     T weights[most_pairs];
 };
 
-// The smallest rules with full double precision for panels of this length; the largest one for
-// longer panels.
+// The smallest rules with full double precision for panels of this length, or else the largest.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -74,7 +73,7 @@ inline void set_rules(NodePairs<T>& pairs, T length) {
     }
 }
 
-// Time, angle and path of an interval of y, and the rates at its end.
+// Time, angle and path over an interval of y, and the rates at the end of the interval.
 template <class T>
 struct Integral {
     PhaseIncrement<T> sum;
@@ -120,8 +119,8 @@ inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarte
     return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// Integrates from one offset to another. Around a tip that is far away only the time grows, at a
-// constant rate: for minutes near the separatrix, and without end on it.
+// Integrates from one offset to another. Around a distant tip only the elapsed time changes, at a
+// constant rate: the body stays there for minutes near the separatrix, and never leaves on it.
 inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
                                          double begin, double end) {
     constexpr double long_interval = 12.0;
@@ -147,7 +146,7 @@ inline Integral<double> integral_between(const PhaseTime<double>& phase, double 
     return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
 }
 
-// dt/dy and the time, by a cubic for dt/dy in a step and its integral.
+// dt/dy and the time, from a cubic for dt/dy in a step and its integral.
 template <class T>
 struct Cubic {
     T slope;
@@ -168,7 +167,7 @@ inline Cubic<T> in_step(const PhaseTime<T>& phase, T i, T s) {
             phase.map.step * s * (f0 + s * (m0 / 2 + s * (p2 / 3 + s * p3 / 4)))};
 }
 
-// dt/dy and the time since the flat at 0 <= y <= Y, to a few digits.
+// dt/dy and the time since the flat position at 0 <= y <= Y, accurate to a few digits.
 template <class T>
 inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
     const PhaseMap<T>& map = phase.map;
@@ -183,7 +182,7 @@ inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
                                                     : element(phase.time, i) + at.time};
 }
 
-// The place y at a time since the flat, to a few digits.
+// The point y at a time from the flat position, accurate to a few digits.
 template <class T>
 inline T rough_place(const PhaseTime<T>& phase, T time) {
     const PhaseMap<T>& map = phase.map;
@@ -203,7 +202,7 @@ inline T rough_place(const PhaseTime<T>& phase, T time) {
                      : map.step * (i + s) + (time - begin - at.time) / at.slope;
 }
 
-// The distance in y that a time reaches, to a few digits.
+// The distance in y covered in a time, accurate to a few digits.
 template <class T>
 inline T rough_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) {
     const T quarter = phase.map.quarter;
@@ -259,7 +258,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
         phase.quarter_turn = (phase.quarter_turn + tail.high) + tail.low;
         if (any(map.quarter == infinity)) phase.quarter_turn = {map.quarter, T{}};
     }
-    // The time since the flat at the steps: integrals of the cubics.
+    // The time from the flat position to the steps, from integrals of the cubics.
     phase.time[0] = T{};
     for (int i = 0; i < most; ++i) {
         phase.time[i + 1] = phase.time[i] + map.step * (13.0 / 24 * (f[i] + f[i + 1]) -
@@ -267,7 +266,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
     }
 }
 
-// Sets the time as a function of the phase for these constants.
+// Sets the time as a function of the phase for the given constants.
 template <class T>
 void set_phase_time(PhaseTime<T>& phase, const PhaseIntegrand<T>& integrand) {
     phase.integrand = integrand;
@@ -277,22 +276,21 @@ void set_phase_time(PhaseTime<T>& phase, const PhaseIntegrand<T>& integrand) {
     phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
 }
 
-// The place after a time of at most a full swing; angle and path on the way to it.
+// The point after a time of at most a full swing, and the angle and path up to it.
 template <class T>
 struct PhaseMove {
     PhasePlace<T> to;
     PhaseIncrement<T> sum;
 };
 
-// Newton's method: the interval is integrated to a first guess, and extended by the missing time.
-// The last step is so small that its square is below rounding, or that it does not change the
-// place.
+// Uses Newton's method: integrates up to a first guess, then extends the interval by the missing
+// time. Ends with a step so small that its square is below rounding or the point no longer moves.
 template <class T>
 PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) {
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
     constexpr int most_steps = 60;
-    // Ends of intervals are doubles, so that the integral and the place agree.
+    // Ends of intervals are doubles, so that the integral ends exactly at the point.
     const auto to_double = [&](T distance) { return (from.offset + distance) - from.offset; };
     T distance = to_double(rough_distance(phase, from, time));
     auto [sum, slope] = integral_between(phase, from.quarters, from.offset, from.offset + distance);

@@ -12,20 +12,20 @@ SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega
     return {{}, quarters, angle, body.side * omega * body.time, {}};
 }
 
-// The sum with which the motion begins; null if it begins with a series.
+// The sum with which the motion starts; null if it starts with a series.
 const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// --------------------------------------------------------------------------------- places
+// --------------------------------------------------------------------------------- points
 
-// Reads the places of a moving body, each by its stretch.
+// Computes points of the motion of a body, each from its stretch.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
 
-    // Reads the place at the first of n times [s] and, in a sum, those at times after it that cost
-    // no more. Returns their number.
+    // Computes the point at the first of n times [s] and, in a sum, those at later times that come
+    // at no extra cost. Returns the number of points computed.
     std::size_t operator()(const double* times, std::size_t n, SlopePlace* places) {
         const auto time = [&](std::size_t i) { return times[i] / flow_.body.time; };
         const SlopeStretch* const first = flow_.stretches.data();
@@ -43,7 +43,7 @@ class SlopeReader {
     }
 
   private:
-    // The stretch of a time among those from `first` up to `end`.
+    // The stretch that contains a time, among those from `first` up to `end`.
     static const SlopeStretch& stretch_at(const SlopeStretch* first, const SlopeStretch* end,
                                           double time) {
         const auto* const later = std::upper_bound(
@@ -55,7 +55,8 @@ class SlopeReader {
         return std::visit([&](const auto& law) { return place(law, here, time); }, here.law);
     }
 
-    // The place at a time of the series before a stretch; side -1 if the body moves the other way.
+    // The point at a time in the series before a stretch; side is -1 for motion in the other
+    // direction.
     SlopePlace place_before(const SlopeStretch& here, DoubleDouble time, double side) const {
         const SlopeStretch* const first = flow_.stretches.data() + (first_sum(flow_) ? 1 : 0);
         SlopePlace found = place(stretch_at(first, &here, double(time)), time);
@@ -78,7 +79,7 @@ class SlopeReader {
         return place_in(piece, double(time - piece.from.time));
     }
 
-    // Near the start; all other places of sums are read side by side.
+    // Used for times near the start; all other points of sums are computed side by side.
     SlopePlace place(const Sum&, const SlopeStretch&, DoubleDouble time) const {
         return place_in(*near_, double(time));
     }
@@ -95,8 +96,8 @@ class SlopeReader {
                                            : place_before(here, swing.first + rest, 1.0);
     }
 
-    // Whether a series about the start serves a time where the motion begins with a sum: next to
-    // the start only a series keeps the digits of the way.
+    // Whether to evaluate a time by a series about the start although the motion starts with a sum:
+    // near the start only a series keeps the path accurate.
     bool is_near(double time) {
         constexpr double short_way = 0.1;  // [rad]
         const double speed =
@@ -108,15 +109,15 @@ class SlopeReader {
 
     const SlopeFlow& flow_;
     std::optional<SlopePiece> near_;
-    const Sum* of_ = nullptr;  // the sum that is read last
+    const Sum* of_ = nullptr;  // the sum that was read last
     std::optional<RunReader> run_;
 };
 
 // --------------------------------------------------------------------------------- growth
 
-// Append what follows from a turning point, which itself belongs to the series: after the first one
-// the motion is mirrored, after the second one it repeats itself. Series continued beside the rim
-// of a well would miss the place of the reversed start.
+// Appends what follows a turning point, which itself belongs to the series: after the first one the
+// motion is mirrored, after the second one it repeats itself. Near the rim of a well, further
+// series would miss the reversed start.
 void append_turning(SlopeFlow& flow, DoubleDouble turning) {
     const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
     if (flow.turning) {
@@ -150,7 +151,7 @@ void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, doub
     flow.stretches.emplace_back(double(from.time), end, std::move(sum));
 }
 
-// The place at the end of the last stretch.
+// The point at the end of the last stretch.
 SlopePlace next_place(const SlopeFlow& flow) {
     if (flow.stretches.empty()) return flow.start;
     const auto& law = flow.stretches.back().law;

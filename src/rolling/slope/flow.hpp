@@ -1,7 +1,7 @@
 // Exact rolling on a slope: the state at any time.
 //
-// The motion is a list of stretches, each with its law, as far as the requested times need it.
-// Neither its cost nor its error grows with the number of half turns or swings.
+// The motion is a list of stretches, each with its law, extended as far as the requested times
+// need. Neither cost nor error grows with the number of half turns or swings.
 #pragma once
 
 #include <optional>
@@ -17,21 +17,20 @@ namespace rolling_ellipse {
 // Constant forces: a body at rest, or a circle, which accelerates evenly.
 struct Even {};
 
-// Many half turns at once: uphill to `end`, near the top of the climb, or downhill for good, where
-// `end` has no meaning.
+// Many half turns at once: uphill to `end`, near the top of the climb, or downhill forever, in
+// which case `end` has no meaning.
 struct Sum {
     SlopeRun run;
     SlopePlace end;
 };
 
-// The motion before its first turning point, backwards: it ends with the reversed start of the
-// series.
+// The motion before its first turning point, in reverse, back to the reversed start of the series.
 struct Mirror {
     DoubleDouble turning;
     SlopePlace end;
 };
 
-// Rocking between two turning points for good, by the motion from the first to the second one.
+// Rocking forever between two turning points; repeats the motion between the two.
 struct Repeat {
     DoubleDouble first;
     DoubleDouble last;
@@ -39,10 +38,10 @@ struct Repeat {
     DoubleDouble lasts() const { return last - first; }
 };
 
-// A stretch of the motion. A time belongs to the last stretch that begins at or before it.
+// A stretch of the motion. A time belongs to the last stretch that starts at or before it.
 struct SlopeStretch {
     double begin;
-    double end;  // as far as the law reaches
+    double end;  // end of the law's validity
     std::variant<Even, SlopePiece, Sum, Mirror, Repeat> law;
 
     template <class Law>
@@ -57,29 +56,30 @@ struct SlopeFlow {
     bool rests;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;  // angular acceleration at the start; a circle keeps it
+    double acceleration;  // initial angular acceleration; a circle keeps it
     SlopePlace start;
     Datum datum;  // the start
     std::vector<SlopeStretch> stretches;
-    std::optional<DoubleDouble> turning;  // time of the first turning point, once it is known
+    std::optional<DoubleDouble> turning;  // time of the first turning point, once known
 };
 
-// The flow of a body that rolls on a slope other than 0.
+// The flow of a body that rolls on a nonzero slope.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
-// Extend the stretches until the motion is known up to a time [s].
+// Extends the stretches until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Append at least one stretch; false if the last one never ends.
+// Appends at least one stretch; false if the last one never ends.
 bool grow(SlopeFlow& flow);
 
-// The state at a prepared time in [0, longest_time]; the states at n times, fastest if ascending.
+// The state at a time in [0, longest_time] up to which the flow is prepared; or at n such times,
+// fastest if they are ascending.
 FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
 // Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many, or if a
-// time t is far below it, which is faster to see.
+// given time t is far below it, which is quicker to find out.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
 // The law of a body that rocks; null for all others.

@@ -10,11 +10,11 @@
 namespace rolling_ellipse {
 namespace {
 
-// h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
-// difference of its two terms would be a rounding; a slope with equilibria uses the product of
-// physics (62) there.
+// h times the moment of gravity about the contact, per unit mass. Near an equilibrium the
+// difference of its two terms would be mere rounding error, so the product of physics (62) is used
+// there.
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
-    constexpr double far = 0.1;  // share of the terms from which their difference is accurate
+    constexpr double far = 0.1;  // fraction of the terms above which their difference is accurate
     const double along = body.gravity.along * (body.short_axis2 + body.c2 * square(s));
     const double into = body.gravity.into * body.c2 * s * c;
     const double drive = along - into;
@@ -26,12 +26,12 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
 }
 
 // With D h^2 = I = d0 + d1 sin^2 phi, u = h^2, p = h h' = c2 sin phi cos phi, lambda = omega/h and
-// S = d1/c2 physics (18) becomes, without a quotient but by I,
+// S = d1/c2 physics (18) becomes, with I as the only divisor,
 //     I lambda' = g_along u - g_into p - S p omega lambda,   omega = h lambda,   h' = p lambda
 //     u' = 2 p omega,   I' = S u',   p' = q omega,   q' = -4 p omega
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
-// the caller computes to full accuracy (`drive`); the later coefficients do not cancel. Gravity
-// and omega are in the unit of time of the series.
+// the caller computes to full accuracy (`drive`); later coefficients do not cancel. Gravity and
+// omega are in the series' unit of time.
 ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity,
                                               double sin, double cos, double omega, double drive) {
     SlopeSeries motion;
@@ -39,8 +39,9 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     LongSeries& w = motion.omega;
     LongSeries& path = motion.path;
     LongSeries& h = motion.height;
-    // Factors of products side by side, coefficient by coefficient: (h, p, p, q) by (lambda,
-    // lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda, lambda').
+    // Factors of products computed side by side, coefficient by coefficient: (h, p, p, q) by
+    // (lambda, lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda,
+    // lambda').
     using Factors = std::array<Quad, long_order + 1>;
     Factors left, right, late_left, late_right;
     const double sin2 = square(sin);
@@ -64,7 +65,7 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
         constexpr int k = decltype(number)::value;
         const Quad known = inner(left, right, k);
         const Quad late = inner(late_left, late_right, k);
-        // The terms of a product with the coefficients 0 and k of its factors.
+        // The terms of a product that contain coefficients 0 and k of its factors.
         const auto ends = [](double first, double second_k, double first_k, double second) {
             return k == 0 ? first * second_k : first * second_k + first_k * second;
         };
@@ -102,7 +103,7 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     return motion;
 }
 
-// The time since the start of the piece at which it turns back; infinite if it does not.
+// The time from the start of the piece at which it turns back; infinite if it does not.
 double turning_in(const SlopePiece& piece) {
     const double side = std::copysign(1.0, piece.from.omega);
     const auto onwards = [&](double since) {
@@ -210,7 +211,8 @@ DoubleDouble time_of_turning(const SlopePiece& piece) {
     return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
 }
 
-// The first time at which a piece passes the tip: it may come back, so the search ends at its turn.
+// The first time at which a piece passes the tip. The search ends where the body turns back, since
+// it may return over the tip.
 double time_of_tip(const SlopePiece& piece) {
     const double until = std::min(piece.lasts, turning_in(piece));
     if (std::isinf(until)) return infinity;
@@ -231,7 +233,7 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece) {
-    constexpr double accurate = 0.1;  // for omega from W: least share of W in its terms' sizes
+    constexpr double accurate = 0.1;  // least fraction of W in its terms for omega from W
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, start, place, here);

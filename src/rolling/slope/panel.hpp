@@ -1,4 +1,4 @@
-// Places on the panels of a run, several lanes at a time.
+// Points on the panels of a run, in several lanes at once.
 #pragma once
 
 #include "numerics/part.hpp"
@@ -7,10 +7,10 @@
 namespace rolling_ellipse {
 namespace {
 
-// Places on a part: their tangents from the centre of the panel and the derivatives of those by v;
-// 1/(1 + tan^2); sines and cosines of their angles from a flat position, times sqrt(1 + tan^2) and
-// perhaps -1 both; the squares of both without that factor; and the height of
-// the centre, with its fall from the datum of the run.
+// Points on a part: the tangents of their angles from the centre of the panel and the derivatives
+// of these with respect to v; 1/(1 + tan^2); sines and cosines of their angles from a flat
+// position, both times sqrt(1 + tan^2) and possibly -1; the squares of both without that factor;
+// and the height of the centre, with its fall from the datum of the run.
 struct PanelPlaces {
     Pack tan;
     Pack tan_rate;
@@ -24,7 +24,7 @@ struct PanelPlaces {
     Pack fall;
 };
 
-// The places x in -1 ... 1 of a part.
+// The points x in -1 ... 1 of a part.
 [[gnu::always_inline]] inline PanelPlaces places_at(const SlopeRun& run, const RunPart& part,
                                                     Pack x) {
     const RunPanel& panel = run.panels[part.panel];

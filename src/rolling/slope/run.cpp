@@ -9,14 +9,14 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr double least_levels = 0.25;   // W/w from which sums over half turns are used
-constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
-constexpr double few = 4;               // half turns that cost less than the formula
+constexpr double least_levels = 0.25;   // least W/w at which sums over half turns are used
+constexpr double asymptotic_from = 14;  // W/w from which R(W) is accurate to 2e-17
+constexpr double few = 4;               // fewer half turns than this are cheaper to add one by one
 constexpr std::size_t most_begins = 1 + std::size_t(asymptotic_from + few);
 constexpr std::size_t usual_panels = 12;
 constexpr std::size_t usual_parts = 16;
 
-// sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
+// The remainder sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
 [[gnu::always_inline]] inline Pack remainder(Pack ratio, Pack over_root) {
     return ratio * over_root *
            horner(ratio * ratio, -0.00354755719503, 0.00140508015951, -143.0 / 163840, 1.0 / 1024,
@@ -36,11 +36,11 @@ constexpr std::size_t usual_parts = 16;
                                        remainder(gain * (over_b * over_b), over_b)));
 }
 
-// Widest part of a panel in v. Singularities are pi/2 or more away, so that the polynomial of a
-// part falls by 6.4 from term to term.
+// Widest part of a panel in v. Singularities are at least pi/2 away, so that the terms of the
+// polynomial of a part fall by a factor of 6.4.
 constexpr double widest_part = 1.0;
 
-// Centre of two panels: a flat position, or the place of the least W beside a tip.
+// Centre of two panels: a flat position, or the point near a tip where W is least.
 struct Centre {
     double quarters;
     double angle;
@@ -48,8 +48,8 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Append the panel from low to high, as far as it lies in the half turn from the start of the run.
-// The ends of the half turn keep their digits beside a tip.
+// Appends the panel from low to high, as far as it lies in the half turn from the start of the run.
+// The ends of the half turn stay accurate near a tip.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     const double quarters = run.from.quarters - run.turns;
     const double angle = run.heading * double(run.from.angle);
@@ -71,17 +71,17 @@ void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
          coordinate(high < here + pi ? high - centre.at() : end_of_half_turn(2.0))});
 }
 
-// W over the tip in the height of `at`, but for the way along the slope. The height of the tip over
-// the centre is a product, exact for nearly round bodies, too.
+// W at the tip, from W at `at`, without the gain along the slope. The height of the tip above the
+// centre is a product, accurate even for nearly round bodies.
 double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
     return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
 }
 
-// The place where a run starts, or the nearest tip if W, counted from that place, would be a small
-// difference there. W at the tip is counted from the start of the motion: where that is beside
-// another tip, nothing is lost.
+// The point where a run starts, or the nearest tip if W at the tip, computed from that point, would
+// be a small difference. W at the tip is computed from the start of the motion, which is accurate
+// even if the start is near another tip.
 Datum datum_of(const SlopeRun& run, const Datum& start) {
-    constexpr double small = 0.0625;  // share of W that is left at the tip
+    constexpr double small = 0.0625;  // fraction of W that is left at the tip
     const SlopeBody& body = run.body;
     const auto& [energy, at, path_to] = run.start;
     const double left = body.gain + std::abs(over_tip(body, energy, at));
@@ -94,7 +94,7 @@ Datum datum_of(const SlopeRun& run, const Datum& start) {
             geometry(body, 1.0, 0.0), path};
 }
 
-// Append the next part. Its nodes are computed side by side.
+// Appends the next part. Its nodes are computed side by side.
 ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
     const RunPanel& panel = run.panels[run.next_panel];
     const double width = panel.last - panel.first;
@@ -134,9 +134,9 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from) {
     double least = over_tip(body, energy, at);
-    if (least < -body.gain) return 0.0;  // half a turn downhill gains no more
+    if (least < -body.gain) return 0.0;  // half a turn downhill gains at most this
     if (from.omega > 0) {
-        // The way down to the next unstable equilibrium is at least its angle times the short axis.
+        // The path to the next unstable equilibrium is at least its angle times the short axis.
         const double hill = body.equilibria ? body.equilibria->upright : 0.0;
         const double ahead = (is_odd(from.quarters) ? hill : half_pi + hill) - double(from.angle);
         const double angle = ahead < 0 ? ahead + pi : ahead;
@@ -160,8 +160,8 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     run.panels.reserve(usual_panels);
     run.parts.reserve(usual_parts);
 
-    // Uphill W falls by the gain in each half turn. In a half turn it is least at the unstable
-    // equilibrium, or at the tip if there is none.
+    // Uphill, W falls by the gain in each half turn. Within a half turn it is least at the unstable
+    // equilibrium, or at the tip without one.
     const double lost = run.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
     const double hill = body.equilibria ? body.equilibria->upright : 0.0;
     const Geometry top = geometry(body, 1.0, hill);
@@ -169,9 +169,9 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     const double fallen = fall(body, run.datum.at, top).value;
     const double least =
         std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
-    // A grade is tanh of about the imaginary part of the nearest singularity of dt/dphi.
+    // A grade is the tanh of about the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = std::sqrt(body.d0 / (body.d0 + body.d1));
-    // The singularities of the flat position may be nearer to the hill than its own.
+    // The singularities of the flat position may be closer to the hill than the hill's own.
     const double to_flat = half_pi - std::abs(hill);
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
     const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));
@@ -185,7 +185,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
         add_panel(run, left, left.at(), split);
         add_panel(run, right, split, right.at());
     };
-    constexpr double widest_gap = 2.0;  // an angle further from its centre is mapped too far away
+    constexpr double widest_gap = 2.0;  // farther from its centre, an angle is mapped too far away
     for (int i = -3; i < 5; ++i) {
         const Centre left = centre(i);
         const Centre right = centre(i + 1);
@@ -216,7 +216,7 @@ ROLLING_ELLIPSE_WIDE PartArray node_times(const SlopeRun& run, const RunPart& pa
 }
 
 double about(const SlopeRun& run, double since) {
-    const double speed = run.mass / run.known;  // a mean of sqrt(W)
+    const double speed = run.mass / run.known;  // mean of sqrt(W)
     const double change = run.heading * run.body.gain * since / (4 * run.mass);
     return std::max(std::floor(since / run.mass * (speed + change)), 0.0);
 }
@@ -229,8 +229,8 @@ RunTimes::RunTimes(const SlopeRun& run) : run_(run) {
     }
 }
 
-// The terms with the least W, those of the first half turns downhill and of the last ones uphill,
-// are added one by one until the formula is accurate.
+// The terms with the least W (the first half turns downhill, the last ones uphill) are added one by
+// one until the formula is accurate.
 DoubleDouble RunTimes::operator()(double half_turns) {
     const double gain = run_.body.gain;
     const double fallen = run_.heading < 0 ? half_turns - 1 : 0.0;

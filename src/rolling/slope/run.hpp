@@ -1,14 +1,14 @@
-// Many half turns down or up a slope, at a cost that does not depend on their number.
+// Many half turns down or up a slope, at a cost independent of their number.
 //
-// From one half turn to the next W = D omega^2/2, a function of the angle, grows by the constant w.
+// From one half turn to the next, W = D omega^2/2, a function of the angle, grows by a constant w.
 // Hence n half turns take, physics (59),
 //     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn.
 // The sum is a difference of Hurwitz zeta functions, computed by the Euler-Maclaurin formula. The
-// integrand has complex singularities beside the flat position, where D = 0, and beside the place
-// of the least W; panels are graded towards both as in physics (31).
+// integrand has complex singularities near the flat position, where D = 0, and near the point of
+// the least W; panels are graded towards both as in physics (31).
 //
-// Angles and paths ahead are counted in the direction of the motion: a climb is a motion to growing
-// angles whose W falls by w.
+// Angles and paths ahead are measured in the direction of the motion: a climb is a motion to
+// growing angles whose W falls by w.
 #pragma once
 
 #include <array>
@@ -21,12 +21,12 @@
 namespace rolling_ellipse {
 
 // The coordinate v of a panel: tan(phi - centre) = grade sinh(v), first <= v <= last. The centre is
-// a flat position or the place of the least W beside a tip.
+// a flat position, or the point near a tip where W is least.
 struct RunPanel {
-    double quarters;  // of the flat position or tip
+    double quarters;  // quarters of the flat position or tip
     double angle;     // angle of the centre from there
-    double sin;       // sine and cosine of the centre's angle from a flat position, both perhaps
-    double cos;       // with the other sign
+    double sin;       // sine and cosine of the centre's angle from a flat position, both
+    double cos;       // possibly negated
     double grade;
     double first;
     double last;
@@ -38,8 +38,8 @@ struct RunPart {
     double middle;      // v at the middle of the part
     double half;        // half of its width in v
     double path;        // path ahead at its start
-    PartArray advance;  // at the nodes: derivative of the path by the place -1 ... 1,
-    PartArray mass;     // derivative of the integral of sqrt(D/2),
+    PartArray advance;  // at the nodes: d(path)/ds, where s in [-1, 1] is the position in the part,
+    PartArray mass;     // d/ds of the integral of sqrt(D/2),
     PartArray level;    // and W in the first half turn
     double lasts;       // time of the part in the first half turn
 };
@@ -47,44 +47,44 @@ struct RunPart {
 struct SlopeRun {
     SlopeBody body;
     SlopePlace from;
-    double turns;                  // whole half turns before `from`, in quarters
+    double turns;                  // whole half turns before `from`, counted in quarter turns
     double heading;                // +1 downhill, -1 uphill
     Datum start;                   // `from` as a datum
-    Datum datum;                   // the same, or a tip at which W is nearly used up
+    Datum datum;                   // the same, or a tip at which hardly any W is left
     double half_turns;             // largest number of half turns of the run
-    std::vector<RunPanel> panels;  // of one half turn from `from`, in the direction of the motion
-    std::vector<RunPart> parts;    // parts of the panels, as many as `extend` has added
+    std::vector<RunPanel> panels;  // panels of one half turn, in the direction of motion
+    std::vector<RunPart> parts;    // parts of the panels added so far by `extend`
     double path_ahead;             // path from `from` to the end of the last part
     double known;                  // time in the first half turn up to there
     double mass;                   // int sqrt(D/2) dphi up to there
-    std::size_t next_panel;        // panel and part in it that come next
+    std::size_t next_panel;        // indices of the next panel, and of the next part in it
     int next_part;
 
     bool is_complete() const { return next_panel == panels.size(); }
 };
 
-// The run from a place of a motion: uphill for as many half turns as `may_run` allows, downhill for
-// any number. `start` is the start of the motion, `here` the place.
+// The run from a point of a motion: uphill for as many half turns as `may_run` allows, downhill for
+// any number. `start` is the start of the motion, `here` the point.
 SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& from,
                    const Datum& here, double half_turns);
 
-// Adds parts until the first half turn is known up to a time since `from`, or is complete.
+// Adds parts until the first half turn is known up to a time after `from`, or is complete.
 void extend(SlopeRun& run, double since);
 
-// Largest number of half turns: beyond it the phase is lost in the rounding of their number.
+// Largest number of half turns; beyond it, the phase is lost in the rounding of that number.
 inline constexpr double most_half_turns = 1e15;
 
-// Number of half turns from a place, in its direction, during which W is large enough beside w for
-// the sum.
+// Number of half turns from a point, in its direction of motion, during which W is large enough
+// relative to w for the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from);
 
-// Derivatives of the time by the place at the nodes of a part, after n half turns.
+// d(time)/ds at the nodes of a part, after n half turns; s in [-1, 1] is the position in the part.
 PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns);
 
-// About the number of half turns in a time since `from`, as if W grew evenly with their number.
+// The approximate number of half turns in a time after `from`, as if W grew linearly with it.
 double about(const SlopeRun& run, double since);
 
-// Times of n half turns of a complete run. The first terms of a sum are kept for later sums.
+// Durations of n half turns of a complete run. The first terms of a sum are kept for later sums.
 class RunTimes {
   public:
     explicit RunTimes(const SlopeRun& run);
@@ -93,10 +93,10 @@ class RunTimes {
   private:
     const SlopeRun& run_;
     double lowest_ = infinity;          // least W of the first half turn
-    std::vector<DoubleDouble> begins_;  // of the first half turns downhill, the last ones uphill
+    std::vector<DoubleDouble> begins_;  // starts of the first half turns (uphill: the last)
 };
 
-// Forces at the nodes of a part after n half turns, per unit mass, along x in the direction of the
+// Forces at the nodes of a part after n half turns, per unit mass, x pointing in the direction of
 // motion.
 struct PartForces {
     PartArray normal;
@@ -107,28 +107,28 @@ PartForces node_forces(const SlopeRun& run, const RunPart& part, double half_tur
 // The coefficients of the Legendre polynomials of a function on a part.
 PartArray legendre_coefficients(const PartArray& at_nodes);
 
-// The place after n half turns of a complete run.
+// The point after n half turns of a complete run.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
 
-// A part in a half turn, to read places from.
+// A part in a half turn, prepared for computing points.
 struct PartReading {
     const RunPart* part;
-    double half_turns;    // half turns before
+    double half_turns;    // number of half turns before this one
     double lasts;         // time of the part
-    PartPolynomial time;  // derivatives of time and path by the place
+    PartPolynomial time;  // derivatives of time and path with respect to the position
     PartPolynomial path;
-    std::array<double, 5> about_place;  // the place by the share of the part's time, about
+    std::array<double, 5> about_place;  // approximate position from the fraction of the part's time
 };
 
-// Reads places at times after `from`, which `extend` has reached. Integrals over the current half
+// Computes points at times after `from` that `extend` has reached. Integrals over the current half
 // turn are kept for the next times in it; the bits of an answer depend neither on earlier calls nor
 // on the other times.
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);
 
-    // Reads the place at the first of n times [s] and, side by side with it, at up to `most` in all
-    // that follow in the same part. Returns their number.
+    // Computes the point at the first of n times [s] and, side by side with it, at the next ones in
+    // the same part, up to `most` in all. Returns the number of points.
     std::size_t operator()(const double* times, std::size_t n, SlopePlace* places);
     static constexpr std::size_t most = 4;
 

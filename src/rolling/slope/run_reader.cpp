@@ -8,7 +8,8 @@ namespace rolling_ellipse {
 namespace {
 
 // The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by 6.4 from one to the next, and those of P_k itself rise by 2.4: so the powers hardly cancel.
+// by a factor of 6.4 per degree, and those of P_k itself rise by 2.4, so that there is hardly any
+// cancellation between the powers.
 ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));
@@ -22,8 +23,8 @@ ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) 
     return polynomial;
 }
 
-// The place in a part by the share of its time: the cubic with the values and slopes of the inverse
-// function at both ends.
+// The position in a part from the fraction of its time: the cubic with the values and slopes of the
+// inverse function at both ends.
 std::array<double, 5> inverse_about(const PartPolynomial& time) {
     const double lasts = value(time.integral, 1.0);
     const double first = lasts / value(time.value, -1.0);
@@ -31,11 +32,11 @@ std::array<double, 5> inverse_about(const PartPolynomial& time) {
     return {-1.0, first, 6 - 2 * first - last, -4 + first + last, 0.0};
 }
 
-// The places in a part, -1 ... 1, at times since its start, by Newton's method.
+// The positions in a part, -1 ... 1, at times from its start, by Newton's method.
 [[gnu::always_inline]] inline Pack places_in_part(const PartPolynomial& of_time, Pack guess,
                                                   Pack times) {
-    constexpr int most_steps = 8;       // four reach the rounding from the worst guess, 0.2 away
-    constexpr double converged = 1e-8;  // Newton's method squares smaller steps
+    constexpr int most_steps = 8;       // four suffice from the worst guess, 0.2 away
+    constexpr double converged = 1e-8;  // the next step would be its square
     Pack x = max(min(guess, pack(1.0)), pack(-1.0));
     Mask<Pack> moving = x == x;
     for (int i = 0; i < most_steps && any(moving); ++i) {
@@ -46,14 +47,14 @@ std::array<double, 5> inverse_about(const PartPolynomial& time) {
     return x;
 }
 
-// Places on a part: tangent of the angle from the panel's centre, path ahead, size of omega.
+// Points on a part: tangent of the angle from the panel's centre, path ahead, magnitude of omega.
 struct PlacesOnPart {
     std::array<double, lanes> tan;
     std::array<double, lanes> ahead;
     std::array<double, lanes> speed;
 };
 
-// The places at times since the start of the part.
+// The points at times from the start of the part.
 ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of,
                                       const std::array<double, lanes>& times,
                                       PlacesOnPart& places) {
@@ -76,7 +77,7 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
 RunReader::RunReader(const SlopeRun& run)
     : run_(run), run_times_(run), part_times_(run.parts.size()) {}
 
-// A single time is read as often as there are lanes.
+// A single time fills all lanes.
 std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
     static_assert(lanes == most);
     const auto time = [&](std::size_t i) { return times[i] / run_.body.time; };
@@ -111,19 +112,20 @@ std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace
     return count;
 }
 
-// The time since the start of the current half turn.
+// The time from the start of the current half turn.
 double RunReader::since_begin(double time) const {
     return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
 }
 
-// Whether such a time is well inside the half turn: then the answer does not depend on earlier
-// calls.
+// Whether a time from the start of the half turn is well inside it, so that the answer does not
+// depend on earlier calls.
 bool RunReader::is_well_inside(double since) const {
-    constexpr double margin = 1e-9;  // share of a half turn, many times a rounding
+    constexpr double margin = 1e-9;  // fraction of a half turn, far above rounding
     return since > margin * lasts_ && since < (1 - margin) * lasts_;
 }
 
-// Takes the parts before a time in the half turn off it; returns the part that it is in.
+// Subtracts the durations of the preceding parts from a time in the half turn; returns the part
+// that contains it.
 std::size_t RunReader::take_parts_off(double& since) const {
     std::size_t i = 0;
     for (; i + 1 < part_times_.size() && since > part_times_[i]; ++i) since -= part_times_[i];
@@ -131,7 +133,7 @@ std::size_t RunReader::take_parts_off(double& since) const {
     return i;
 }
 
-// Make the half turn that contains a time since `from` the current one.
+// Makes the half turn that contains a time after `from` the current one.
 void RunReader::move_to(DoubleDouble since) {
     constexpr int most_tries = 20;
     const double last = run_.is_complete() ? run_.half_turns - 1 : 0.0;

@@ -21,8 +21,8 @@ struct SpecificEnergy {
     double total() const { return kinetic + potential; }
 };
 
-// Energy of a state, with x = 0 at the start of its motion, and its largest constraint residual:
-// |f2| or |f3| over the long semi-axis, or |f4|.
+// The energy of a state, with x = 0 at the start of its motion, and its largest constraint
+// residual: |f2| or |f3| over the long semi-axis, or |f4|.
 struct Invariants {
     SpecificEnergy energy;
     double residual;
@@ -46,7 +46,7 @@ class RollingEquation {
         return acceleration(turned_[0], sin_theta, cos_theta, omega);
     }
 
-    // The rate of y. A quarter turn exchanges the axes of the body.
+    // The rate of y. Each quarter turn exchanges the axes of the body.
     [[gnu::always_inline]] Vector<2> operator()(double, const Vector<2>& y) const {
         if (!(std::abs(y[0]) <= largest_in_quarters)) {
             return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
@@ -90,7 +90,7 @@ class RollingEquation {
         return {acceleration(at.sin, at.cos, omega), along, up};
     }
 
-    // The contact force on a body with a mass.
+    // The contact force on a body of the given mass.
     ContactForce force(double mass, const Geometry& at, double omega) const {
         const auto [normal, friction] = centre(at, omega).force_per_mass;
         return {mass * normal, mass * friction};
@@ -114,8 +114,8 @@ class RollingEquation {
         double c2;  // a^2 - b^2
     };
 
-    // The acceleration by physics (18) times h^4, with one root and one division that does not wait
-    // for the root. With u = h^2, p = h h',
+    // The acceleration from physics (18) times h^4, with one root, and one division that need not
+    // wait for the root. With u = h^2, p = h h',
     //     theta'' (u^2 (k^2 + u) + u p^2)
     //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
     [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,
@@ -129,7 +129,7 @@ class RollingEquation {
     }
 
     Axes axes_;
-    Squares turned_[2];  // squares of the axes: after even quarter turns, after odd ones
+    Squares turned_[2];  // squares of the axes after even and after odd quarter turns
     double gyration2_;
     GroundGravity gravity_;
     double long_axis_;

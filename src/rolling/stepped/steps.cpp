@@ -15,7 +15,7 @@ namespace {
 
 constexpr int default_stages = 4;
 
-// Call action with the integrator of a motion.
+// Calls an action with the integrator of a motion.
 template <class Action>
 void with_integrator(const SteppedRolling& motion, Action action) {
     const RollingEquation& f = motion.equation;
@@ -32,7 +32,7 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     });
 }
 
-// The values of a series about `middle` at four places.
+// The values of a series about `middle` at four points.
 ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const double* places,
                                       double* values) {
     Quad z;
@@ -41,9 +41,9 @@ ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const
     std::memcpy(values, &z, sizeof z);
 }
 
-// The path of the centre at many angles, each mostly close to the one before: Taylor series of the
-// integral of h, physics (9), each about the middle of an interval. A body that rolls over meets
-// the same intervals in each half turn, so that they are kept.
+// The path of the centre at many angles, each usually close to the previous one, by Taylor series
+// of the integral of h, physics (9), about the middles of intervals. A body that rolls over passes
+// through the same intervals in each half turn, so they are kept.
 class PathSeries {
   public:
     explicit PathSeries(const Axes& axes)
@@ -51,13 +51,13 @@ class PathSeries {
           c2_(axes.c2()),
           off_axis_(std::atanh(std::fmin(axes.a, axes.b) / std::fmax(axes.a, axes.b))) {}
 
-    // centre_path(theta) to 2 ulp. Its bits depend neither on earlier calls nor on the sign.
+    // centre_path(theta) to 2 ulp. The bits depend neither on earlier calls nor on the sign.
     double operator()(double theta) {
         if (!here_.is_inside(theta)) move_to(theta);
         return value(here_.path, theta - here_.middle);
     }
 
-    // The same at n angles, side by side where four of them share an interval.
+    // The same at n angles, four side by side where they share an interval.
     void operator()(const double* thetas, std::size_t n, double* paths) {
         const auto is_here = [this](double theta) { return here_.is_inside(theta); };
         for (std::size_t i = 0; i < n;) {
@@ -73,15 +73,15 @@ class PathSeries {
 
   private:
     struct Interval {
-        double low = 1.0;  // an empty interval before the first call
+        double low = 1.0;  // the interval is empty before the first call
         double high = 0.0;
         double middle = 0.0;
         Series path{};
 
-        // Not at its ends, which move_to decides.
+        // False at the ends, which are left to `move_to`.
         bool is_inside(double theta) const { return low < theta && theta < high; }
 
-        // The same path at negative angles.
+        // The path at the opposite angles.
         Interval mirrored() const {
             Interval found{-high, -low, -middle, path};
             for (int k = 0; k <= series_order; k += 2) found.path[k] = -path[k];
@@ -106,15 +106,15 @@ class PathSeries {
         return known_.emplace_back(interval_at(angle));
     }
 
-    // Distance of an angle from the nearest root of h, at which its series ceases to converge.
+    // Distance of an angle from the nearest complex root of h: the radius of convergence there.
     double distance(double angle) const {
         const auto [rest, odd] = nearest_quarter(angle);
         const bool by_flat = odd == (c2_ < 0);
         return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
     }
 
-    // An interval about an angle by halving [n, n + 1), at most 1/3.5 as wide as its distance from
-    // a root of h: the 17 terms then leave out less than 1e-17 of h times the interval.
+    // An interval about an angle, from halving [n, n + 1) until it is at most 1/3.5 as wide as its
+    // distance from a root of h, so that 17 terms omit less than 1e-17 of h times the interval.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval interval;
@@ -148,13 +148,13 @@ class PathSeries {
 
     Axes axes_;
     double c2_;
-    double off_axis_;  // imaginary part of the roots of h, which lie beside the flat positions
+    double off_axis_;  // imaginary part of the roots of h, near the flat positions
     Interval here_;
     std::vector<Interval> known_;
 };
 
-// States at places of a motion. The places of a step share what is computed at its knot. x waits
-// for those of the next places, so that their paths are computed side by side.
+// States at points of a motion. The points of a step share what is computed at its knot. x is
+// computed later, for several points at once, so that their paths are computed side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -174,7 +174,7 @@ class StepView {
         if (++waiting_ == angles_.size()) finish();
     }
 
-    // Completes x of the samples that wait.
+    // Computes x for the waiting samples.
     void finish() {
         std::array<double, most_waiting> paths;
         path_(angles_.data(), waiting_, paths.data());
@@ -200,7 +200,7 @@ class StepView {
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
     double path_before_ = 0.0;                 // path of the half turns before the knot
-    std::array<double, most_waiting> angles_;  // beyond the half turns
+    std::array<double, most_waiting> angles_;  // angles beyond the half turns
     std::array<FlowSample*, most_waiting> samples_;
     std::size_t waiting_ = 0;
 };
@@ -263,7 +263,7 @@ std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluation
         survey(integrator, motion.steps, evaluations,
                [&](const Knot<2>& knot, const Vector<2>& change) {
                    const Vector<2> y = knot.y + (knot.carry + change);
-                   // The path of the centre, which changes the energy on a slope only.
+                   // The path of the centre, which changes the energy only on a slope.
                    const double x = f.is_level() ? 0.0
                                                  : knot.periods * motion.half_turn_path +
                                                        (path(y[0]) - path_before);

@@ -11,8 +11,8 @@
 
 namespace rolling_ellipse {
 
-// The angle is integrated as half turns, after which the ellipse is the same, and a remainder, so
-// that it keeps its digits however far the body rolls.
+// Rolling in steps. The angle is integrated as half turns, after which the ellipse looks the same,
+// and a remainder, so that it stays precise however far the body rolls.
 struct SteppedRolling {
     RollingEquation equation;
     Axes axes;
@@ -23,13 +23,13 @@ struct SteppedRolling {
     Steps<2> steps;
 };
 
-// Call action(tableau) with the tableau of an explicit method.
+// Calls action(tableau) with the tableau of an explicit method.
 template <class Action>
 auto with_tableau(Method method, const Action& action) {
     if (method == Method::rk4) return action(RungeKutta4{});
     if (method == Method::dopri5) return action(DormandPrince5{});
     if (method == Method::dop853) return action(DormandPrince853{});
-    // Validation lets no other method pass.
+    // Validation accepts no other method.
     throw std::logic_error("there is no integrator for the method '" + name(method) + "'");
 }
 
@@ -40,7 +40,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
-// Energies at points along a motion that took so many `evaluations`; constraint residuals are 0.
+// Energies at points along a motion that took this many `evaluations`; constraint residuals are 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse
