@@ -24,7 +24,7 @@ __all__ = sorted([*_PLACES, "__version__"])
 
 
 def __getattr__(name: str) -> _Any:
-    """Import a public name when it is first asked for; matplotlib, above all, loads slowly."""
+    """Import a public name on first access: matplotlib, above all, loads slowly."""
     if name == "__version__":
         from importlib.metadata import version
 

@@ -24,7 +24,7 @@ from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Options for arguments of `simulate` and `explore` that messages begin with
+# Options for those arguments of `simulate` and `explore` whose names begin error messages
 _OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
@@ -35,9 +35,9 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 on success; 1 if the motion could not be followed to its end (the summary is of the part
-        before), or an answer of `benchmark` is wrong; 2 (and one line) on bad input, or if a file
-        cannot be written. A StabilityWarning is a line, too.
+        0 on success; 1 if the motion could not be followed to its end (the summary covers the
+        part before), or an answer to `benchmark` is wrong; 2 (and one line) on bad input, or if a
+        file cannot be written. A StabilityWarning is printed as one line, too.
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {
@@ -50,7 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(typed[bool(command) :])
     try:
         with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("ignore")  # the summary says until when the model is valid
+            warnings.simplefilter("ignore")  # the summary states how long the model is valid
             warnings.simplefilter("always", StabilityWarning)
             code, message = action(options)
     except (ValueError, TypeError, OSError, ImportError, RuntimeError) as error:
@@ -68,7 +68,7 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
         if (path := getattr(options, name)) is not None:
             shell.require_file(f"--{name}", path)
     if options.save is not None:
-        film_suffix(options.save, _FPS, "--save")  # refuses a wrong name before any work
+        film_suffix(options.save, _FPS, "--save")  # rejects a wrong name before any work
     how = {name: getattr(options, name) for name in ("model", "method", "step")}
     trajectory = simulate(shell.chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
@@ -92,7 +92,7 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
 
 
 def _page(options: argparse.Namespace) -> tuple[int, str]:
-    """Write the page of `explore`, open it unless `--no-open` is given, and return 0 and a text."""
+    """Write the page of `explore`, open it unless `--no-open` is given; return 0 and a message."""
     explorer = explore(shell.chosen_scene(options), t_end=options.time, language=options.language)
     path = options.save
     if path is None:
@@ -107,7 +107,7 @@ def _page(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _examples(options: argparse.Namespace) -> tuple[int, str]:
-    """Write the notebooks and the tables, and return 0 and a text."""
+    """Write the notebooks and the tables, and return 0 and a message."""
     return 0, f"written           {len(examples(options.folder))} files"
 
 
@@ -123,7 +123,7 @@ def run() -> int:
     try:
         try:
             return main()
-        finally:  # argparse leaves by SystemExit
+        finally:  # argparse exits through SystemExit
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
@@ -136,7 +136,7 @@ def run() -> int:
             _complain(error)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
-        if stream is not None:  # Python flushes it once more at its end, and would fail
+        if stream is not None:  # Python flushes it again at exit, which would fail
             os.dup2(nowhere, stream.fileno())
     return code
 

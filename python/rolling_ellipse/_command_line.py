@@ -48,7 +48,7 @@ _BASE = (
 )
 _ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
-# For argparse -1e-3, -inf and -nan would be unknown options
+# argparse would take -1e-3, -inf and -nan for unknown options
 _NEGATIVE = re.compile(r"-(\d[\d_]*\.?[\d_]*|\.[\d_]+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.I)
 _SHOWN_EVENTS = 10
 _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
@@ -62,7 +62,7 @@ class OneLineParser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {' '.join(message.split())}\n")
 
     def print_help(self, file: Any = None) -> None:
-        """Print by `print`, which raises if nothing can be written; argparse is silent then."""
+        """Print with `print`, which raises if writing fails; argparse would be silent."""
         print(self.format_help(), end="", file=file)
 
 
@@ -130,9 +130,9 @@ def require_file(option: str, path: str) -> None:
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
-    """Return the report's scene with the arguments of the options.
+    """Return the report's scene changed by the options.
 
-    Its blow stays, unless --omega gives the start, or --press another blow.
+    Its blow is kept, unless --omega sets the start or --press gives another blow.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def benchmark_parser() -> OneLineParser:
 
 
 def act(options: argparse.Namespace) -> tuple[int, str]:
-    """Do what is asked for, and return the exit code and the text: 1 if an answer is wrong."""
+    """Run the requested action, and return the exit code (1 if an answer is wrong) and the text."""
     if options.action == "list":
         rows = [(one.id, one.question, ", ".join(one.tags)) for one in benchmark.problems()]
         return 0, text_table([("problem", "question", "needs"), *rows])
@@ -194,13 +194,13 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
         scores = _scores_of(options.mine, ladder=options.ladder, **chosen)
     text = repr(scores)
     if options.json:
-        plain = json.dumps(scores.records())  # has NaN, which JSON does not know
+        plain = json.dumps(scores.records())  # contains NaN, which JSON lacks
         text = json.dumps(json.loads(plain, parse_constant=lambda name: None), indent=2)
     return int(bool(scores.wrong)), text
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a function; what goes wrong in it is a sentence with its place."""
+    """Run an engine or a function; an error in it becomes a sentence that names the line."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
@@ -239,17 +239,17 @@ def _function(name: str) -> Any:
 
 
 def _failed(name: str, error: Exception, hint: str = "") -> RuntimeError:
-    """Return the error of somebody's code in one sentence, with its last place."""
+    """Return the error of a user's code in one sentence, with the line that raised it."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     place = f"line {last.lineno} of {Path(last.filename).name}"
     return RuntimeError(f"{name} raised {type(error).__name__} in {place}: {error}{hint}")
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
-    """Return the facts of a motion and the files written, by name; None for missing values."""
+    """Return the facts of a motion by name, files written included; None for missing values."""
     scene = trajectory.scene
     certificate, start = certify(scene), scene.initial_state
-    # the numbers of the certificate are about rolling: for other motions they are left out
+    # the certificate's numbers describe rolling, and are left out for other motions
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
     facts: dict[str, Any] = {
         "scene": _scene_facts(scene),
@@ -292,7 +292,7 @@ def _largest(values: np.ndarray[Any, Any]) -> float:
 
 
 def _period(scene: Scene) -> float | None:
-    with suppress(ValueError):  # a body that rolls downhill for ever has no period
+    with suppress(ValueError):  # a body that rolls downhill forever has no period
         return _finite(period(scene))
     return None
 
@@ -339,7 +339,7 @@ def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 
 def _repeat(facts: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
-    """Return the row with the time after which a motion repeats, or with why it never does."""
+    """Return the row with the time after which a motion repeats, or why it never does."""
     if facts["period"] is not None:
         return _REPEATS.get(facts["outcome"], "swing or turn"), f"{facts['period']:.12g} s"
     name = "swing or turn"

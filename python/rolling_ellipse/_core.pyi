@@ -76,10 +76,10 @@ class Quantity(enum.Enum):
     omega = 3
     contact_x = 4
 
-FIELDS: dict[str, dict[str, str]]  # units of the numbers of each struct, by name
+FIELDS: dict[str, dict[str, str]]  # units of the fields of each struct, by name
 COLUMNS: dict[str, tuple[str, ...]]  # of the tables that `simulate_table` takes and returns
 STATS: tuple[str, ...]
-MODELS: tuple[_settings.Model, ...]  # by their codes, as the others
+MODELS: tuple[_settings.Model, ...]  # in the order of their codes, as METHODS
 METHODS: tuple[_settings.Method, ...]
 STABILIZATIONS: tuple[_settings.Stabilization, ...]
 

@@ -4,7 +4,7 @@
 >>> course.mark("3.2", 1.91).mistake
 'sign and inertia'
 
-Answers are computed by the package, and so are those by usual mistakes: by making the mistake.
+The package computes the right answers, and those of usual mistakes by making the mistake.
 ``FILM`` is the film of sheet 10, with noise of 0.5 mm and 0.01 rad: t [s], x, z [m], theta [rad].
 """
 
@@ -54,8 +54,8 @@ class Mark:
 
     The mistake is "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (forgotten
     in a blow or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
-    (I_C omega_dot about the contact), "task 4.1" (the answer to it), "per mille" (nearly right) or
-    "other"; "sign and inertia" for both at once, "angle or task 4.1" where either leads there.
+    (I_C omega_dot about the contact), "task 4.1" (its answer), "per mille" (nearly right) or
+    "other"; "sign and inertia" if both were made, "angle or task 4.1" if either explains it.
     """
 
     task: str
@@ -68,7 +68,7 @@ class Mark:
 
 
 class _Mistake(NamedTuple):
-    """A way to a wrong answer: other data, another formula, or the answer times a factor."""
+    """A cause of a wrong answer: other data, another formula, or the answer times a factor."""
 
     name: str
     data: dict[str, float]
@@ -80,8 +80,8 @@ _DATA = json.loads(resources.files(__package__).joinpath("course.json").read_tex
 _TASKS = {known["number"]: Task(**known) for known in _DATA["tasks"]}
 FILM: dict[str, FloatArray] = {name: np.array(track) for name, track in _DATA["film"].items()}
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.4")  # blows and impacts with friction
-_RESTS = ("2.2", "2.4")  # releases, which at theta = 0 lead to no motion
-_WRONG = {  # formulas for tasks; velocities before the impact, 10.1, do not depend on inertia
+_RESTS = ("2.2", "2.4")  # releases, from which nothing moves at theta = 0
+_WRONG = {  # wrong formulas; in 10.1 the velocities before the impact do not depend on inertia
     "2.4": [_Mistake("small", {}, "small.period")],
     "3.2": [_Mistake("torque", {}, "torque.friction_force")],
     "3.3": [_Mistake("torque", {}, "torque.omega_dot")],
@@ -92,9 +92,9 @@ _WRONG = {  # formulas for tasks; velocities before the impact, 10.1, do not dep
     "10.4": [_Mistake("inertia", {}, "inertia.friction")],
 }
 _FILE = "ROLLING_ELLIPSE_IMPACTS"
-_ROUNDING = 1e-4  # relative; the fourth digit rounds by 5e-4 at most
-_MOST = 5e-3  # largest tolerance, and largest miss beyond it that is nearly right; relative
-_NOTHING = 1e-9  # what counts as 0, where a mistake leads there
+_ROUNDING = 1e-4  # relative; rounding the fourth digit changes at most 5e-4
+_MOST = 5e-3  # largest tolerance, and largest miss beyond it that counts as nearly right; relative
+_NOTHING = 1e-9  # tolerance where a mistake leads to 0
 _STEP = 1e-6  # relative step of the differences for the condition
 
 
@@ -106,8 +106,8 @@ def tasks() -> tuple[Task, ...]:
 def mark(task: str, answer: float) -> Mark:
     """Return the mark of an answer in SI units and radians.
 
-    It is right within half a unit of its fourth digit and 1e-4 of its condition, the root sum of
-    squares of its changes by relative changes of the data; at most 0.5 %. An answer from the film
+    It is right within half a unit of its fourth digit plus 1e-4 of its condition, the root sum of
+    squares of its changes per relative change of the data; at most 0.5 %. An answer from the film
     is right within twice its standard error.
 
     Raises
@@ -121,7 +121,7 @@ def mark(task: str, answer: float) -> Mark:
         If SciPy is not installed (sheet 10).
     """
     if not (isinstance(task, str) and task in _TASKS):
-        from difflib import get_close_matches  # for mistakes only: it takes a millisecond
+        from difflib import get_close_matches  # only on a mistake: it takes a millisecond
 
         near = get_close_matches(shown(task).strip("'"), _TASKS, 3, 0.5)
         hint = f"; near it: {', '.join(near)}" if near else ""
@@ -150,7 +150,7 @@ def mark(task: str, answer: float) -> Mark:
 def measured_impacts() -> tuple[FloatArray, FloatArray]:
     """Return the impacts of sheet 8 before, (4, n), and after, (3, n), as `impacts.fit` takes them.
 
-    The environment variable ROLLING_ELLIPSE_IMPACTS names their CSV file; else they are made.
+    The environment variable ROLLING_ELLIPSE_IMPACTS names their CSV file; else they are synthetic.
     """
     path, table, names = os.environ.get(_FILE), _DATA["impacts"], tuple(_DATA["impacts"])
     if path is not None:
@@ -165,9 +165,9 @@ def measured_impacts() -> tuple[FloatArray, FloatArray]:
 
 @cache
 def _known(task: str, path: str | None) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
-    """Return the relative tolerance before rounding, and answers with the mistakes that lead there.
+    """Return the relative tolerance before rounding, and answers with the mistakes behind them.
 
-    The right answer comes first; then those of mistakes, of pairs of them, and of other tasks.
+    The right answer comes first, then those of mistakes, of pairs of them, and of other tasks.
     """
     of = _TASKS[task]
     right = _answer(of)
@@ -209,14 +209,14 @@ def _usual(of: Task) -> list[_Mistake]:
 
 
 def _allowed(value: float, share: float) -> float:
-    """Return how far from a value an answer may be: half its fourth digit and the share of it."""
+    """Return how far an answer may be off: half a unit of its fourth digit, plus a share of it."""
     size = abs(value) or _NOTHING
     digit = 10.0 ** (math.floor(math.log10(size)) - 3)
     return min(digit / 2 + share * size, max(share, _MOST) * size)
 
 
 def _answer(of: Task, changes: dict[str, float] | None = None, source: str = "") -> float:
-    """Return the answer to a task with other data, or from another source than its own."""
+    """Return the answer to a task, with changed data or from another source if given."""
     d, (kind, _, name) = of.data | (changes or {}), (source or of.source).partition(".")
     blow = {key: d[key] for key in ("jx", "jz", "dx", "dz") if key in d}
     given: dict[str, Any] = {key: d[key] for key in SCENE_UNITS if key in d}
@@ -231,11 +231,11 @@ def _fit(s: Scene) -> Fit:
 
 @cache
 def _misfit(s: Scene) -> dict[str, float]:
-    """Return what fits the film best with k^2 twice too large: a slide all through the impact."""
+    """Return the best fit to the film with k^2 twice too large: it slides throughout the impact."""
     from scipy.optimize import least_squares
 
     right, free = _fit(s).scene, _DATA["fit"]["free"]
-    # from less friction: with more the contact may stick, and the fit ends in a worse minimum
+    # start from less friction: with more, the contact may stick and the minimum be worse
     right = right.replace(inertia=s.mass * (s.a**2 + s.b**2) / 2, friction=right.friction / 2)
     tracks = [(name, FILM[name], sigma) for name, sigma in _DATA["fit"]["sigma"].items()]
 
@@ -256,7 +256,7 @@ def _shape(s: Scene, theta: Any) -> Any:
 
 
 def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]:
-    """Return what M_C = I_C omega_dot leads to for rolling: omega_dot, F and N."""
+    """Return omega_dot, F and N of rolling as they follow from the wrong M_C = I_C omega_dot."""
     h, lead, bend = _shape(s, theta)
     down, along = s.gravity * math.cos(s.slope), s.gravity * math.sin(s.slope)
     spin = (along * h - down * lead) / (s.gyration2 + h**2 + lead**2)
@@ -274,7 +274,7 @@ def _friction_by_torque(s: Scene, flat: float) -> float:
 
 
 def _torque(s: Scene, d: dict[str, float], name: str) -> float:
-    """Return the answer that M_C = I_C omega_dot leads to."""
+    """Return the answer that follows from the wrong M_C = I_C omega_dot."""
     if name in ("omega_dot", "friction_force"):
         return float(_by_torque(s, s.theta, s.omega**2)[name == "friction_force"])
     if name in ("theta", "order"):
@@ -283,7 +283,7 @@ def _torque(s: Scene, d: dict[str, float], name: str) -> float:
     if name == "friction_to_roll_over":
         return _friction_by_torque(s, low)
     high = 3 * low
-    for _ in range(5):  # the last speed at which friction holds, on finer and finer grids
+    for _ in range(5):  # the largest speed at which friction holds, on finer and finer grids
         speeds, spacing = np.linspace(low, high, 81, retstep=True)
         holds = [speed for speed in speeds if _friction_by_torque(s, speed) <= s.friction]
         low = max(holds, default=math.nan)
@@ -292,7 +292,7 @@ def _torque(s: Scene, d: dict[str, float], name: str) -> float:
 
 
 def _steps_by_torque(s: Scene, end: float, step: float) -> float:
-    """Return theta at the end of steps of the classical Runge-Kutta method."""
+    """Return theta after steps of the classical Runge-Kutta method."""
     y = np.array([s.theta, s.omega])
     for _ in range(round(end / step)):
         k = [np.zeros(2)]
@@ -304,7 +304,7 @@ def _steps_by_torque(s: Scene, end: float, step: float) -> float:
 
 
 def _runs(name: str, run: Callable[[int], float]) -> float:
-    """Return theta at the end of a run, or the order that runs with 1, 2 and 4 parts show."""
+    """Return theta at the end of a run, or the order measured from runs with 1, 2 and 4 parts."""
     if name == "theta":
         return run(1)
     y1, y2, y4 = map(run, (1, 2, 4))

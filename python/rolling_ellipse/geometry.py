@@ -1,7 +1,8 @@
 """Geometry of an ellipse on a straight ground, as functions of its angle.
 
 ``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Angles may
-have any size, the semi-axes ``a`` and ``b`` [m] any order. Scalars give floats, arrays broadcast.
+be of any size, the semi-axes ``a`` and ``b`` [m] in any order. Scalars give floats, arrays
+broadcast.
 All functions raise ValueError for angles that are not finite, and for semi-axes that are not
 positive or whose ratio is outside [1e-3, 1e3].
 """
@@ -76,5 +77,5 @@ def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
     return _evaluate(_core.arc_length, theta, a, b)
 
 
-for _name in __all__:  # a call without the names of a and b says how to write it
+for _name in __all__:  # a call with unnamed a and b raises an error that shows the right call
     globals()[_name] = understood(globals()[_name])

@@ -45,13 +45,13 @@ _MEASURES: dict[Measure, Callable[[FloatArray], Any]] = {
     "median": lambda errors: np.median(errors, axis=-1),
     "rms": lambda errors: np.sqrt(np.mean(errors**2, axis=-1)),
 }
-_INTERVALS, _HALVINGS = 40, 8  # of the first grid along each coefficient, and of its step
-_STEPS = _INTERVALS * 2**_HALVINGS  # of the last grid
-_REACH = 2  # steps of a finer grid to either side of a leading point
-_LEADING = 50  # points with the least measures of the whole series
-_SPLITS = 25  # of a series into random halves: their scatter is known to a tenth
-_FEWEST = 20  # impacts of a series whose halves tell its errors
-_BLOCK = 2**20  # impacts that are predicted in one call
+_INTERVALS, _HALVINGS = 40, 8  # grid intervals per coefficient, and halvings of their size
+_STEPS = _INTERVALS * 2**_HALVINGS  # intervals of the last grid
+_REACH = 2  # steps of a finer grid on either side of a leading point
+_LEADING = 50  # number of best points for the whole series
+_SPLITS = 25  # number of random halvings of a series, enough for the scatter to a tenth
+_FEWEST = 20  # minimum number of impacts for estimating errors from halves of them
+_BLOCK = 2**20  # impacts predicted in one call
 
 
 def collide(
@@ -70,14 +70,14 @@ def collide(
     """Return the velocities just after the collision of a body that touches the ground.
 
     Coulomb friction acts during the whole collision: the slip may stop, stick or reverse. The laws
-    differ in the end of restitution. Simulations use "stronge"; the other laws are for comparison.
+    differ in when restitution ends. Simulations use "stronge"; the other laws are for comparison.
     All arguments broadcast by NumPy's rules.
 
     Parameters
     ----------
     theta, x_dot, z_dot, omega : float or array_like
         Angle [rad] and velocities [m/s, m/s, rad/s] just before. If the contact does not move into
-        the ground, they do not change.
+        the ground, they are returned unchanged.
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
@@ -115,8 +115,8 @@ def collide(
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s], T the kinetic energy.
 
-    For a difference of velocities it is a distance of two motions, with translation and rotation
-    weighted as in the kinetic energy.
+    For a difference of velocities it is a distance between two motions, with translation and
+    rotation weighted as in the kinetic energy.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     Raises
     ------
     ValueError
-        If a velocity is not finite, gyration2 not positive, or shapes do not broadcast.
+        If a velocity is not finite, gyration2 is not positive, or shapes do not broadcast.
     """
     arguments = {"x_dot": x_dot, "z_dot": z_dot, "omega": omega, "gyration2": gyration2}
     shape, (x_dot, z_dot, omega, k2) = broadcast(**arguments)
@@ -156,8 +156,8 @@ class FittedImpacts(Listed):
     errors : ndarray, shape (n,)
         Kinetic speed of predicted minus measured velocities after each impact [m/s].
     restitution_error, friction_error : float
-        Standard errors: the scatter of the fits to 50 random halves of the series, or the range of
-        coefficients that fit equally well over sqrt(12) if that is more. Friction is compared by
+        Standard errors: the scatter of the fits to 50 random halves of the series, or, if larger,
+        the range of equally good coefficients over sqrt(12). Friction is compared by
         its angle. Infinite for fewer than 20 impacts, and where infinite friction fits as well.
     measured, predicted : ndarray, shape (3, n)
         Velocities after each impact [m/s, m/s, rad/s].
@@ -191,7 +191,7 @@ class FittedImpacts(Listed):
         )
 
     def plot(self, path: Any = None, *, figure: Any = None, figsize: Any = None) -> FitChart:
-        """Draw predicted over measured velocities and, below, what is left over.
+        """Draw predicted over measured velocities and, below, the residuals.
 
         Parameters
         ----------
@@ -217,15 +217,15 @@ def fit(
 
     The error of an impact is the kinetic speed of predicted minus measured velocities after it.
     Its median, or root mean square, is evaluated on a grid over restitution (0 to 1) and the angle
-    of friction (0 to a right angle, which is infinite friction). Eight times the step is halved, to
+    of friction (0 to a right angle, which is infinite friction). The step is halved eight times, to
     1e-4, about the 50 best points of the series and the best of each of 50 random halves of it: the
-    median has many local minima, and those that compete lead in some half. Each half chooses among
-    all points that were tried. Halves scatter about the series as the series does about the truth,
-    exactly so for a linear least-squares fit [1]_.
+    median has many local minima, and every serious candidate is the best of some half. Each half
+    chooses among all points tried. Halves scatter about the series as the series does about the
+    truth, exactly so for a linear least-squares fit [1]_.
 
-    The halves are the same every time and depend on the sizes of the numbers, not on the order of
-    the impacts or on their sides: neither changes the answer. A coefficient that the impacts do not
-    determine is arbitrary: if all of them stick, they only bound friction from below.
+    The halves are the same every time and depend only on the magnitudes of the values: neither
+    the order of the impacts nor mirroring them changes the answer. A coefficient that the impacts
+    do not determine is arbitrary: if all of them stick, they only bound friction from below.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def fit(
     law : {"stronge", "poisson", "newton"}
         See `collide`.
     minimise : {"median", "rms"}
-        A few wild measurements do not move the median.
+        A few outliers do not affect the median.
 
     Returns
     -------
@@ -250,7 +250,7 @@ def fit(
     Raises
     ------
     ValueError
-        If a number is out of its range, there is no impact or one does not move into the ground.
+        If a number is out of its range, there is no impact, or one does not move into the ground.
 
     References
     ----------
@@ -283,7 +283,7 @@ def fit(
     halves = _halves(order)
 
     def measures(points: FloatArray) -> FloatArray:
-        """Return the measure of all impacts, then that of each half, at some points."""
+        """Return the measures at some points: of all impacts, then of each half."""
         restitution, friction = points[0, :, None], _friction(points[1])[:, None]
         velocities = collide(*start, **law_of, restitution=restitution, friction=friction)
         off = errors(velocities, end[:, None])
@@ -301,7 +301,7 @@ def fit(
 
 
 def _halves(places: Any) -> list[Any]:
-    """Return the places of both halves of each split; a single impact has none."""
+    """Return the indices in both halves of each split; a single impact has none."""
     drawn = np.random.default_rng(0).random((_SPLITS, places.size))
     splits = places[np.argsort(drawn, axis=1, kind="stable")]
     return [half for split in splits for half in np.array_split(split, 2) if places.size > 1]
@@ -314,9 +314,9 @@ def _friction(angle: FloatArray) -> FloatArray:
 def _search(
     measures: Callable[[FloatArray], FloatArray], block: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points tried, (2, k), restitution and friction angle, and their measures, (m, k).
+    """Return the points tried (restitution and friction angle), (2, k), and their measures, (m, k).
 
-    Points are numbers of the last grid, restitution first, then angle.
+    Points are numbered on the last grid, restitution first, then angle.
     """
     step = 2**_HALVINGS
     lines, offsets = np.arange(0, _STEPS + 1, step), np.arange(-_REACH, _REACH + 1)
@@ -343,19 +343,19 @@ def _points(numbers: Any) -> FloatArray:
 
 
 def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, float]:
-    """Return those of restitution and friction, by the measures of the points that were tried."""
+    """Return the errors of restitution and friction from the measures of the points tried."""
     whole, best = table[0], points[:, np.argmin(table[0])]
     own = points[:, np.argmin(table[1:], axis=1)]
     alike = points[:, whole <= whole.min() * (1 + 1e-9)]
     step = np.array([1.0, math.pi / 2]) / _STEPS
     deviations = np.maximum(own.std(axis=1, ddof=1), (np.ptp(alike, axis=1) + step) / 12**0.5)
-    stretch = 1 + math.tan(best[1]) ** 2  # of friction over its angle
+    stretch = 1 + math.tan(best[1]) ** 2  # derivative of friction by its angle
     endless = alike[1].max() == math.pi / 2
     return float(deviations[0]), math.inf if endless else float(deviations[1] * stretch)
 
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
-    """Return `count` columns, one number an impact, as the rows of an array of finite numbers."""
+    """Return `count` columns of one number per impact as the rows of a finite array."""
     rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
         raise ValueError(

@@ -12,12 +12,12 @@
 ``slip``        pushed along at 3 m/s without rotation, friction 0.2: it slides first
 ``jump``        5.2 rad/s lying flat, friction 1: too fast to stay on the ground
 ``drop``        dropped from 1 m above touching at 0.5 rad, friction 1
-``bounce``      the same, elastic and without friction
+``bounce``      as ``drop``, but elastic and without friction
 ==============  ====================================================================================
 
 They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are two
-of those; others have finite friction, round heights, or are farther from limits, so that any
-simulator can be set up and rounding does not decide (docs/benchmark.md compares them).
+of those; the others have finite friction, round heights, or are farther from limits, so that any
+simulator can be set up and rounding decides nothing (docs/benchmark.md compares them).
 """
 
 from __future__ import annotations

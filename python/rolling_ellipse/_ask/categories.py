@@ -6,7 +6,7 @@ class ValidityWarning(UserWarning):
 
 
 class StabilityWarning(UserWarning):
-    """Warning: the computed motion has lost energy, or misses its constraints."""
+    """Warning: the computed motion has lost energy or drifts off its constraints."""
 
 
 class CompletenessWarning(UserWarning):

@@ -1,8 +1,8 @@
-"""Conversion of arguments to doubles; anything else is refused with the name of the argument.
+"""Conversion of arguments to doubles; anything else is rejected with the name of the argument.
 
 Numbers are real and within the range of doubles: those of Python and NumPy (also arrays without
 axes), Decimals and Fractions. Text, complex numbers, times, masked entries and quantities with
-units are refused. An array of one number is not a number.
+units are rejected. An array with one element does not count as a number.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # largest number of characters of a value in a message
-_FEW = 64  # numbers of a list that is looked at in one go: a longer one costs no more otherwise
+_FEW = 64  # longest list for the fast path; for a longer one it would save nothing
 _FLOATS = {float}
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
-_PIECE = 2**17  # numbers converted at a time, in 10 ms at most: Ctrl-C acts in between
+_PIECE = 2**17  # numbers converted at a time, within 10 ms: Ctrl-C acts between pieces
 _SLICED = (list, tuple, range)
-_TEXT = (str, bytes, bytearray, memoryview)  # types of sequences that hold no numbers
-_PLAIN = frozenset({float, int, bool, np.float64})  # types of numbers that need no further check
+_TEXT = (str, bytes, bytearray, memoryview)  # sequence types that hold no numbers
+_PLAIN = frozenset({float, int, bool, np.float64})  # number types that need no further check
 _UNITS = ("unit", "units", "dimensions")
 
 _short = reprlib.Repr()
@@ -47,11 +47,11 @@ _short.maxlist = _short.maxtuple = _short.maxdict = _short.maxset = _short.maxde
 
 
 def number(name: str, value: Any) -> float:
-    """Return a number as a float; it must not be masked, have units, or be beyond doubles."""
+    """Return a number as a float; masks, units and values beyond doubles are rejected."""
     if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
-        with suppress(OverflowError):  # an int beyond doubles, refused below
+        with suppress(OverflowError):  # an int beyond doubles, rejected below
             return float(value)
     double = _doubles(name, value)
     if double is None or double.ndim:
@@ -91,7 +91,7 @@ def whole_within(name: str, value: Any, most: int) -> int:
 
 
 def worker_count(workers: int) -> int:
-    """Return the number of threads that an int ``workers`` asks for; -1: one for each core."""
+    """Return the number of threads that ``workers`` requests; -1: one per core."""
     count = whole("workers", workers)
     if count == -1:
         return min(os.cpu_count() or 1, _MOST_WORKERS)
@@ -110,9 +110,9 @@ def flag(name: str, value: Any) -> bool:
 
 
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a contiguous float64 array; it raises the errors of `number`.
+    """Return ``value`` as a contiguous float64 array, with the errors of `number`.
 
-    NumPy's functions may differ in the last bits for another layout.
+    NumPy's results may differ in the last bits for another layout.
     """
     doubles = _doubles(name, value)
     if doubles is None:
@@ -122,7 +122,7 @@ def array(name: str, value: Any) -> FloatArray:
 
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
-    """Return ``value`` as a float64 array, or None if it does not consist of numbers."""
+    """Return ``value`` as a float64 array, or None if some of it is not numeric."""
     kind = type(value)
     if kind is float or (kind is list and len(value) <= _FEW and {*map(type, value)} == _FLOATS):
         return np.array(value)
@@ -136,7 +136,7 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
-    """Return a value without masks and units as `_doubles` does; a long list piece by piece."""
+    """Do the work of `_doubles` for a value without masks and units, in pieces for a long list."""
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
@@ -150,7 +150,7 @@ def _converted(name: str, value: Any) -> FloatArray | None:
         doubles = np.array(vector("d", numbers.ravel().tolist())).reshape(numbers.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
-    except (TypeError, ValueError):  # NumPy refuses ragged sequences and signalling NaNs
+    except (TypeError, ValueError):  # NumPy rejects ragged sequences and signalling NaNs
         return None
     require(name, _KNOWN, numbers, ~np.isinf(doubles) | (numbers == doubles))
     return doubles
@@ -164,20 +164,20 @@ def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
         parts = [_converted(name, entry) for entry in entries]
     known = [part for part in parts if part is not None]
     if len(known) == len(parts):
-        with suppress(ValueError):  # NumPy refuses ragged sequences
+        with suppress(ValueError):  # NumPy rejects ragged sequences
             return np.concatenate(known) if step > 1 else np.stack(known)
     return None
 
 
 def _size(value: Any) -> int:
-    """Return the number of numbers in nested lists, if all entries of a list are like its first."""
+    """Return how many numbers nested lists hold, assuming that entries are like the first one."""
     if isinstance(value, _SLICED):
         return len(value) * _size(value[0]) if value else 0
     return value.size if type(value) is np.ndarray else 1
 
 
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
-    """Yield the pieces of an array in C order: index of the first number, and the numbers."""
+    """Yield an array piece by piece, in C order: the index of its first number, and the piece."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
     for first in range(0, values.size, _PIECE):
         yield first, flat[first : first + _PIECE]
@@ -201,7 +201,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
             if _PLAIN.issuperset(map(type, piece)):
                 continue
             nested = [entry for entry in piece if type(entry) in _SLICED]
-            if nested:  # in one call for all: there may be a million pairs
+            if nested:  # one call for all entries: there may be a million pairs
                 if axes == _MOST_AXES:
                     deep = shown(nested[0])
                     raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {deep}")
@@ -223,8 +223,8 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
 def _has_units(value: Any) -> bool:
     """Whether an object carries units, as quantities of pint, astropy, unyt and brian2 do.
 
-    The attribute belongs to its class or to its own `__dict__`: attributes of pandas and xarray
-    objects may be labels of the user. A tuple holds the names of the axes of a netCDF4 variable.
+    Only attributes of its class and of its `__dict__` count: other attributes of pandas and xarray
+    objects may be the user's labels. A tuple holds the axis names of a netCDF4 variable.
     """
     own = getattr(value, "__dict__", ())
     return any(
@@ -238,13 +238,13 @@ def shown(value: Any) -> str:
     """Return ``repr(value)``, cut to `_LONGEST` characters for a message."""
     try:
         text = _short.repr(value)
-    except Exception:  # for example, an int of more digits than Python writes
+    except Exception:  # for example an int with more digits than Python prints
         return f"an object of type {type(value).__name__}"
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
 def require(name: str, requirement: str, values: Any, holds: Any) -> None:
-    """Raise ValueError with the first value for which `holds` is False, if there is one."""
+    """Raise ValueError showing the first value for which `holds` is False, if any."""
     if not holds.all():
         raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]!s}")
 
@@ -282,7 +282,7 @@ def require_together(**arguments: Any) -> None:
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Return the arguments' common shape, and a 1-D array of each: all its elements, or its one."""
+    """Return the common shape, and each argument as a 1-D array: broadcast, or its one element."""
     arrays = {name: array(name, value) for name, value in arguments.items()}
     shape = common_shape(arrays, slice(None))
     return shape, [
@@ -292,19 +292,19 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
 
 
 def shaped(flat: Any, shape: tuple[int, ...]) -> Any:
-    """Return a 1-D array, or each array of a tuple, in the given shape; if that is (), a float."""
+    """Return a 1-D array, or each array of a tuple, in the given shape; a float for shape ()."""
     if isinstance(flat, tuple):
         return tuple([shaped(values, shape) for values in flat])
     return float(flat[0]) if shape == () else flat.reshape(shape)
 
 
 def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> Any:
-    """Return what a function of the core gives for arguments that broadcast, in their shape.
+    """Return the result of a core function for arguments that broadcast, in their common shape.
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
     settings. A ``gyration2`` of None is that of uniform discs of semi-axes ``a`` and ``b``. An
-    error names an element of an array by its indices: ``a[3] must be ...``. A wrong number beside
-    an empty array is refused, too.
+    error names an array element by its indices: ``a[3] must be ...``. A wrong number is rejected
+    even if another argument is empty.
     """
     given = {k: value for k, value in arguments.items() if k != "gyration2" or value is not None}
     shape, columns = broadcast(**given)
@@ -321,7 +321,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
-    """Return an argument, or one number that fits the others in place of an empty array."""
+    """Return an argument; for an empty array, one number that is valid with the others' values."""
     if known[name].size:
         return known[name]
     lengths = [*(known[axis] for axis in ("a", "b")), np.ones(1)]
@@ -331,7 +331,7 @@ def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
-    """Return a message of the core about ``a[7]`` with the indices in `shape` in place of 7."""
+    """Return a core message about ``a[7]`` with 7 replaced by the indices in `shape`."""
     if len(shape) < 2:
         return message
     name, rest = message.split(" ", 1)
@@ -344,7 +344,7 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
     """Return k^2 = I/m = (a^2 + b^2)/4 of uniform discs with semi-axes a, b [m^2]."""
-    with np.errstate(over="ignore"):  # the core refuses such an a or b by name
+    with np.errstate(over="ignore"):  # the core rejects such an a or b by name
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 
@@ -364,7 +364,7 @@ def file_name(name: str, value: Any) -> str:
     if not isinstance(path, str):
         raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
     encoded = b""
-    with suppress(UnicodeEncodeError):  # a lone surrogate, which no file name can have
+    with suppress(UnicodeEncodeError):  # a lone surrogate, which no file name can contain
         encoded = os.fsencode(path)
     if not encoded or 0 in encoded:
         raise ValueError(f"{name} must name a file, got {path!r}")
@@ -372,7 +372,7 @@ def file_name(name: str, value: Any) -> str:
 
 
 def choice(name: str, value: Any, valid: tuple[_Name, ...]) -> _Name:
-    """Return the valid name that ``value`` is in any case, or raise ValueError with a near one."""
+    """Return the valid name that ``value`` spells in any case; a ValueError suggests a near one."""
     word = value.casefold() if isinstance(value, str) else ""
     for known in valid:
         if word == known.casefold():

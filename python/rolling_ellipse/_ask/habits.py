@@ -1,4 +1,4 @@
-"""Names that people type by habit, with the names that they mean here."""
+"""Names that people type out of habit, with the names that they mean here."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ _Found = TypeVar("_Found")
 
 
 def meant(word: str, names: Iterable[str]) -> str:
-    """Return the end of a message about an unknown name, with the names that may be meant.
+    """Return the end of a message about an unknown name: the names that may be meant.
 
-    They are ours for a habit, else the one of the most similar letters, else those with a part.
+    These are our names for a habitual one, or else the name with the most similar spelling, or else
+    those that share a part with it.
     """
-    from difflib import get_close_matches  # for mistakes only: it takes a millisecond
+    from difflib import get_close_matches  # only on a mistake: it takes a millisecond
 
     known = {name.casefold(): name for name in names}
     near = [name for name in MEANT.get(word, "").split() if name in known]
@@ -40,7 +41,7 @@ def meant(word: str, names: Iterable[str]) -> str:
 
 
 def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Let the TypeError of a call that does not fit name the arguments meant, or show the call."""
+    """Make the TypeError of a wrong call name the arguments meant, or show the signature."""
 
     @wraps(function)
     def call(*given: _Given.args, **named: _Given.kwargs) -> _Found:
@@ -51,7 +52,7 @@ def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
             names = [each.name for each in takes]
             unknown = [meant(name, names) for name in named if name not in names]
             if not unknown and (error.__traceback__ is None or error.__traceback__.tb_next):
-                raise  # of the function itself
+                raise  # it comes from inside the function
             plain = Signature([each.replace(annotation=Parameter.empty) for each in takes])
             hint = "".join(unknown) or f"; it is called as {function.__name__}{plain}"
             wrong = str(error).rpartition("() ")[2]  # without the name of an inner function

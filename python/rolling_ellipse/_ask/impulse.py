@@ -22,15 +22,15 @@ class Impulse:
     """An impulse applied to a point of the body, or many impulses.
 
     Arrays that broadcast make one impulse for each element of their common shape; `outcome` takes
-    many, a Scene one. Arrays are kept as read-only copies. Two are equal if their numbers and the
-    shapes of their arrays are.
+    many, a Scene one. Arrays are kept as read-only copies. Two impulses are equal if their values
+    and array shapes are equal.
 
     Parameters
     ----------
     jx, jz : float or array_like
-        Components along the ground and away from it [N s], by name: without it, as in
-        ``Impulse(48, 1.5)``, they look like the force and the distance of `press`, and a
-        DeprecationWarning says so.
+        Components along the ground and away from it [N s], given by name: unnamed, as in
+        ``Impulse(48, 1.5)``, they look like the force and distance of `press`, and a
+        DeprecationWarning is issued.
     dx, dz : float or array_like
         Point of attack relative to the centre, in ground axes [m].
 
@@ -77,7 +77,7 @@ class Impulse:
     def press(cls, F: Any, d: Any) -> Impulse:
         """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
 
-        A negative F is a pull, which no touch can give; it is returned with a ValidityWarning.
+        A negative F is a pull, which no contact can exert; it gives a ValidityWarning.
 
         Parameters
         ----------
@@ -100,7 +100,7 @@ class Impulse:
     def _values(self) -> tuple[Any, ...]:
         """Return the values that decide equality: floats, and the shape and bits of arrays."""
         return tuple(
-            # + 0.0 turns -0.0 into 0.0, which is equal but has other bits
+            # + 0.0 turns -0.0 into 0.0, which is equal but differs in its bits
             (value.shape, (value + 0.0).tobytes()) if isinstance(value, np.ndarray) else value
             for value in vars(self).values()
         )
@@ -119,11 +119,11 @@ class Impulse:
 
 
 def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
-    """Warn of components without their names, which may be meant as those of `press`."""
+    """Warn about unnamed components, which may be meant as the arguments of `press`."""
 
     @wraps(make)
     def init(*given: _Given.args, **named: _Given.kwargs) -> None:
-        if len(given) > 1:  # the first is the impulse itself
+        if len(given) > 1:  # the first is self
             message = (
                 f"Impulse({', '.join(map(shown, given[1:]))}) has the components jx, jz [N s]: "
                 "write their names, or Impulse.press(F, d) for a press F at the distance d"

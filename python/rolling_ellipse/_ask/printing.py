@@ -1,4 +1,4 @@
-"""Printing of values: tables of text, of HTML without colours of its own, and of other packages."""
+"""Printing of values: tables as text, as HTML without its own colours, and in other packages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 from .._core import EventKind, Mode, Outcome, Validity
 
 Row = tuple[str, ...]
-# Least size [m] of bodies whose lengths have the unit, how many of it are 1 m, and its name
+# For each unit of length: the smallest body [m] it is used for, units per metre, and its name
 _LENGTHS = (500.0, 1e-3, "km"), (0.05, 1.0, "m"), (5e-5, 1e3, "mm"), (0.0, 1e6, "µm")
 _Enum = TypeVar("_Enum", bound=type[enum.Enum])
 
@@ -26,12 +26,12 @@ def _dotted(value: enum.Enum) -> str:
 
 
 def _formatted(value: enum.Enum, spec: str) -> str:
-    """Format an enum: as its code by a number format (``f"{mode:d}"``), else as its name."""
+    """Format an enum: as its code for a number format (``f"{mode:d}"``), else as its name."""
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 
 def equal_to_names(kind: _Enum) -> _Enum:
-    """Let the members of an enum equal their names, too; the hashes stay as they are."""
+    """Make the members of an enum equal to their names, too; hashes do not change."""
     same, differs = kind.__eq__, kind.__ne__
 
     def equal(member: Any, other: object) -> bool:
@@ -64,7 +64,7 @@ _IN_ASCII = {
 
 
 def _without_code(error: UnicodeError) -> tuple[str, int]:
-    """Return ASCII for what an encoding lacks, and the next place: an error handler of codecs."""
+    """Return ASCII for characters that a codec lacks, and where to resume: its error handler."""
     assert isinstance(error, UnicodeEncodeError)
     lost = normalize("NFD", error.object[error.start : error.end])
     return "".join(_IN_ASCII.get(each, ascii(each)[1:-1]) for each in lost), error.end
@@ -74,16 +74,16 @@ codecs.register_error("rolling_ellipse", _without_code)
 
 
 def printable(text: str) -> str:
-    """Return a text that standard output can print: ASCII for characters that it has no code for.
+    """Return a text that standard output can print: ASCII for characters that it cannot encode.
 
-    Consoles of ASCII, Latin-1 and cp1252 raise an error for an arrow otherwise.
+    Consoles in ASCII, Latin-1 and cp1252 would raise an error for an arrow.
     """
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "rolling_ellipse").decode(encoding)
 
 
 def brief(value: Any) -> str:
-    """Return a value as text: floats in six digits, enums by name, arrays by size."""
+    """Return a value as text: floats to six digits, enums by name, arrays by size."""
     if isinstance(value, enum.Enum):
         return value.name
     if isinstance(value, float):
@@ -106,7 +106,7 @@ def with_unit(value: Any, unit: str) -> str:
 
 
 def length_unit(size: float) -> tuple[float, str]:
-    """Return how many of the unit that suits lengths of about `size` [m] are 1 m, and its name."""
+    """Return the unit that suits lengths of about `size` [m]: units per metre, and its name."""
     return next((per_metre, name) for least, per_metre, name in _LENGTHS if size >= least)
 
 
@@ -118,11 +118,11 @@ def text_table(rows: Sequence[Row]) -> str:
 
 
 def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
-    """Return an HTML table without colours of its own; the first cell of a row is its heading.
+    """Return an HTML table without its own colours; the first cell of a row is its heading.
 
     All text is escaped.
     """
-    from html import escape  # imported here, since it is slow to load
+    from html import escape  # imported here because it loads slowly
 
     parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if head:
@@ -152,7 +152,7 @@ class Listed:
 
 
 def required(package: str, method: str, extra: str = "data") -> Any:
-    """Return an imported package of an extra; an ImportError names that extra."""
+    """Import and return a package of an extra; an ImportError names that extra."""
     try:
         return importlib.import_module(package)
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""Progress of long work on stderr: a bar of tqdm's where it is installed, else a line."""
+"""Progress of long work on stderr: a tqdm bar where tqdm is installed, else a line."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ Report = Callable[[int, int | None], Any]
 
 @contextmanager
 def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
-    """Yield a function to be called with two counts: done, and in all (None: unknown).
+    """Yield a function to be called with two counts: done, and total (None: unknown).
 
-    It is `progress` itself; True makes a bar with `name` before it, False does nothing.
+    A callable `progress` is yielded unchanged. True gives a function that shows a bar labelled
+    `name`, False one that does nothing.
     """
     if callable(progress):
         yield progress

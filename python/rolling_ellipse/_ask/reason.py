@@ -1,4 +1,4 @@
-"""Sentences of the core in English, for reasons; and blows in words."""
+"""The core's reasons and the numbers of blows, as English text."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ASCII = str.maketrans({"θ": "theta", "°": " deg", "é": "e", "−": "-", "∞
 
 
 def in_words(sentences: Sequence[Sentence]) -> str:
-    """Return the sentences of keys with their numbers, in letters that every console has."""
+    """Return the text for keys and their values, in characters that every console can show."""
     return joined(table("en"), sentences, 6).translate(_ASCII)
 
 

@@ -1,4 +1,4 @@
-"""Dataclass helpers: pickles of fields only, and values that are computed when first asked for."""
+"""Dataclass helpers: pickles of fields only, and values that are computed on first access."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
-_new, _set = object.__new__, object.__setattr__  # found here, an attribute is found faster
+_new, _set = object.__new__, object.__setattr__  # bound once: this speeds up each use
 
 
 class cached_property(Generic[_Value]):
-    """A property that is computed when first asked for, and then kept in the object's `__dict__`.
+    """A property that is computed on first access, and then kept in the object's `__dict__`.
 
-    The one of functools has a single lock for all objects up to Python 3.11: threads wait for each
-    other, and a process forked meanwhile waits for ever. Here two threads may compute the same
-    value; both get the one that was kept first.
+    Up to Python 3.11 that of functools has a single lock for all objects: threads wait for each
+    other, and a process forked meanwhile hangs forever. Here two threads may compute the same
+    value; both get the one that was stored first.
     """
 
     def __init__(self, compute: Callable[[Any], _Value]) -> None:
@@ -39,8 +39,8 @@ class cached_property(Generic[_Value]):
 class FieldsOnly:
     """A base of dataclasses: pickles and deep copies hold the fields, not the cached values.
 
-    Cached values are computed again when asked for: objects of the core cannot be pickled, and
-    arrays that follow from the fields would only make a pickle larger.
+    Cached values are recomputed on access: objects of the core cannot be pickled, and arrays that
+    follow from the fields would only make a pickle larger.
     """
 
     def __getstate__(self) -> dict[str, Any]:
@@ -54,16 +54,16 @@ class FieldsOnly:
 
 
 def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
-    """Make an object of a dataclass from valid values, three times as fast as with checks."""
+    """Make a dataclass object from valid values, three times as fast as with checks."""
     made: _Owner = _new(kind)
     _set(made, "__dict__", values)
     return made
 
 
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
-    """Let fields of a class that `trusted` leaves out be computed when first asked for.
+    """Compute, on first access, the fields that `trusted` leaves out of an object of this class.
 
-    They are set after the class is made: a dataclass would take them for defaults.
+    Call it once the class exists: inside the class, a dataclass would take them for defaults.
     """
     for name, find in finds.items():
         found: cached_property[Any] = cached_property(find)

@@ -20,30 +20,29 @@ from .words import table
 from .xml import to_mjcf, to_sdf
 
 STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
-_DEGREES = {"theta": 15.0, "omega": 45.0}  # whose multiples are more likely in degrees
+_DEGREES = {"theta": 15.0, "omega": 45.0}  # multiples of these are probably meant in degrees
 
 
 @dataclass(frozen=True, repr=False)
 class InitialState(Listed):
-    """The state just after the applied impulse.
+    """The state just after the impulse is applied.
 
     Attributes
     ----------
     theta, omega, x, z, x_dot, z_dot : float
         Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
     mode : Mode
-        Motion from now on, as the contact with its friction allows it: ROLLING, SLIDING, FLIGHT or
-        REST.
+        Motion from now on, as contact and friction allow it: ROLLING, SLIDING, FLIGHT or REST.
     reaction_x, reaction_z : float
         Impulse of the ground on the body at t = 0 [N s]: against a blow, or (with infinite
         friction) against a slip.
     free_omega : float
         Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
     energy_lost : float
-        Energy lost in an impact, or with a slip that infinite friction removes [J]. 0 for a blow:
-        its work depends on the course of the forces in time.
+        Energy lost in an impact, or when infinite friction removes a slip [J]. 0 for a blow, whose
+        work depends on how the forces vary in time.
     reason : str
-        One sentence on the effect of the blow, the motion after it, and why.
+        One sentence: the effect of the blow, the motion after it, and why.
     """
 
     _units: ClassVar[dict[str, str]] = _core.FIELDS["InitialState"]
@@ -69,17 +68,17 @@ class InitialState(Listed):
 
 
 class _Nothing(TypedDict):
-    """Arguments beyond those with a name: a type checker accepts none."""
+    """Arguments other than the named ones: a type checker accepts none."""
 
 
 @dataclass(frozen=True, init=False, repr=False)
 class Scene(FieldsOnly, Listed):
     """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
 
-    SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
-    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all their arguments are;
-    `repr` is a call that makes an equal one. Each speed, height and blow may bring up to
-    1e12 m g max(a, b) of energy; a motion down a slope may gain more.
+    SI units, radians; theta is positive clockwise, so that rolling forwards increases x. At
+    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all their arguments are
+    equal; `repr` returns a call that makes an equal scene. Each speed, height and blow may
+    contribute an energy of up to 1e12 m g max(a, b); a motion down a slope may gain more.
 
     Parameters
     ----------
@@ -90,16 +89,16 @@ class Scene(FieldsOnly, Listed):
     inertia : float, optional
         Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
         None, a uniform disc, m (a^2 + b^2)/4. ``scene.mass * scene.gyration2`` is always its
-        number.
+        value.
     slope : float
-        Angle of the ground [rad], downwards in x; ``|slope| <= 1.5``.
+        Angle of the ground [rad], descending towards +x; ``|slope| <= 1.5``.
     friction : float
         Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
         as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.
-        For an initial slip it is not that limit: where a large coefficient would press the body
+        An initial slip does not follow that limit: where a large coefficient would press the body
         into the ground until it jams, an impulse of the ground removes the slip at t = 0, which
         costs energy (`initial_state.energy_lost`). A slip the other way continues with N = 0.
-        Without friction a moving contact is SLIDING, also that of a circle.
+        Without friction a moving contact is SLIDING, even that of a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float
@@ -124,10 +123,10 @@ class Scene(FieldsOnly, Listed):
 
     Notes
     -----
-    A state that a motion returns (a sample, an end, the state after an event) is a start: its
-    numbers are accepted, and the motion continues in the mode that follows, without the event that
-    has happened. Where a start is at the limit of its mode, abs(F) = mu N, N = 0 or slip 0 to
-    within eight roundings, the next moment decides, without an event.
+    Any state that a motion returns (a sample, an end, the state after an event) is a valid start:
+    the motion continues in the mode that follows, without repeating the event. Where a start is at
+    the limit of its mode, abs(F) = mu N, N = 0 or slip 0 to within eight roundings, the motion just
+    afterwards decides the mode, without an event.
     """
 
     _units: ClassVar[dict[str, str]] = SCENE_UNITS
@@ -149,7 +148,7 @@ class Scene(FieldsOnly, Listed):
     z_dot: float | None = None
     impulse: Impulse | None = None
 
-    def __init__(  # twice as fast as the __init__ of a frozen dataclass, although it checks
+    def __init__(  # twice as fast as a frozen dataclass's, although it checks
         self,
         a: float,
         b: float,
@@ -179,8 +178,8 @@ class Scene(FieldsOnly, Listed):
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
         """Check the arguments, and keep them as the fields of this scene."""
         blow = None if given["impulse"] is None else _one_blow(given["impulse"])
-        core = _core.scene_of(given, blow, reached)  # refuses numbers out of range
-        if core is None:  # there are numbers of other types than float
+        core = _core.scene_of(given, blow, reached)  # rejects numbers out of range
+        if core is None:  # some numbers are of types other than float
             for name, value in given.items():
                 if name in SCENE_UNITS and (value is not None or name not in OPTIONAL):
                     given[name] = number(name, value)
@@ -192,7 +191,7 @@ class Scene(FieldsOnly, Listed):
     def from_density(
         cls, a: float, b: float, *, density: float, thickness: float, **others: Any
     ) -> Self:
-        """Return the scene of a uniform elliptical cylinder, its mass pi a b density thickness.
+        """Return the scene of a uniform elliptical cylinder of mass pi a b density thickness.
 
         Parameters
         ----------
@@ -201,7 +200,7 @@ class Scene(FieldsOnly, Listed):
         density, thickness : float
             Density [kg/m^3], and length of the cylinder across the plane of motion [m].
         **others
-            As of `Scene`.
+            As for `Scene`.
 
         Raises
         ------
@@ -213,7 +212,7 @@ class Scene(FieldsOnly, Listed):
 
     @cached_property
     def core(self) -> _core.Scene:
-        """The scene as the core's object, which pickles do not hold."""
+        """The scene as an object of the core, which is never pickled."""
         return reached_scene(self.__dict__).core
 
     def replace(self, **changes: Any) -> Scene:
@@ -222,9 +221,9 @@ class Scene(FieldsOnly, Listed):
         Raises
         ------
         TypeError
-            If a scene has no such argument.
+            If scenes have no such argument.
         ValueError
-            As of the constructor: kept and changed arguments must fit together.
+            As for the constructor: kept and changed arguments must fit together.
         """
         names = [field.name for field in fields(self)]
         for name in changes:
@@ -248,7 +247,7 @@ class Scene(FieldsOnly, Listed):
     to_mjcf, to_sdf = to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
-        """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
+        """Return the semi-axes, which have no defaults, and fields that differ from defaults."""
         values = ((field, getattr(self, field.name)) for field in fields(self))
         return {field.name: value for field, value in values if value != field.default}
 
@@ -272,7 +271,7 @@ class Scene(FieldsOnly, Listed):
 
 
 def _doubt(name: str, value: float) -> str:
-    """Return a word on a legal value in rad or rad/s that looks like one in degrees."""
+    """Return a remark on a legal value in rad or rad/s that looks as if it were in degrees."""
     whole = _DEGREES.get(name)
     return " (degrees? times pi/180)" if whole and value and value % whole == 0 else ""
 
@@ -281,7 +280,7 @@ OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is N
 
 
 def _one_blow(impulse: Any) -> _core.Impulse:
-    """Return an impulse as the core takes it, or raise an error for any other argument."""
+    """Return an impulse in the core's form, or raise an error for any other argument."""
     if not isinstance(impulse, Impulse):
         raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
     if impulse.shape != ():
@@ -293,10 +292,10 @@ def _one_blow(impulse: Any) -> _core.Impulse:
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
-    """Return the scene of all its arguments, in a state that some motion has reached.
+    """Return the scene with all these arguments, in a state that some motion has reached.
 
-    Down a slope its energy may be larger than that of a scene made by its constructor, and it may
-    be about to hit the ground.
+    Down a slope its energy may exceed the constructor's limit, and it may be about to hit the
+    ground.
     """
     scene = object.__new__(Scene)
     scene._hold({field.name: arguments[field.name] for field in fields(Scene)}, reached=True)

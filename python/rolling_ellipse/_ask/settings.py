@@ -17,12 +17,12 @@ Method = Literal["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"]
 Stabilization = Literal["none", "baumgarte", "projection", "projection+energy", "ggl"]
 MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
-GIVEN: Any = "arrays"  # the method of a trajectory from arrays, which no setting is
+GIVEN: Any = "arrays"  # the method of a trajectory from arrays; no setting has this name
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 
 class Options(TypedDict, total=False):
-    """Arguments of `simulate_many` that are those of `simulate`, for its overloads."""
+    """Arguments that `simulate_many` shares with `simulate`, for its overloads."""
 
     model: Model
     method: Method
@@ -40,7 +40,7 @@ class Options(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(FieldsOnly):
-    """Arguments of `simulate` beside scene and times; the core checks their ranges."""
+    """Arguments of `simulate` besides scene and times; the core checks their ranges."""
 
     model: Model = "auto"
     method: Method = "auto"
@@ -60,12 +60,12 @@ class Settings(FieldsOnly):
 
     @cached_property
     def core(self) -> _core.Settings:
-        """The settings as the core takes them."""
+        """The settings in the core's form."""
         return _core.Settings(self.__getstate__())
 
 
 def settings(*given: Any) -> Settings:
-    """Return Settings of values in the order of the fields; equal values are checked once."""
+    """Return the Settings for values in field order; equal values are checked only once."""
     for known, made in (_last[0], _BY_DEFAULT):
         if all(map(is_, given, known)):
             return made
@@ -113,5 +113,5 @@ _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
 _BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES), DEFAULTS
-_last = [_BY_DEFAULT]  # values of the last call with other plain ones, and their Settings
+_last = [_BY_DEFAULT]  # the last plain values other than the defaults, and their Settings
 _PLAIN = (float, int, str, type(None))  # types of immutable values, which `_kept` may hold

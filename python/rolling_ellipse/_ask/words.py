@@ -1,4 +1,4 @@
-"""Words of reasons and pages, by their keys, in JSON files for each language beside this one."""
+"""Texts of reasons and pages by key, from one JSON file per language beside this module."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from functools import cache
 LANGUAGES = ("en", "de")
 BRACES = re.compile(r"\{(\w+)\}")
 
-Sentence = tuple[str, list[tuple[str, float]]]  # a key, and the numbers for the braces of its text
+Sentence = tuple[str, list[tuple[str, float]]]  # a key, and values for its placeholders
 
 
 @cache
 def table(language: str) -> dict[str, str]:
-    """Return the words of a language, with numbers in braces."""
-    from json import loads  # with pathlib a tenth of the package's import
+    """Return the text strings of a language, with placeholders in braces."""
+    from json import loads  # json and pathlib take a tenth of the package's import time
     from pathlib import Path
 
     file = Path(__file__).with_name(f"words_{language}.json")
@@ -30,10 +30,10 @@ def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
 
 
 def joined(words: Mapping[str, str], sentences: Sequence[Sentence], digits: int) -> str:
-    """Return sentences as text, each a key with its numbers."""
+    """Return sentences as text; each is a key with its values."""
     return " ".join(filled(words, key, digits, **dict(numbers)) for key, numbers in sentences)
 
 
 def filled(words: Mapping[str, str], key: str, digits: int = 4, **values: float) -> str:
-    """Return a text with numbers in its braces."""
+    """Return a text with its placeholders filled in."""
     return BRACES.sub(lambda name: written(values[name[1]], words, digits), words[key])

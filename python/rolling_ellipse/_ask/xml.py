@@ -12,7 +12,7 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     An ellipsoid with the semi-axes a, max(a, b), b along x, y, z is held in its plane by two slides
     ``x``, ``z`` and a hinge ``theta``: z points away from the ground, theta turns clockwise, and
     gravity is tilted by the slope. The key frame ``start`` is the `initial_state`. MJCF has no
-    coefficient of restitution: a contact is a critically damped spring, for 1 an undamped one.
+    coefficient of restitution: a contact is a critically damped spring, or undamped if it is 1.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
         Step [s].
     contact_steps : float or None
         Time constant of the contact in steps, with elliptic friction cones and an impedance of
-        0.9999; MuJoCo asks for 2 at least. None: MuJoCo's own contact of 0.02 s.
+        0.9999; MuJoCo requires at least 2. None: MuJoCo's own contact of 0.02 s.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def gravity(scene: Any) -> tuple[float, float, float]:
 def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
-    from pathlib import Path  # a tenth of the package's import
+    from pathlib import Path  # it takes a tenth of the package's import time
 
     inertia = scene.mass * scene.gyration2
     return Path(__file__).with_name(template).read_text(encoding="utf-8").format(

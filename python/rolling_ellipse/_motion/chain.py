@@ -1,9 +1,10 @@
 """Derivatives of a motion with many events, part by part, by the chain rule.
 
 A part has a few events and starts in the middle of an arc, in the state that the motion has there.
-With its derivatives M by that state and P by the numbers of the body, the derivatives S at its
-start become M S + P. Differences meet only what a part magnifies: so they also exist where no
-neighbour of the whole motion keeps its events, up to a growth of 1e13.
+If M are its derivatives with respect to that state, and P those with respect to the parameters of
+the body, the derivatives S at its start become M S + P at its end. Differences then only have to
+cope with the growth within a part, so they exist even where no neighbour of the whole motion has
+the same events, up to a growth of 1e13.
 """
 
 from __future__ import annotations
@@ -21,16 +22,16 @@ from .samples import FREE
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events of a part
-# Roundings of the start which, grown with the motion, make the relative difference of derivatives
-# along the arcs as computed and of the exact motion: at most 42 in 120 motions that grow up to 4e12
+# Relative difference between the derivatives along the computed arcs and the exact ones, in units
+# of rounding times the growth of the motion: at most 42 in 120 motions growing by up to 4e12
 _ROUNDINGS = 64
 
 
 class Chained(NamedTuple):
-    """Vectors as of `neighbours` by k inputs, and their errors.
+    """Vectors like those of `neighbours`, for k inputs, and their errors.
 
-    The errors are those of the derivatives along the arcs as they were computed; `parted` is how
-    far these are from the derivatives of the exact motion.
+    The errors are those of the derivatives along the computed arcs; `parted` is the distance of
+    these from the derivatives of the exact motion.
     """
 
     value: FloatArray  # (6, n + m, k)
@@ -39,18 +40,19 @@ class Chained(NamedTuple):
 
 
 class _Part(NamedTuple):
-    motion: Trajectory  # its samples are those of the whole, and the start of the next part
-    rows: FloatArray  # places of its samples and events among those of the whole
+    motion: Trajectory  # has the whole motion's samples, and one at the start of the next part
+    rows: FloatArray  # indices of its samples and events in the whole motion
 
 
 def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | None:
-    """Return the derivatives by several inputs, or None where a part has no derivative."""
+    """Return the derivatives with respect to several inputs, or None if a part has none."""
     rows = len(motion.t) + len(motion.events)
     whole = Chained(np.zeros((len(STATE), rows, len(names))), *np.zeros((2, rows, len(names))))
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
-    growth = 1.0  # of changes of the inputs, or of the state after the first part
-    # Of each part before: the changes of state since its end, and the errors made in it
+    growth = 1.0  # growth of changes of the inputs, or of the state after the first part
+    # For each earlier part: the derivatives of the state with respect to that at the part's end,
+    # and the errors of the part itself
     since: list[tuple[FloatArray, FloatArray]] = []
     for index, (part, own) in enumerate(_parts(motion)):
         last = len(part.t) - 1
@@ -76,7 +78,7 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 
 
 def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray] | None:
-    """Return derivatives by the state at the start, (6, r, 6), with errors, (r, 6); 0 if fixed."""
+    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if fixed."""
     # No arc depends on x
     free = () if fixed else ("theta", "omega", *FREE[part.scene.initial_state.mode])
     derivatives = _derivatives(part, [name if name in free else None for name in STATE], 0)
@@ -84,14 +86,14 @@ def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray]
         return None
     value, error = derivatives
     units = units_of(part.scene)
-    value[0, : len(part.t), 0] = 0 if fixed else 1 / units[0]  # x moves with x
+    value[0, : len(part.t), 0] = 0 if fixed else 1 / units[0]  # x shifts with its start
     return value * units, error * units
 
 
 def _derivatives(
     part: Trajectory, names: list[str | None], side: int
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Return the derivatives by k inputs, (6, r, k), with errors, (r, k); 0 for a missing name."""
+    """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None."""
     rows = len(part.t) + len(part.events)
     value, error = np.zeros((len(STATE), rows, len(names))), np.zeros((rows, len(names)))
     for k, name in enumerate(names):
@@ -104,7 +106,7 @@ def _derivatives(
 
 
 def _parts(motion: Trajectory) -> list[_Part]:
-    """Return the parts; one whose events are not those of the motion is joined to that before."""
+    """Return the parts; one whose events differ from the motion's is merged into the previous."""
     cuts = _cuts(motion)
     while True:
         parts = [_part(motion, *pair) for pair in pairwise(cuts)]
@@ -115,7 +117,7 @@ def _parts(motion: Trajectory) -> list[_Part]:
 
 
 def _cuts(motion: Trajectory) -> list[int]:
-    """Return numbers of events before cuts, from 0 to all, each in the middle of an arc."""
+    """Return how many events precede each cut, from 0 to all; cuts are in the middle of an arc."""
     cuts = [0]
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode
@@ -129,7 +131,7 @@ def _cuts(motion: Trajectory) -> list[int]:
 
 
 def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
-    """Return the part between cuts after numbers of events, or None if its events are others."""
+    """Return the part between two cuts, given as event counts, or None if its events differ."""
     knots, whole = knots_of(motion), last == len(motion.events)
     start = float(knots[first : first + 2].mean()) if first else 0.0
     end = motion.t_end if whole else float(knots[last : last + 2].mean())

@@ -1,6 +1,6 @@
 """The report's coordinates q = (x, z, theta, psi, r), and the constraints of a state.
 
-Errors of a motion are dimensionless: rounding errors have the size 1e-16 for every body.
+Errors of a motion are dimensionless: rounding errors are about 1e-16 for every body.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Errors = Mapping[str, FloatArray]  # by name, (n,) each
 
 @dataclass(frozen=True)
 class ConstraintResiduals:
-    """Residuals of the constraints of one or many states, whose axes come first.
+    """Residuals of the constraints of one state or many; the axes of the states come first.
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class ConstraintResiduals:
     velocity : ndarray, shape (..., 4)
         f1 [m/s] and the rates of f2, f3, f4.
     gap : ndarray, shape (...)
-        Height of the lowest point over the ground [m], from the implicit equation of the ellipse.
+        Height of the lowest point above the ground [m], from the implicit equation of the ellipse.
     slip : ndarray, shape (...)
-        Velocity of the material point there along the ground [m/s].
+        Velocity of the material point there, along the ground [m/s].
     """
 
     position: FloatArray
@@ -46,7 +46,7 @@ class ConstraintResiduals:
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
-    """Evaluate the four constraints of any state, and independently of them its gap and slip.
+    """Evaluate the four constraints of any state and, independently of them, its gap and slip.
 
     f1 = x_dot - r cos(psi - theta) theta_dot, f2 = z - r cos(psi - theta),
     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi),
@@ -78,7 +78,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
 
 
 def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArray, FloatArray]:
-    """Return the state that meets all constraints at an angle and angular velocity.
+    """Return the state that satisfies all constraints at an angle and angular velocity.
 
     Parameters
     ----------
@@ -106,8 +106,8 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
 def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
     """Return the relative errors of the constraints by name: positions, then velocities, (n,).
 
-    Lengths are over the longer semi-axis, rates also over max|omega|, or over sqrt(gravity/length)
-    for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, nor
+    Lengths are divided by the longer semi-axis, rates also by max|omega|, or sqrt(gravity/length)
+    for a motion without rotation. In flight the ground does not constrain f1, f2, gap and slip, nor
     f1 and slip while sliding: they are NaN then.
     """
     scene, residuals = motion.scene, motion.constraint_residuals()
@@ -129,7 +129,7 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 
 def may_lose_energy(motion: Trajectory) -> bool:
-    """True if an impact or friction of the contact may take energy; both may be elastic."""
+    """Whether impacts or friction may take energy: without friction, impacts may be elastic."""
     inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
     return inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
 
@@ -137,9 +137,9 @@ def may_lose_energy(motion: Trajectory) -> bool:
 def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
-    E0 is the energy of the first sample. What impacts and friction take is no error: after an event
-    that may take energy, E0 is the energy of the next sample, and in a slide the error is NaN.
-    Heights are measured from the ground at the first sample, so that x may be 0 anywhere.
+    E0 is the energy of the first sample. Losses by impacts and friction are not errors: after an
+    event that may take energy, E0 is that of the next sample, and in a slide the error is NaN.
+    Heights are measured from the ground at the first sample: the origin of x does not matter.
     """
     scene = motion.scene
     along = motion.x - motion.x[0]

@@ -1,4 +1,4 @@
-"""Derivatives of a motion by differences of its neighbours, by the best of many steps."""
+"""Derivatives of a motion from differences of its neighbours, with the best of many steps."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .status import Status
 from .trajectory import Trajectory
 
 RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
-STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in turn, over the natural size of the input
+STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in turn, as fractions of the input's natural size
 WORST = 1e-3  # relative error above which there is no derivative
 FINE = 1e-8  # relative error below which a better step is not needed
-_GROWN = 8.0  # an error that is so many times the least one ends the trials
-_UNITS = 8  # errors of the states and times of a motion, as the package promises
+_GROWN = 8.0  # trials end once the error is this many times the least one
+_UNITS = 8  # error bound of states and times that the package promises
 
-_END = "no event"  # in place of one
+_END = "no event"  # stands for a missing event
 
-# By side: places over the step, and weights of sixth order (Fornberg [1])
+# By side: offsets in steps, and weights of sixth order (Fornberg [1])
 _FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
 RULES = {
     0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),
@@ -36,16 +36,16 @@ RULES = {
 def differenced(
     values: FloatArray, moved: Any, side: int = 0, scale: float = 0.0
 ) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives from values at the places of a rule (first axis), and their rounding.
+    """Return derivatives from values at the nodes of a rule (first axis), and rounding errors.
 
-    `moved` has the changes of the input that were made: neighbours are at the nearest doubles. A
-    value is off by the promised units: roundings of its own, and of an input of size `scale`.
+    `moved` holds the actual changes of the input: neighbours are at the nearest doubles. A value
+    may be off by `_UNITS` roundings, both of its own and of an input of size `scale`.
     """
     weights = RULES[side][1].tolist()
-    # In the same order for one and for many
+    # Summed in the same order for one vector and for many
     rise = sum((w * value for w, value in zip(weights, values, strict=True)), np.zeros(()))
     step = sum((w * change for w, change in zip(weights, moved, strict=True)), np.zeros(()))
-    moves = step != 0  # a step below a rounding of the input does not
+    moves = step != 0  # a step below the input's rounding changes nothing
     slopes: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
     unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(slopes))
     rounding = _UNITS * sum(map(abs, weights)) * unit
@@ -53,17 +53,17 @@ def differenced(
 
 
 def size(values: FloatArray) -> FloatArray:
-    """Return the largest component of vectors along the first axis."""
+    """Return the largest component, in magnitude, of vectors along the first axis."""
     found: FloatArray = np.abs(values).max(axis=0)
     return found
 
 
 class Best:
-    """Vectors of derivatives by smaller and smaller steps, and for each the best with its error.
+    """Derivative vectors from smaller and smaller steps: for each vector, the best and its error.
 
-    The error is the distance from the vector by the step before or after, whichever is farther,
-    and the rounding: with large steps the one before is farther off, with small ones the one after.
-    The trials of a vector end when its error has grown: vectors do not depend on each other.
+    The error is the rounding error plus the distance to the result of the step before or after,
+    whichever is farther: the one before for large steps, the one after for small ones. The trials
+    of each vector end independently, once its error has grown.
 
     Attributes
     ----------
@@ -73,14 +73,14 @@ class Best:
     """
 
     def __init__(self, shape: tuple[int, ...], least: Any) -> None:
-        self.value, self._least = np.zeros(shape), least  # `least` is the size that counts as small
+        self.value, self._least = np.zeros(shape), least  # `least`: smallest size to compare with
         self.error, self.step = np.full(shape[1:], np.inf), np.zeros(shape[1:])
         self._done = np.zeros(shape[1:], bool)
         self._last: tuple[FloatArray, FloatArray, Any] | None = None
-        self._apart = np.full(shape[1:], np.inf)  # distance of the last from the one before it
+        self._apart = np.full(shape[1:], np.inf)  # distance between the last two
 
     def take(self, value: FloatArray, rounding: FloatArray, step: Any) -> bool:
-        """Take the derivatives by the next step; whether the trials of all vectors have ended."""
+        """Take the derivatives of the next step; return whether all trials have ended."""
         if self._last is not None:
             last, error, its_step = self._last
             apart = size(value - last)
@@ -97,10 +97,10 @@ class Best:
 
 
 def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueError | None]:
-    """Return derivatives of the states at n samples and of the times of m events by an input.
+    """Return derivatives of n sampled states and of m event times with respect to an input.
 
-    They are vectors in natural units, shape (6, n + m), those of times (dt, 0, ...). If an error
-    is infinite there is the reason, too.
+    They are vectors in natural units, shape (6, n + m); those of times are (dt, 0, ...). The
+    exception is the reason for an infinite error.
     """
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)
@@ -108,7 +108,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
     for step in (scale * STEPS).tolist():
         try:
             value, rounding = _differences(motion, settings_of(motion), name, side, step)
-        except ValueError as refusal:  # no such scene, or other events
+        except ValueError as refusal:  # no such scene, or different events
             problem = refusal
             continue
         if best.take(value, rounding, step):
@@ -117,7 +117,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
 
 
 def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> FloatArray:
-    """Return how far the vectors of `neighbours` are from those of a finer method with steps."""
+    """Return how far the vectors of `neighbours` are from those with tighter settings."""
     settings, step = settings_of(motion), float(best.step[size(best.value).argmax()])
     finer = dataclasses.replace(
         settings, rtol=settings.rtol / 8, atol=settings.atol / 8,
@@ -135,9 +135,9 @@ def settings_of(motion: Trajectory) -> Settings:
 def _differences(
     motion: Trajectory, settings: Settings, name: str, side: int, step: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of `neighbours` by one step, and their rounding.
+    """Return the derivatives of `neighbours` from one step, and their rounding errors.
 
-    Neighbours are compared at equal shares of the arcs between events.
+    Neighbours are compared at equal fractions of the arcs between events.
     """
     value = value_of(motion.scene, name)
     changes = [value + place * step - value for place in RULES[side][0].tolist()]
@@ -155,9 +155,9 @@ def _differences(
 
 
 def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> FloatArray:
-    """Return times that are at the same shares of the same arcs between other knots.
+    """Return the times at the same fractions of the same arcs between other knots.
 
-    Knots are along the last axis; a time at an event stays at it, and one before stays before.
+    Knots are along the last axis; times stay at, or before, their event.
     """
     arc = np.searchsorted(knots[:-1], times, side="right") - 1
     length = knots[arc + 1] - knots[arc]
@@ -169,7 +169,7 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
 
 
 def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:
-    """Return the motion from changed inputs, by the same model; ValueError for other events."""
+    """Return the motion from changed inputs by the same model; ValueError if its events differ."""
     values = {name: value_of(motion.scene, name) + change for name, change in changes.items()}
     other = Trajectory.computed(changed(motion.scene, values), settings, np.array([motion.span]))
     if difference := unlike(motion, other):
@@ -179,7 +179,7 @@ def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> 
 
 
 def unlike(motion: Trajectory, other: Trajectory) -> str:
-    """Return the first difference between the arcs of two motions in words, or nothing."""
+    """Return the first difference between the arcs of two motions in words, or ""."""
     for (known, t), (mode, _) in zip(_order(motion), _order(other), strict=False):
         if known != mode:
             if mode == _END:
@@ -190,7 +190,7 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return what neighbours share, with times: start, events with the next mode, and the end."""
+    """Return what neighbours must share, with times: start, events with the mode after, and end."""
     events = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     start = f"a start in {motion.scene.initial_state.mode.name}"
     ended = motion.status in (Status.COMPLETED, Status.VALIDITY_LOST)

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
 MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
-_FIRST, _LAST = 12, 4  # numbers of events shown first and last in a long table
+_FIRST, _LAST = 12, 4  # events shown at the top and bottom of a long table
 
 
 @dataclass(frozen=True, repr=False)
 class Event(FieldsOnly):
-    """One event of a motion: an impact, or a change of mode or of the direction of the slip.
+    """One event of a motion: an impact, or a change of mode or of the slip's direction.
 
     Attributes
     ----------
@@ -35,12 +35,12 @@ class Event(FieldsOnly):
     kind : EventKind
         SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
     state_before, state_after : InitialState
-        State just before and just after; the latter has the reaction impulse of an impact and the
-        energy lost in it.
+        State just before and just after; the latter includes an impact's reaction impulse and
+        lost energy.
     energy_before, energy_after : float
         Kinetic and potential energy of the two states [J].
     theta, x : float
-        Angle [rad] and centre [m] at the event, the same before and after it.
+        Angle [rad] and centre [m] at the event; an event does not change them.
     """
 
     t: float
@@ -57,7 +57,7 @@ class Event(FieldsOnly):
 
     @property
     def x(self) -> float:
-        """Place of the centre at the event [m]."""
+        """Position of the centre along the ground at the event [m]."""
         return self.state_after.x
 
     def _row(self) -> Row:
@@ -81,22 +81,22 @@ class Event(FieldsOnly):
 
 
 def _columns() -> dict[str, tuple[str, str]]:
-    """Return the columns of the table of events: attribute and unit; texts have the unit "1"."""
+    """Return the columns of the event table: attribute and unit; texts have the unit "1"."""
     columns = {"t": ("t", "s"), "kind": ("kind.name", "1")}
     for when in ("before", "after"):
         for name, unit in STATE_UNITS.items():
             columns[f"{name}_{when}"] = f"state_{when}.{name}", unit
         columns[f"mode_{when}"] = f"state_{when}.mode.name", "1"
         columns[f"energy_{when}"] = f"energy_{when}", "J"
-    for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after have them
+    for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after an event have them
         columns[name] = f"state_after.{name}", InitialState._units[name]
     return columns | {"reason": ("state_after.reason", "1")}
 
 
 class Events(tuple[Event, ...]):
-    """A tuple of events in the order of time that prints as a table, as its slices do.
+    """A tuple of events in order of time that prints as a table, as its slices do.
 
-    The table of many events has the first and the last ones.
+    The table of many events shows the first and the last ones.
     """
 
     __slots__ = ()
@@ -111,7 +111,7 @@ class Events(tuple[Event, ...]):
 
     def _shown(self) -> list[Row]:
         hidden = len(self) - _FIRST - _LAST
-        if hidden <= 1:  # the row "and … more" would save no row
+        if hidden <= 1:  # "and … more" would save no row
             return [each._row() for each in self]
         first, last = self[:_FIRST], self[-_LAST:]
         gap = ("…", f"and {hidden} more", "", "", "")
@@ -151,7 +151,7 @@ class Events(tuple[Event, ...]):
 
 
 def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
-    """Return the events of rows of numbers; their states are made when first asked for."""
+    """Return the events from rows of numbers; their states are made on first access."""
     return Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_numbers": row, "_scene": scene})

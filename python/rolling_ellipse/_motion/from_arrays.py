@@ -1,4 +1,4 @@
-"""Trajectories of samples from elsewhere: a tracker's, or another simulator's."""
+"""Trajectories from external samples: a tracker's, or another simulator's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _Made = TypeVar("_Made", bound="Trajectory")
-_NEAR = 5  # samples of a local polynomial
+_NEAR = 5  # number of samples of a local polynomial
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
 
 
@@ -35,28 +35,28 @@ def from_arrays(
     *,
     scene: Scene,
 ) -> _Made:
-    """Make a trajectory of samples from elsewhere: a tracker's, or another simulator's.
+    """Make a trajectory from external samples: a tracker's, or another simulator's.
 
-    Each track is the polynomial of fourth degree through five samples about the nearest one: rates
-    have errors of fourth order, accelerations, from which forces follow, of third. Before the first
-    sample the body stays there. It flies where its gap is more than 0.01 max(a, b), else slides
-    where its contact slips by more than 0.01 sqrt(gravity max(a, b)), else rolls. There are no
-    events: within two samples of an impact, rates and forces are wrong.
+    Each track is the fourth-degree polynomial through five samples about the nearest one: rates
+    have errors of fourth order; accelerations, from which forces follow, of third. Before the first
+    sample the body stays in its position there. It flies where its gap is more than 0.01 max(a, b),
+    else slides where its contact slips by more than 0.01 sqrt(gravity max(a, b)), else rolls. There
+    are no events: within two samples of an impact, rates and forces are wrong.
 
     Parameters
     ----------
     t : array_like, shape (n,)
         Increasing times since the start of the scene, n >= 5 [s].
     x, z, theta : array_like, shape (n,)
-        Centre [m] and angle [rad] without steps of half turns. Without x and z they are those of
-        rolling from the scene's start, as for the angles of an equation of motion.
+        Centre [m] and angle [rad], unwrapped. If x and z are missing, they are those of rolling
+        from the scene's start, as for the angles of an equation of motion.
     scene : Scene
         Body and ground; its start is what `plot_error` compares with.
 
     Raises
     ------
     ValueError
-        If times do not increase or are negative, or arrays are not of one length or not finite.
+        If times do not increase or are negative, or arrays differ in length or are not finite.
     """
     times = vector("t", finite("t", t))
     if times.size < _NEAR or times[0] < 0 or not (np.diff(times) > 0).all():
@@ -77,7 +77,7 @@ def from_arrays(
 
 
 def between_samples(of: Trajectory) -> Solution:
-    """Return what samples a trajectory from arrays between its samples, as the core's Solution."""
+    """Return the interpolant of a trajectory from arrays, in the form of the core's Solution."""
     times, first = np.unique(of.t, return_index=True)
     tracks = np.stack([of.x, of.z, of.theta], axis=1)[first]
     return _Samples(of.scene, times, tracks)  # type: ignore[return-value]
@@ -91,7 +91,7 @@ class _Samples:
     tracks: FloatArray
 
     def samples(self, t: FloatArray) -> tuple[FloatArray, ...]:
-        """Return the samples at times as arrays, as the core's Solution does."""
+        """Return the samples at the given times as arrays, as the core's Solution does."""
         scene, times, near = self.scene, np.maximum(t, self.t[0]), min(_NEAR, self.t.size)
         nearest = np.searchsorted((self.t[1:] + self.t[:-1]) / 2, times)
         first = np.clip(nearest - near // 2, 0, self.t.size - near)

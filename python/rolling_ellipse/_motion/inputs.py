@@ -19,7 +19,7 @@ INPUTS = (*BODY, "theta", "omega", "x", "z", "x_dot", "z_dot", *_BLOW, "t")
 
 
 def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
-    """Return one or more names out of valid ones, each once, or raise ValueError."""
+    """Return one or more of the valid names, each once, or raise ValueError."""
     several = isinstance(names, Iterable) and not isinstance(names, str)
     chosen = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
     if not chosen or len(set(chosen)) < len(chosen):
@@ -28,7 +28,7 @@ def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) 
 
 
 def changed(scene: Scene, values: dict[str, float]) -> Scene:
-    """Return the scene with other values of inputs, also of its impulse."""
+    """Return the scene with other values of inputs, including those of its impulse."""
     blow: dict[str, Any] = {name: value for name, value in values.items() if name in _BLOW}
     others: dict[str, Any] = {name: value for name, value in values.items() if name not in _BLOW}
     if blow and scene.impulse is not None:
@@ -37,13 +37,13 @@ def changed(scene: Scene, values: dict[str, float]) -> Scene:
 
 
 def value_of(scene: Scene, name: str) -> float:
-    """Return the value of an input other than "t", or raise ValueError if a scene has none."""
+    """Return the value of an input other than "t", or raise ValueError if the scene lacks it."""
     if name in _BLOW and scene.impulse is None:
         raise ValueError(f"wrt must be inputs of the scene, got {name!r} without an impulse")
     value = getattr(scene.impulse if name in _BLOW else scene, name)
     if value is None and name == "inertia":
         return scene.mass * scene.gyration2
-    if value is None and scene.z is not None:  # a velocity in the air
+    if value is None and scene.z is not None:  # a default velocity in the air
         return 0.0
     if value is None:
         raise ValueError(f"wrt must be inputs of the scene, got {name!r}, which follows rolling")
@@ -53,7 +53,7 @@ def value_of(scene: Scene, name: str) -> float:
 
 
 def size_of(scene: Scene, name: str) -> float:
-    """Return the natural size of an input: its value, or the unit of its kind if that is more."""
+    """Return the natural size of an input: its value, or the unit of its kind if larger."""
     length, _, one, speed, _, spin = units_of(scene).tolist()
     push = scene.mass * speed
     units = {

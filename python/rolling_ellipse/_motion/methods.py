@@ -1,4 +1,4 @@
-"""Methods of Trajectory whose modules import this class, or are slow to load."""
+"""Methods of Trajectory whose modules import that class or are slow to load."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OF_THE_CLASS = ("load", "from_arrays")
 
 
 class _Later:
-    """A method that is imported when first asked for, and then replaces this object."""
+    """A method that is imported on first access, and then replaces this object."""
 
     def __init__(self, of: type, module: str, name: str) -> None:
         self._of, self._module, self._name = of, module, name

@@ -16,7 +16,7 @@ from .._ask.check import FloatArray, array, choice, finite, shown, whole
 from .._core import EventKind, Quantity
 
 _EVENTS = (*(kind.name.lower() for kind in EventKind), "roll_over")
-_MOST = 10**6  # times that a value may be passed, in the core, too
+_MOST = 10**6  # how often a value may be passed; the core has the same limit
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -46,14 +46,15 @@ def when(
 ) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    They belong to the motion, to the last bits, not to its samples. No time is missed where the
-    turning points of the quantity are known: those of polynomials of degree 8 that agree with it to
-    1000 ulp, found by Bernstein coefficients. A `CompletenessWarning` is issued where no polynomial
-    agrees, and for every `function`, whose values are known at single times only.
+    They are those of the motion itself, accurate to the last bits, and do not depend on its
+    samples. No time is missed where the turning points of the quantity are known: they are found,
+    by Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. A
+    `CompletenessWarning` is issued where no polynomial agrees, and for every `function`, whose
+    values are known only at single times.
 
     A jump of omega across the value counts, at the event. A value that is only touched, as at a
-    turning point, counts once, also at the start or end; a value that is kept for a while counts
-    where that begins. Touching is resolved to 8 ulp of the quantity.
+    turning point, counts once, even at the start or end; a value that is held for a while counts
+    when it is reached. Touching is resolved to 8 ulp of the quantity.
 
     Parameters
     ----------
@@ -61,12 +62,13 @@ def when(
         One value, or n values, of this quantity [rad, m, rad/s]; exactly one quantity is given,
         or `function`.
     function : callable, optional
-        Takes a Trajectory and returns one number for each sample; its zeros are searched.
+        Takes a Trajectory and returns one number for each sample; its zeros are found.
     event : EventKind or str, optional
-        Kind of events, also as its name in any case; or ``"roll_over"``: the body passes a
-        position with its long axis at right angles to the ground (a circle: its axis a).
+        Kind of events, or its name in any case; or ``"roll_over"``: the body passes a position
+        with its long axis perpendicular to the ground (a circle: its axis a).
     direction : {0, 1, -1}
-        1: only where it rises through the value; -1: only where it falls; 0: both, and touches.
+        1: only where the quantity rises through the value; -1: only where it falls; 0: both, and
+        touches.
 
     Returns
     -------
@@ -77,8 +79,8 @@ def when(
     Raises
     ------
     ValueError
-        If there are more than a million times, if none or several quantities are given, or a
-        value is not finite.
+        If there are more than a million times, no quantity or several are given, or a value is
+        not finite.
     """
     given = locals()
     del given["motion"], given["direction"]
@@ -119,7 +121,7 @@ def when(
 
 
 def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
-    """Warn of angles that are never reached, but would be if they were degrees."""
+    """Warn about angles that are never reached, but would be if they were in degrees."""
     degrees = values[(values != 0) & (values % 15 == 0)]
     times, _ = motion._solution.passages(Quantity.theta, np.radians(degrees), 0)
     if any(each.size for each in times):
@@ -131,7 +133,7 @@ def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
 
 
 def _tips(motion: Trajectory) -> FloatArray:
-    """Return the angles on the tip that are reached; between turning points theta is monotonic."""
+    """Return the tip angles that are reached; between turning points theta is monotonic."""
     turning = motion._solution.passages(Quantity.omega, np.zeros(1), 0)[0][0]
     theta = motion.sol([0.0, *turning, motion.t_end]).theta
     tip = math.pi / 2 if motion.scene.a >= motion.scene.b else 0.0
@@ -145,7 +147,7 @@ def _tips(motion: Trajectory) -> FloatArray:
 def _measured(
     motion: Trajectory, function: Callable[[Trajectory], Any], times: FloatArray
 ) -> FloatArray:
-    """Return the values of the caller's function of a Trajectory at times."""
+    """Return the values of the caller's function of a Trajectory at the given times."""
     values = array("function's result", function(motion.sol(times)))
     if values.shape != times.shape:
         raise ValueError(

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Quantity(NamedTuple):
-    """An array of a trajectory: name of the attribute, unit and meaning."""
+    """An array of a trajectory: attribute name, unit and meaning."""
 
     name: str
     unit: str

@@ -1,4 +1,4 @@
-"""The arrays of a Trajectory: one number of each for every sample, and read-only."""
+"""The arrays of a Trajectory: read-only, with one number for every sample."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
 class ContactSamples(NamedTuple):
-    """Samples of a contact motion besides theta, omega and x."""
+    """Samples of a contact motion in addition to theta, omega and x."""
 
     z: FloatArray
     x_dot: FloatArray
@@ -35,7 +35,7 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
-# Components of a state that the ground leaves free beside theta, omega and x
+# Components of a state that the ground leaves free besides theta, omega and x
 FREE: dict[Mode, tuple[str, ...]] = {
     Mode.ROLLING: (), Mode.REST: (), Mode.SLIDING: ("x_dot",),
     Mode.FLIGHT: ("z", "x_dot", "z_dot"),
@@ -55,7 +55,7 @@ def even_times(begin: float, end: float, count: int) -> FloatArray:
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return a solution's samples at times as fields of a Trajectory, in any order of times."""
+    """Return a solution's samples at times, in any order, as fields of a Trajectory."""
     if _core.are_sample_times(times):
         return fields_of(solution.samples(times))
     order = np.argsort(times, kind="stable")
@@ -66,8 +66,8 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
     """Return samples as fields of a Trajectory.
 
-    They are t, theta, omega, x of rolling, then the fields of ContactSamples of contact, or t, q,
-    q_dot of the multiplier model.
+    Those of rolling are t, theta, omega, x; contact adds the fields of ContactSamples; those of the
+    multiplier model are t, q, q_dot.
     """
     if len(samples) == _OF_COORDINATES:
         t, q, q_dot = samples
@@ -105,7 +105,7 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return the array read-only; it is copied unless it is so already, and no view."""
+    """Return the array read-only: copied, unless it already is and is not a view."""
     is_own = values.base is None and not values.flags.writeable
     return values if is_own else frozen(values.copy())
 
@@ -118,7 +118,7 @@ def sentence(name: str, value: Any) -> str:
 
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
-    """Return a 1-D array of numbers, read-only, of the given size (None: of any size)."""
+    """Return a read-only 1-D array of numbers, of the given size (None: any size)."""
     numbers = array(name, values)
     if numbers.ndim != 1:
         raise ValueError(f"{name} must be a 1-D array, got shape {numbers.shape}")
@@ -157,7 +157,7 @@ def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
 
 @dataclass(frozen=True)
 class Sample:
-    """A motion at one time: numbers of the same names and units as the arrays of a Trajectory."""
+    """A motion at one time: numbers with the names and units of the arrays of a Trajectory."""
 
     t: float
     x: float

@@ -34,8 +34,8 @@ from .inputs import INPUTS, STATE, distinct, size_of, units_of
 from .status import Status
 from .trajectory import Trajectory
 
-_FARTHEST = 1e13  # growth from which on a motion in doubles has parted from the exact one
-_NEAREST = 1e-6  # first distance of the search for other events, and where it ends
+_FARTHEST = 1e13  # growth beyond which a motion in doubles has parted from the exact one
+_NEAREST = 1e-6  # first distance of the search for other events, and its resolution
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,14 +50,14 @@ class Sensitivity(FieldsOnly):
     side : int
         0; 1 or -1 for derivatives towards larger or smaller inputs only.
     state : ndarray, shape (n, 6, k)
-        Derivatives of x, z, theta, x_dot, z_dot, omega at the samples; just after an event at it.
+        Derivatives of x, z, theta, x_dot, z_dot, omega at the samples; at an event, just after it.
     event_times : ndarray, shape (m, k)
         Derivatives of the times of the m events. They do not depend on the samples.
     error, event_times_error : ndarray, shape (k,)
-        Estimated error of each column of `state` and of `event_times` over its largest entry (or
-        over one unit for the natural size of the input, if that is more). Units of the state are L,
-        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b), and sqrt(L/g) is that of time.
-        Errors of a method with steps count, and the growth of roundings along the motion.
+        Estimated error of each column of `state` and of `event_times`, relative to its largest
+        entry (or to one unit per natural size of the input, if larger). Units of the state are L,
+        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b); that of time is sqrt(L/g).
+        It includes the errors of a stepped method, and the growth of rounding errors in the motion.
     """
 
     trajectory: Trajectory
@@ -69,9 +69,10 @@ class Sensitivity(FieldsOnly):
     event_times_error: FloatArray
 
     def at(self, t: float) -> FloatArray:
-        """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as of `state`.
+        """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as in `state`.
 
-        It takes new differences; for many times ``motion.sol(times).sensitivity(wrt)`` is faster.
+        Each call computes new differences; for many times ``motion.sol(times).sensitivity(wrt)`` is
+        faster.
         """
         there = self.trajectory.sol(number("t", t))
         found: FloatArray = sensitivity(there, self.wrt, side=self.side).state[0]
@@ -81,7 +82,7 @@ class Sensitivity(FieldsOnly):
         """Return the states at the samples to first order in changes, shape (n, 6).
 
         An ExtrapolationWarning is issued if a change is larger than its `distance` or not towards
-        its `side`, or if all together lead to other events.
+        its `side`, or if all changes together lead to other events.
 
         Parameters
         ----------
@@ -104,14 +105,14 @@ class Sensitivity(FieldsOnly):
     def distance(self) -> FloatArray:
         """Change of each input at which the kinds or the order of events change, shape (k,).
 
-        It is found by doubling from a millionth of the natural size of the input, which is also the
-        largest distance, and bisection. For "t": the least time from a sample to the next event.
-        The impacts of a body that settles are counted down to those at the `rest_speed`.
+        It is found by doubling from a millionth of the input's natural size up to that size, and by
+        bisection. For "t": the least time from a sample to the next event. The impacts of a body
+        that settles are counted down to those at the `rest_speed`.
         """
         return np.array([_distance(self.trajectory, name, self.side) for name in self.wrt])
 
     def _beyond(self, added: FloatArray) -> str:
-        """Return which changes are too large for a forecast, in words, or nothing."""
+        """Say in words which changes are too large for a forecast; "" if none is."""
         given = {name: float(x) for name, x in zip(self.wrt, added, strict=True) if x}
         for name, change in given.items():
             if self.side * change < 0 and name != "t":
@@ -140,19 +141,19 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
 
     The motion is solved again at six or seven values of each input, and differences of sixth order
     [1]_ are taken. The time between two events is stretched to that of the motion, so that states
-    of the same arc are compared; what the motion does during that shift is subtracted. Of 23 steps,
-    each half of the one before, each state takes the one that agrees best with the steps before and
-    after it, and has the least rounding. Where that is not enough for a motion of many events, it
-    is done for parts of three events, by the states at their starts, and multiplied by the chain
-    rule: along the arcs of the motion as it was computed.
+    of the same arc are compared; the change of the motion during that shift is subtracted. Of 23
+    steps, each half the one before, each state uses the one whose result agrees best with those of
+    the steps before and after it, at the least rounding error. Where a motion of many events needs
+    more than that, parts of three events are differentiated with respect to the states at their
+    starts, and combined by the chain rule along the computed arcs of the motion.
 
     Parameters
     ----------
     wrt : str or iterable of str
         Arguments of `Scene`, components of its impulse (``"jx"``, ``"jz"``, ``"dx"``, ``"dz"``), or
-        ``"t"``. All others stay as they were typed: missing ones follow.
+        ``"t"``. All others stay as given; omitted ones take their defaults.
     side : {0, 1, -1}
-        1 or -1: derivatives towards larger or smaller values only, as at the bound of an input.
+        1 or -1: derivatives towards larger or smaller values only, as needed at an input's bound.
 
     Returns
     -------
@@ -163,7 +164,7 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     ValueError
         If a name is unknown, repeated, or not a number of the scene; the motion starts at rest or
         does not reach its end; there is no derivative, as where neighbours have other events; or
-        changes grow more than 1e13 times, so that the motion in doubles is no longer the exact one.
+        changes grow by more than 1e13, so that the motion in doubles is no longer the exact one.
 
     References
     ----------
@@ -195,14 +196,14 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
 def _derivatives(
     motion: Trajectory, names: tuple[str, ...], side: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives as of `neighbours` by k inputs, (6, n + m, k), and errors, (n + m, k).
+    """Return derivatives as from `neighbours` for k inputs, (6, n + m, k), and errors, (n + m, k).
 
-    Events and the end of the motion decide whether it is taken by parts, whatever its samples are.
+    Whether the motion is split into parts depends on its events and its end, not on its samples.
     """
     n = len(motion.t)
     whole = motion.sol(np.append(motion.t, motion.t_end))
     value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
-    error, others = np.zeros((2, *value.shape[1:]))  # of the steps, and of the motion
+    error, others = np.zeros((2, *value.shape[1:]))  # errors of the steps, and of the motion
     problems: list[ValueError | None] = [None] * len(names)
     for k, name in enumerate(names):
         if name == "t":
@@ -236,12 +237,12 @@ def _derivatives(
 
 
 def _ends(n: int) -> tuple[slice, slice]:
-    """Return the rows of the end and of the events behind n samples."""
+    """Return the rows of the end and of the events, which follow n samples."""
     return slice(n, n + 1), slice(n + 1, None)
 
 
 def _require_near(motion: Trajectory, name: str, growth: FloatArray) -> None:
-    """Raise ValueError where changes of an input have grown so much that doubles are no guide."""
+    """Raise ValueError where changes of an input have grown too much for doubles."""
     if (far := growth > _FARTHEST).any():
         first = motion.t[far].min()
         raise _without_derivative(
@@ -258,7 +259,7 @@ def _without_derivative(name: str, reason: object) -> ValueError:
 def _relative(
     motion: Trajectory, names: tuple[str, ...], value: FloatArray, error: FloatArray
 ) -> FloatArray:
-    """Return errors (r, k) over the largest entries of vectors (6, r, k), shape (k,)."""
+    """Return errors (r, k) relative to the largest entries of vectors (6, r, k), shape (k,)."""
     least = [1.0 if name == "t" else 1 / size_of(motion.scene, name) for name in names]
     largest = np.maximum(np.abs(value).max(axis=(0, 1), initial=0.0), least)
     found: FloatArray = error.max(axis=0, initial=0.0) / largest
@@ -287,6 +288,6 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
 
 
 def _same_events(motion: Trajectory, changes: dict[str, float]) -> bool:
-    with suppress(ValueError):  # no such scene, or other events
+    with suppress(ValueError):  # no such scene, or different events
         return bool(moved(motion, settings_of(motion), changes))
     return False

@@ -1,4 +1,4 @@
-"""Advice for a computed motion that has lost energy, or misses its constraints."""
+"""Advice for a computed motion that has lost energy or drifts off its constraints."""
 
 from __future__ import annotations
 
@@ -13,20 +13,21 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
-# Largest accepted error of the constraints, over the long semi-axis: a pixel of a picture
+# Largest accepted constraint error relative to the long semi-axis: a pixel of a picture
 _MISSED = 1e-3
 _MOVED = 0.1  # largest accepted error of a step before its projection [long semi-axes]
-_OF_RTOL = 10.0  # with error control, accepted relative change of the energy over rtol
+_OF_RTOL = 10.0  # accepted relative change of the energy under error control, in units of rtol
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return advice, one sentence, if a motion has lost energy or its constraints; else None.
+    """Return one sentence of advice if a motion has lost energy or left its constraints, or None.
 
-    The losses are measured at steps and between them. The energy, which rolling conserves, is
-    measured by the largest kinetic plus |potential| energy, the latter with x = 0 at the start. A
-    projection keeps constraints and energy for any steps, but hides the local error. It is seen by
-    how far a state is moved: the constraints missed by a step are a part of its local error, of
-    the same size. If that is a tenth of the body, the projected state belongs to another motion.
+    Both errors are measured at steps and between them. The loss of energy, which rolling conserves,
+    is relative to the largest kinetic plus |potential| energy, the latter with x = 0 at the start.
+    A projection keeps constraints and energy for any step size, but hides the local error. The
+    distance by which it moves a state reveals that error: the constraint error of a step is part of
+    its local error, and of the same size. If it is a tenth of the body, the projected state belongs
+    to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:
@@ -66,7 +67,7 @@ def advice(motion: Trajectory) -> str | None:
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:
-    """Return the advice to take the largest step at which Baumgarte's feedback is stable."""
+    """Return the advice to use the largest step at which Baumgarte's feedback is stable."""
     stable, unstable = 0.0, step
     for _ in range(60):
         middle = (stable + unstable) / 2

@@ -1,4 +1,4 @@
-"""Endings of simulations, and the exceptions for early ones."""
+"""How simulations end, and the exceptions for early ends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @equal_to_names
 class Status(enum.Enum):
-    """Ending of a simulation; the value is a sentence for people."""
+    """How a simulation ended; the value is a sentence for readers."""
 
     COMPLETED = "the motion was followed to the end"
     JAMMED = (
@@ -41,7 +41,7 @@ class Status(enum.Enum):
         def __hash__(self) -> int: ...
 
 
-COMPLETED = Status.COMPLETED  # kept: access by the class is five times slower
+COMPLETED = Status.COMPLETED  # kept: access through the class is five times slower
 _OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
 # The Status for each code of the core's endings
 STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
@@ -55,9 +55,9 @@ class IntegrationError(RuntimeError):
         self.trajectory = trajectory
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the trajectory: by default an exception is made of its message alone."""
+        """Pickle the trajectory: by default an exception is restored from its message alone."""
         return type(self), (self.trajectory,), self.__dict__
 
 
 class WorkerError(RuntimeError):
-    """An executor lost a task, whose scenes have no result; `__cause__` is its exception."""
+    """An executor lost a task, so its scenes have no result; `__cause__` is its exception."""

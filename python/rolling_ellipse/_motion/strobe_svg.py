@@ -1,6 +1,6 @@
-"""A motion in a notebook: a table of its facts over a small picture as SVG.
+"""A motion in a notebook: a table of its facts above a small picture in SVG.
 
-The picture shows the body at even times, in the colour of the text.
+The picture shows the body at evenly spaced times, in the colour of the text.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _BODIES, _POINTS = 9, 81
 _WIDTH, _HEIGHT = 480.0, 180.0  # largest size of the picture [px]
 _MARGIN = 1.1  # room around the centres in the picture [long semi-axes]
 _REACH = 12.0  # largest distance from the start in the picture [long semi-axes]
-_TURNING = 4 * math.pi  # most that the body turns in the picture, back and forth [rad]
+_TURNING = 4 * math.pi  # largest total rotation, back and forth, in the picture [rad]
 
 
 def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
@@ -54,7 +54,7 @@ def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
-    if size.real == 0 or size.imag == 0:  # too far away: doubles do not resolve the picture
+    if size.real == 0 or size.imag == 0:  # too far away for doubles to resolve the picture
         return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)

@@ -1,4 +1,4 @@
-"""A sampled motion, and everything that follows from it, computed when asked for."""
+"""A sampled motion, and everything that follows from it, computed on demand."""
 
 from __future__ import annotations
 
@@ -53,22 +53,22 @@ if TYPE_CHECKING:
 
     _Path = str | os.PathLike[str]
 
-# For files, pickles and `sol`, not for people
+# For files, pickles and `sol`, not for users
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# Effects of a blow, which come first among reasons, that `initial_state` alone explains
+# Effects of a blow that only `initial_state` explains; they come first among the reasons
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
 def _derived(
     function: Callable[[Trajectory], npt.NDArray[_Number]],
 ) -> cached_property[npt.NDArray[_Number]]:
-    """Make a property of a Trajectory: a read-only array, computed when first asked for."""
+    """Make a property of a Trajectory: a read-only array, computed on first access."""
     return cached_property(lambda self: frozen(np.ascontiguousarray(function(self))))
 
 
 def _part(whole: str, key: Any) -> cached_property[FloatArray]:
-    """Make a property of a Trajectory: a part of another one."""
+    """Make a property of a Trajectory that is a part of another property."""
     return _derived(lambda self: getattr(self, whole)[key])
 
 
@@ -76,8 +76,9 @@ def _part(whole: str, key: Any) -> cached_property[FloatArray]:
 class Trajectory(FieldsOnly):
     """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
 
-    Two are equal if their scenes, settings, starts and times are, and their samples and events bit
-    by bit: also after saving and loading, pickling, or simulating again. `stats` does not count.
+    Two trajectories are equal if their scenes, settings, starts and times are equal, and their
+    samples and events agree bit for bit, as they do after saving and loading, pickling, or
+    simulating again. `stats` is not compared.
 
     Attributes
     ----------
@@ -96,31 +97,31 @@ class Trajectory(FieldsOnly):
     turns : ndarray, shape (n,)
         Turns made since the start of the scene.
     normal_force, friction_force : ndarray, shape (n,)
-        Contact force on the body away from and along the ground [N].
+        Contact force on the body, away from the ground and along it [N].
     friction_needed : ndarray, shape (n,)
         ``|F|/N`` (infinite where N <= 0 without F = 0).
     multipliers : ndarray, shape (n, 4)
         Lagrange multipliers of the four constraints; the first two are F and N.
     energy, kinetic_energy, translational_energy, rotational_energy, potential_energy : ndarray
-        From the state itself [J], shape (n,).
+        Computed from the state itself [J], shape (n,).
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
     scene, model, method, status, message, reason : Scene, str, str, Status, str, str
         Scene, model and method used, how the motion ended, and what happens in it: when rolling
-        ends, then what is proved of it, and the friction that it and the blow need.
+        ends, what is proved about it, and the friction that it and the blow need.
     valid_until : float
-        Time until which the model is true [s]; infinite if it always is.
+        Time until which the model is valid [s]; infinite if it always is.
     t_end : float
-        Last time that was reached [s]; `sol` goes up to it.
+        Last time reached [s]; `sol` works up to it.
     span : float
-        Last time that was asked for [s].
+        Last time requested [s].
     settings : Settings
         Arguments of `simulate`: model, method and their options.
     events : tuple of Event
-        Impacts, and changes of mode and of the direction of slip, of the model "contact", in the
-        order of time; it prints as a table and has `to_dataframe`.
+        Impacts, and changes of mode and of the slip's direction, of the model "contact", in order
+        of time; it prints as a table and has `to_dataframe`.
     stats : dict
-        Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
+        Counts of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
 
     Other Parameters
@@ -132,7 +133,7 @@ class Trajectory(FieldsOnly):
         Stored data of "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the
         samples.
     kept_events : tuple of Event, or None
-        Events from a file, for `events`; without them the motion is solved again for its events.
+        Events from a file, for `events`; if missing, the motion is solved again for its events.
     """
 
     t: FloatArray
@@ -182,7 +183,7 @@ class Trajectory(FieldsOnly):
         _require_counts(self.stats)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: pickles and deep copies do not keep that."""
+        """Make the arrays read-only again: pickles and deep copies lose that."""
         self.__dict__.update(state)
         for group in self._arrays():
             for values in group:
@@ -192,7 +193,7 @@ class Trajectory(FieldsOnly):
     def computed(
         cls, scene: Scene, settings: Settings, times: FloatArray, start: Pair | None = None
     ) -> Trajectory:
-        """Solve a scene up to the last of the times, and sample it at all times that are reached.
+        """Solve a scene up to the last of the times, and sample it at all times reached.
 
         A start (q, q_dot) off the constraints replaces the start of the scene.
         """
@@ -212,7 +213,7 @@ class Trajectory(FieldsOnly):
         times = np.array([self.span])
         return _core.simulate(self.scene.core, self.settings.core, times, self.start)[0]
 
-    # -- what follows from the samples ----------------------------------------------------------
+    # -- derived from the samples ---------------------------------------------------------------
 
     @cached_property
     def _details(self) -> dict[str, FloatArray]:
@@ -259,14 +260,14 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def events(self) -> Events:
-        """Events of the model "contact" in the order of time, a tuple that prints as a table."""
+        """Events of the model "contact" in order of time, a tuple that prints as a table."""
         if self.kept_events is not None:
             return Events(self.kept_events)
         return events(self.scene, self._solution.events.tolist())
 
     @property
     def success(self) -> bool:
-        """Whether the status is COMPLETED, or JAMMED, where no motion goes on, or more than one."""
+        """Whether the status is COMPLETED, or JAMMED (no motion continues, or more than one)."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
@@ -294,7 +295,7 @@ class Trajectory(FieldsOnly):
         if times.size and not (times.min() >= 0 and times.max() <= self.t_end):
             require("t", f"within [0, {self.t_end!r}]", times, (times >= 0) & (times <= self.t_end))
         solution, known = self._solution, vars(self)
-        # What is still to be computed is left to the new motion
+        # The new motion computes whatever has not been computed yet
         kept = {name: known[name] for name in self.__dataclass_fields__ if name in known}
         return trusted(type(self), kept | sampled(solution, times) | {"_solution": solution})
 
@@ -314,12 +315,12 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that continues from time t [s]; give it an impulse with `Scene.replace`.
 
-        At the time of an event it continues in the mode after the event. At the `t_end` of a motion
-        that ended by ``max_events`` the next event is due. If it is an impact, it is the first
-        event of the new motion, at t = 0 or a rounding later: no other scene may start by moving
-        into the ground. Any other change happens without an event where the state is at the limit
-        of its mode to within rounding, else a moment later. Bounces too low to be resolved, which a
-        motion sums after an impact, are summed after one more impact by a scene among them.
+        At the time of an event it continues in the mode after the event. If a motion ended because
+        of ``max_events``, the next event is due at its `t_end`. If that event is an impact, it is
+        the first event of the new motion, at t = 0 or a rounding later: no other scene may start by
+        moving into the ground. Any other change happens without an event where the state is at the
+        limit of its mode to within rounding, else a moment later. Bounces too low to be resolved
+        are summed after an impact; a scene that starts among them sums them after one more impact.
 
         Raises
         ------
@@ -356,11 +357,11 @@ class Trajectory(FieldsOnly):
             theta: npt.ArrayLike | None = None, *, scene: Scene,
         ) -> Self: ...  # fmt: skip
 
-    else:  # a type checker would take every name for an attribute
+    else:  # with it a type checker would accept any attribute name
 
         def __getattr__(self, name: str) -> Any:
             hint = meant(name, dir(self)) if name in MEANT else ""
-            known = {} if hint else {"name": name, "obj": self}  # Python shows a near name
+            known = {} if hint else {"name": name, "obj": self}  # Python suggests a near name
             raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}", **known)
 
     def __dir__(self) -> list[str]:
@@ -395,7 +396,7 @@ class Trajectory(FieldsOnly):
         return f"<Trajectory {self.model}/{self.method}: {samples}, {self.status.name}>"
 
 
-# What decides equality beside arrays and events
+# What decides equality besides arrays and events
 _facts = attrgetter(
     "scene", "settings", "span", "model", "method", "status", "message", "reason", "valid_until",
     "t_end", "t.shape",
@@ -418,7 +419,7 @@ def _require_counts(stats: Any) -> None:
 
 
 def _reason(self: Trajectory) -> str:
-    """What happens in a motion, and then what is proved of rolling."""
+    """What happens in a motion, then what is proved about its rolling."""
     if self.start is not None:
         return in_words([("off_constraints", [])])
     _, headline, reasons = _core.describe(self.scene.core, self._solution)
@@ -426,7 +427,7 @@ def _reason(self: Trajectory) -> str:
 
 
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
-    """Return a function that reads a fact of a motion from its solution, with a docstring."""
+    """Return a function, with a docstring, that reads a fact of a motion from its solution."""
     read.__doc__ = meaning
     return read
 
@@ -442,10 +443,10 @@ find_late(
     status=_fact("How the motion ended.", lambda m: STATUSES[m._solution.ending]),
     message=_fact("The status as a sentence.", lambda m: m._solution.message or m.status.value),
     valid_until=_fact(
-        "Time until which the model is true [s]; infinite if it always is.",
+        "Time until which the model is valid [s]; infinite if it always is.",
         lambda m: m._solution.valid_until(m.scene.core),
     ),
-    t_end=_fact("Last time that was reached [s].", lambda m: m._solution.followed_until),
+    t_end=_fact("Last time reached [s].", lambda m: m._solution.followed_until),
 )
 for _each in (*QUANTITIES, *MATRICES, MODE):
     if _each.name in vars(Trajectory):  # only properties can have a docstring

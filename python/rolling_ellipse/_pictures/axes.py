@@ -1,4 +1,4 @@
-"""The Axes and figures of pictures, their legends and titles, and what docstrings share."""
+"""The Axes and figures of pictures, their legends and titles, and shared parts of docstrings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _Drawn = TypeVar("_Drawn")
 
 
 class Alone:
-    """A lock for what exists once in a process, free in a forked process: `with alone(): ...`."""
+    """A lock for a process-wide resource, released in a forked process: `with alone(): ...`."""
 
     def __init__(self) -> None:
         self._renew()
@@ -47,23 +47,23 @@ class Alone:
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 _LOOKS = ("color", "linewidth", "linestyle", "alpha", "labels", "colors", "figsize", "ax", "count")
-_NARROW = 2.5  # width of axes with small letters [inch]
-_NAMED = 8  # most names of motions: more would fill the picture
+_NARROW = 2.5  # axes narrower than this get small letters [inch]
+_NAMED = 8  # maximum number of motions named: more would fill the picture
 
 _SHARED = {
     "ax": """ax : matplotlib Axes, optional
-    Where to draw; without it, in a new pyplot figure.
+    Where to draw; default: a new pyplot figure.
 {figsize}""",
     "figsize": """figsize : (float, float), optional
-    Width and height of the new figure [inch]; without it, those of the style, or what fits.""",
+    Width and height of the new figure [inch]; default: those of the style, or a suitable size.""",
     "motions": """labels : sequence of str, optional
-    Names of the motions; without it, what they differ in.
+    Names of the motions; default: what they differ in.
 colors : sequence of matplotlib colours, optional
     One for each motion.
 **options
     Properties of `matplotlib.lines.Line2D` for all curves.""",
 }
-"""Parts of docstrings, each in the place of its `{name}`."""
+"""Parts of docstrings; each replaces its `{name}`."""
 _RETURNS = """
 
 Returns
@@ -76,13 +76,13 @@ Raises
 ValueError
     If an argument is out of range or not as above, or there is nothing to show.
 TypeError
-    If something is no trajectory, or an argument of another wrong kind.
+    If something is not a trajectory, or another argument is of a wrong kind.
 """
 
 
 @dataclass(frozen=True, repr=False)
 class Artists:
-    """The Axes of a picture; subclasses add its artists. It prints how many there are of each."""
+    """The Axes of a picture; subclasses add the artists. Its repr has the number of each kind."""
 
     axes: tuple[Axes, ...]
 
@@ -111,7 +111,7 @@ class Artists:
 
 
 def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
-    """Complete the docstring of a plot function; if it fails, close the figures it has opened."""
+    """Complete the docstring of a plot function; if the function fails, close figures it opened."""
 
     @wraps(draw)
     def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
@@ -138,7 +138,7 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 
 def _hint(error: Exception, args: Sequence[Any]) -> str:
-    """Return what the call got wrong and where it belongs; "" if that is unknown."""
+    """Return which argument was wrong and where it belongs; "" if that is unknown."""
     name = str(error).partition("unexpected keyword argument ")[2].strip("'")
     if hasattr(Axes, f"set_{name}"):
         return f"{name}, which belongs to the Axes that are drawn on: their set({name}=...)"
@@ -151,7 +151,7 @@ def _hint(error: Exception, args: Sequence[Any]) -> str:
 
 
 def axes_of(ax: Axes | None, size: tuple[float, float], figsize: Any = None) -> Axes:
-    """Return the given Axes, or the Axes of a new pyplot figure; `size` [inch] is what fits."""
+    """Return the given Axes, or those of a new pyplot figure of a suitable `size` [inch]."""
     return _new_figure(size, figsize).add_subplot() if ax is None else require_axes(ax)
 
 
@@ -163,7 +163,7 @@ def require_axes(ax: Any) -> Axes:
 
 
 def panels_of(ax: Axes | Sequence[Axes] | None, figsize: Any) -> list[Axes]:
-    """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
+    """Return the one or two Axes given, or two of a new pyplot figure that share a time axis."""
     if ax is None:
         return list(_new_figure((7, 5), figsize).subplots(2, sharex=True))
     panels = listed(ax)
@@ -176,7 +176,7 @@ def panels_of(ax: Axes | Sequence[Axes] | None, figsize: Any) -> list[Axes]:
 
 
 def listed(ax: Any) -> list[Any]:
-    """Return the entries of nested lists and arrays, flat; a single object is the only entry."""
+    """Return the entries of nested lists and arrays as a flat list; a single object is one."""
     rows = ax.ravel().tolist() if isinstance(ax, np.ndarray) else ax
     if not isinstance(rows, (list, tuple)):
         return [ax]
@@ -184,7 +184,7 @@ def listed(ax: Any) -> list[Any]:
 
 
 def figure_of(figure: Any, size: tuple[float, float], figsize: Any) -> Figure:
-    """Return the figure given, or a new pyplot figure; `size` [inch] is what fits."""
+    """Return the given figure, or a new pyplot figure of a suitable `size` [inch]."""
     if figure is None:
         return _new_figure(size, figsize)
     whole: Any = require_figure(figure).get_figure(root=True)
@@ -209,7 +209,7 @@ def pyplot_figure(**options: Any) -> Figure:
 
 
 def picture_file(path: Any) -> str | None:
-    """Return the name of the file to write, if any, or raise an error: also for a quantity."""
+    """Return the name of the file to write, if any; it must not be the name of a quantity."""
     name = None if path is None else file_name("path", path)
     if any(name == each.name for each in QUANTITIES):
         raise ValueError(
@@ -228,13 +228,13 @@ def write(drawn: Artists, name: str | None) -> None:
 
 
 def close(figure: Figure) -> None:
-    """Take a figure out of pyplot; it can still be drawn and written."""
+    """Remove a figure from pyplot; it can still be drawn and written."""
     with _with_figures():
         plt.close(figure)
 
 
 def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: Any) -> None:
-    """Raise ValueError unless a size is two positive numbers, and of a new figure."""
+    """Raise ValueError unless a size is two positive numbers and for a new figure."""
     if figsize is None:
         return
     wrong = shown(figsize)
@@ -247,13 +247,13 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
-    """Open a pyplot figure of the given size, of the style's, or of the size that fits."""
+    """Open a pyplot figure of the given size, else of the style's, else of the suitable one."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
     return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")
 
 
 def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
-    """Return the entries that a legend has room for: all, or evenly spaced ones with both ends."""
+    """Return the entries a legend has room for: all, or evenly spaced ones from first to last."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
 
@@ -263,7 +263,7 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None
     entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
     room = ax.get_window_extent().width
     size = size or ("small" if room > _NARROW * ax.figure.dpi else "x-small")
-    for columns in range(len(entries), 0, -1):  # the most that have room
+    for columns in range(len(entries), 0, -1):  # as many as there is room for
         legend = ax.legend(
             handles=entries, ncols=columns, loc="lower right", bbox_to_anchor=(1, 1),
             frameon=False, fontsize=size,
@@ -275,13 +275,13 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None
 
 
 class _Within:
-    """A locator of axes that keeps legend, title and labels in their box if no layout does.
+    """A locator of axes that keeps legend, title and labels in their box if no layout engine does.
 
-    Axes with equal scales are fitted to each box again: matplotlib only widens their limits.
+    Axes with equal scales are refitted to each box: matplotlib only widens their limits.
     """
 
     def __init__(self, ax: Axes) -> None:
-        self.get_subplotspec = ax.get_subplotspec  # `tight_layout` asks for it
+        self.get_subplotspec = ax.get_subplotspec  # `tight_layout` calls it
 
     def __call__(self, ax: Any, renderer: Any) -> Bbox:
         box: Bbox = ax.get_position(original=True)
@@ -299,12 +299,12 @@ class _Within:
 
 
 def title_beside_legend(ax: Axes, *remarks: str) -> None:
-    """Set a title on the left, beside the legend, or above it where there is no room."""
+    """Set a title on the left, beside the legend, or above it if there is no room."""
     text = "; ".join(filter(None, remarks))
     title, legend = ax.set_title(text, loc="left", fontsize="medium"), ax.get_legend()
     if legend is None or not text:
         return
     taken = legend.get_window_extent()
     if title.get_window_extent().width + taken.width > ax.get_window_extent().width:
-        above = taken.height * 72 / ax.figure.dpi + 4  # [points]; 4 for the descent of letters
+        above = taken.height * 72 / ax.figure.dpi + 4  # [points]; 4 for descenders
         ax.set_title(text, loc="left", fontsize="medium", pad=above)

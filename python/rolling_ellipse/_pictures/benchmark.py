@@ -1,4 +1,4 @@
-"""Scores of a simulator: error over condition number, a row for each problem."""
+"""Scores of a simulator: error over condition number, one row per problem."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The motions of one picture and their styles.
 
-Several motions differ in colour (hue and lightness), and also in dashes. Where dashes belong to
-the quantities, motions differ in markers instead. So pictures can be read in grey.
+Several motions differ in colour (hue and lightness), and also in dashes. Where dashes mark the
+quantities, motions differ in markers instead. Thus pictures remain readable in grey.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from .axes import listed, some_of
 from .palette import Palette, palette_of
 
 _ABOUT = "method", "model"
-MOST_FACTS = 3  # in one label: more would be wider than a small picture
+MOST_FACTS = 3  # in one label: more would not fit a small picture
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
 MARKERS = (".", "x", "+", "1", "2")
 
 
 @dataclass(frozen=True)
 class Style:
-    """The style of one motion of several; without a colour its quantities have their own."""
+    """The style of one motion among several; if it has no colour, its quantities have their own."""
 
     label: str = ""
     colour: Any = None
@@ -41,11 +41,11 @@ class Style:
 
 
 class Comparison:
-    """The motions of one picture in the order given, each with samples.
+    """The motions of one picture in the given order, each with samples.
 
-    Iteration gives each motion with its style. A single motion without a given colour has the plain
-    `Style()`, so that its quantities can differ in colour. `options` are properties of Line2D for
-    the curves of all motions.
+    Iteration yields each motion with its style. A single motion without a given colour has the
+    plain `Style()`, so that its quantities can differ in colour. `options` are properties of Line2D
+    for the curves of all motions.
     """
 
     def __init__(
@@ -68,28 +68,28 @@ class Comparison:
         return zip(self.motions, [Style()] if self._plain else self.styles, strict=True)
 
     def sampled(self, sample: Callable[[Trajectory], Trajectory]) -> Comparison:
-        """Sample all motions by a function, and return itself."""
+        """Sample all motions with a function, and return self."""
         self.motions = tuple(map(sample, self.motions))
         return self
 
     def restyle(self, *artists: Artist) -> None:
-        """Give artists the properties of all curves."""
+        """Give artists the properties common to all curves."""
         for artist in artists:
             artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
-        """Return entries of a legend: the curves of one motion, else motions and quantities."""
+        """Return legend entries: the curves of one motion, else motions and quantities."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
         return [*self.motion_handles(solid=True), *self.quantity_handles(*quantities)]
 
     def quantity_handles(self, *quantities: tuple[str, str]) -> list[Line2D]:
-        """Return entries of a legend for quantities (name, dash) of every motion."""
+        """Return legend entries for quantities (name, dash) of every motion."""
         grey = self.palette.grey
         return [Line2D([], [], color=grey, ls=dash, label=name) for name, dash in quantities]
 
     def motion_handles(self, *, solid: bool) -> list[Line2D]:
-        """Return entries of a legend for the motions: dashes, or `solid` lines with markers."""
+        """Return legend entries for the motions: dashes, or `solid` lines with markers."""
         handles = [
             Line2D(
                 [], [], color=style.colour, label=style.label, ms=3, mew=0.8,
@@ -102,7 +102,7 @@ class Comparison:
 
 
 def require_motion(trajectory: object) -> None:
-    """Raise TypeError unless it is a Trajectory, ValueError if it has no samples."""
+    """Raise TypeError unless the argument is a Trajectory, ValueError if it has no samples."""
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
     if trajectory.t.size == 0:
@@ -128,7 +128,7 @@ def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajector
 def _one_each(
     name: str, given: Any, count: int, kind: str, fits: Callable[[Any], bool]
 ) -> list[Any]:
-    """Return the labels or colours given, one for each motion, or raise ValueError."""
+    """Return the given labels or colours, one for each motion, or raise ValueError."""
     values: list[Any] = []
     with suppress(TypeError):
         values = [] if isinstance(given, str) else list(islice(given, count + 1))
@@ -143,7 +143,7 @@ def _styles(labels: Sequence[str], palette: Palette, colors: Any) -> tuple[Style
     colours: Sequence[Any] = palette.curves
     if colors is not None:
         colours = _one_each("colors", colors, count, "matplotlib colour", is_color_like)
-    elif count > len(colours):  # more motions than colours: from light to dark
+    elif count > len(colours):  # more motions than colours: shades from light to dark
         colours = [to_hex(palette.times(share)) for share in np.linspace(0, 1, count)]
     markers = MARKERS if count > 1 else ("",)
     return tuple(
@@ -156,9 +156,8 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
     """Return one name for each trajectory: the given ones, or what differs among them.
 
     Without `labels` a name consists of the method, the model and the fields of the scene that
-    differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". More than three facts are cut with an
-    ellipsis. If two such names are equal, the names are "1", "2", "3". The name of a single
-    trajectory is empty.
+    differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". After three facts an ellipsis follows. If
+    two such names are equal, the names are "1", "2", "3". The name of a single trajectory is empty.
     """
     count = len(trajectories)
     if labels is not None:
@@ -176,7 +175,7 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
 
 
 def _texts(name: str, values: list[Any]) -> list[str]:
-    """Return the texts of one field of several scenes, with enough digits to differ."""
+    """Return the values of one field of several scenes as texts, with enough digits to differ."""
     texts: list[str] = []
     for digits in (4, 6, 12, 17):
         texts = [_text(name, value, digits) for value in values]

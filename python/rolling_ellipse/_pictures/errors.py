@@ -1,4 +1,4 @@
-"""Energies, missed constraints and distances from the exact motion, over time."""
+"""Energies, constraint errors and distances from the exact motion, over time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ QUANTITIES = {  # quantities and their symbols
     "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
 }  # fmt: skip
 _UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
-_ROUNDING = 1e-13  # the axis of errors reaches ten times this at least, so that it looks small
+_ROUNDING = 1e-13  # the axis of errors reaches ten times this or more, so that rounding looks small
 _LEAST = 1e-17  # lower end of the axis of errors
 
 
@@ -38,11 +38,11 @@ def draw_errors(
     ax: Axes, shown: Comparison, errors: Iterable[Mapping[str, FloatArray]], label: str,
     none: str = "exactly 0 throughout", *, dashed: bool = False,
 ) -> tuple[Line2D, ...]:  # fmt: skip
-    """Draw the errors of each motion by their names, on a logarithmic axis; lines if `dashed`.
+    """Draw the errors of each motion by name on a logarithmic axis, as lines if `dashed`.
 
-    Else they are dots, because rounding jumps. The axis goes from below rounding to above the
-    largest. It leaves out exact zeros; the label of an error that is always 0, or that the ground
-    does not hold, says so, and a sentence names errors that have no place on it.
+    Otherwise they are dots, because rounding errors jump. The axis reaches from below rounding to
+    above the largest error. It leaves out exact zeros; the label of an error that is always 0, or
+    of an unconstrained quantity, says so, and a sentence names errors that cannot be shown.
     """
     palette, lines = palette_of(ax), list[Line2D]()
     colours = *palette.curves[:3], palette.plum, palette.grey
@@ -58,7 +58,7 @@ def draw_errors(
             lines += ax.plot(t, values, color=style.colour or colours[rank], label=name, **how)
     shown.restyle(*lines)
     largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
-    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # first: nothing but zeros has no log scale
+    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # first: a log scale cannot show only zeros
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(label)
     if largest < _LEAST:
@@ -74,7 +74,7 @@ def draw_errors(
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
-    Of kind "energies" `error` is empty; of kind "error" `total`, `kinetic` and `potential` are.
+    For the kind "energies" `error` is empty; for "error" `total`, `kinetic` and `potential` are.
     """
 
     total: tuple[Line2D, ...]
@@ -95,20 +95,21 @@ def plot_energy(
     kind: Literal["energies", "error"] | None = None,
     **options: Any,
 ) -> Energy:
-    """Draw the energies of motions [J], or by how much the energy that they should keep is off.
+    """Draw the energies of motions [J], or the error of the energy that they should conserve.
 
     The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
-    a logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
-    friction and impacts take is no error: with them E0 is that of the first sample after the last
-    event, and a slide has no error. Dots are at the samples, or, of fewer than 100, as fine as
-    curves. Modes, events, lost validity and long spans are drawn as in `plot_forces`.
+    a logarithmic scale, which cannot show exact zeros; E0 is the energy of the first sample. Losses
+    by friction and impacts are not errors: then E0 is that of the first sample after the last
+    event, and a slide has no error. Dots are at the samples or, if there are fewer than 100, as
+    dense as the points of a curve. Modes, events, lost validity and long spans are drawn as in
+    `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     kind : {"energies", "error"}, optional
-        What to draw: without it the energies of one motion, and of several where one loses energy,
-        else the errors.
+        What to draw; default: energies for one motion, or for several if one loses energy, else
+        errors.
     {ax}
     {motions}
     """
@@ -147,22 +148,22 @@ def plot_constraints(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Constraints:
-    """Draw by how much motions miss their constraints, without units, on a logarithmic scale.
+    """Draw the constraint errors of motions, without units, on a logarithmic scale.
 
     Lengths are divided by the longer semi-axis, and rates by the largest ``|omega|`` of the motion
     as well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows
     f2, f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
-    `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
-    place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
-    flight. Dots are at the samples, or, of fewer than 100, as fine as curves. Modes, events, lost
-    validity and long spans are drawn as in `plot_forces`.
+    `ConstraintResiduals`); for several motions each panel shows the worst. Exact zeros are not
+    shown, nor is anything that the ground does not constrain: slip while sliding, gap in flight.
+    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
+    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     ax : matplotlib Axes or two of them, optional
-        Where to draw the panels; in a single one both are drawn, of each the worst. Without it,
-        in a new pyplot figure.
+        Where to draw the panels; a single one shows the worst of both. Default: a new pyplot
+        figure.
     {figsize}
     {motions}
     """
@@ -181,7 +182,7 @@ def plot_constraints(
 
 
 def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
-    """Return the errors of each panel by name; of one of several motions only the worst."""
+    """Return the errors of each panel by name; only the worst if there are several motions."""
     positions, velocities = constraint_errors(motion)
     if style.label:
         of_panels = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
@@ -212,10 +213,10 @@ def plot_error(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Error:
-    """Draw by how much one quantity of motions is off over time, on a logarithmic scale.
+    """Draw the error of one quantity of motions over time, on a logarithmic scale.
 
-    Each motion is held against the exact one from the same scene: exact rolling where the motion
-    is of a model that rolls, else the contact motion. An exact zero has no place on the scale.
+    Each motion is compared with the exact one from the same scene: exact rolling if the motion's
+    model is one of rolling, else the contact motion. Exact zeros are not shown.
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
@@ -225,9 +226,9 @@ def plot_error(
         "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
         "friction_force", "energy", "kinetic_energy" or "potential_energy".
     reference : Trajectory, optional
-        What all motions are held against, at the times of each: it must reach as far. It must be
-        given for a motion that started from coordinates of its own or lasts longer than 1e15 half
-        turns; those that are taken for right are among the artists.
+        The motion that all others are compared with at their times; it must last as long as they
+        do. It is required for a motion that started from given coordinates or lasts longer than
+        1e15 half turns. The references used are among the artists.
     {ax}
     {motions}
     """
@@ -267,14 +268,14 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
         how = {"model": "rolling", "method": "exact"}
     try:
         return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
-    except ValueError as error:  # the core refuses times beyond 1e15 half turns
+    except ValueError as error:  # the core rejects times beyond 1e15 half turns
         raise ValueError(
             f"reference must be given where no exact motion reaches {last:g} s: {error}"
         ) from error
 
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
-    """Return |error| at the times of a motion; NaN after the end of the right one."""
+    """Return |error| at the times of a motion; NaN after the end of the reference `right`."""
     there = right.sol(np.minimum(motion.t, right.t_end))
     error = np.abs(getattr(motion, quantity) - getattr(there, quantity))
     return np.where(motion.t <= right.t_end, error, np.nan)

@@ -1,4 +1,4 @@
-"""Fits: tracks over the fitted motion, predicted over measured impacts, and what is left over."""
+"""Fits: tracks over the fitted motion, predicted over measured impacts, and the residuals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _RATES = {"x_dot": "x_dot [m/s]", "z_dot": "z_dot [m/s]", "omega": "ω [rad/s]"}
 
 @dataclass(frozen=True, repr=False)
 class FitChart(Artists):
-    """Artists of `Fit.plot` and `FittedImpacts.plot`; keys are the names of what was measured."""
+    """Artists of `Fit.plot` and `FittedImpacts.plot`; keys are the names of measured quantities."""
 
     measured: dict[str, Line2D]
     fitted: dict[str, Line2D]
@@ -84,7 +84,7 @@ def draw_impacts(fit: FittedImpacts, path: Any, figure: Any, figsize: Any) -> Fi
 
 
 def _finished(chart: FitChart, whole: Figure, title: str, path: Any) -> FitChart:
-    """Dress the axes, set the title, and write the picture to a file if there is a path."""
+    """Style the axes, set the title, and write the picture if there is a path."""
     for ax in chart.axes:
         dress_grid(ax)
     whole.align_ylabels(chart.axes)

@@ -23,22 +23,22 @@ from .panels import DASHES, draw_curves, draw_line, entries_of, events_shown, fi
 from .sampling import are_ranges, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]
-"""The impulses of a motion normal to the ground and along it: points from 0, with breaks."""
+"""The impulses of a motion normal to the ground and along it: stems from 0, with breaks."""
 _Lines = tuple[Line2D, ...]
 _Limits = tuple[PolyCollection | None, ...]
 _FORCES = {"normal_force": "normal", "friction_force": "friction"}
-_SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
+_SPIKE = 20.0  # in weights: a larger force would flatten ordinary ones on a linear scale
 _LIMIT: dict[str, Any] = {"lw": 1.2, "ls": ":", "label": "available"}
-_STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
+_STEEP = 3.0  # largest |F|/N in view: it is infinite where N vanishes
 
 
 @dataclass(frozen=True, repr=False)
 class Forces(Artists):
-    """Artists of `plot_forces`; item i belongs to motion i, but for `axes` and `marks`.
+    """Artists of `plot_forces`; item i belongs to motion i, except in `axes` and `marks`.
 
-    `limits` are None where friction has no limit; `impulses` are stems normal to the ground and
-    along it; `needed` and `available` (the coefficients of friction) are empty where only one Axes
-    was given.
+    `limits` are None where friction is unlimited; `impulses` are stems normal to the ground and
+    along it; `needed` and `available` (the coefficients of friction) are empty if only one Axes was
+    given.
     """
 
     normal: tuple[Line2D, ...]
@@ -60,26 +60,25 @@ def plot_forces(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Forces:
-    """Draw the normal force and friction of one motion or of several, and the friction needed.
+    """Draw the normal force and friction of one motion or several, and the friction needed.
 
-    The upper panel shows N and F [N], F over the band +-friction N; where a spike towers over the
+    The upper panel shows N and F [N], F over the band +-friction N; if a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
     impacts, as mean forces over the time that the legend states. The lower panel shows ``|F|/N``
-    against the coefficient of friction; it is infinite where N <= 0. The ground of the curves is
-    hatched while the body slides, grey in flight, where both forces are 0, and dotted at rest (of
-    several motions, each has a row at the top); dotted lines mark events, those of a single motion
-    with their names where there is room, or counted. Where the model is not valid, all ground is
-    grey.
+    and the coefficient of friction; the former is infinite where N <= 0. The background is hatched
+    while the body slides, grey in flight, where both forces are 0, and dotted at rest (each of
+    several motions has a row at the top); dotted lines mark events, named for a single motion if
+    there is room, else counted. Where the model is not valid, the whole background is grey.
 
-    The curves are those of the motion itself, whatever samples the trajectory has. More half turns
-    than can be distinguished are drawn as ranges: from the least to the largest value in each of
-    800 parts of the time; the title then says how many there are.
+    The curves are those of the motion itself, whatever samples the trajectory has. If there are too
+    many half turns to distinguish, ranges are drawn: from the least to the largest value in each of
+    800 equal intervals; the title then states the number of half turns.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     ax : matplotlib Axes or two of them, optional
-        Where to draw the forces, and ``|F|/N`` if there is a second one; without it, both in a new
+        Where to draw the forces, and ``|F|/N`` if there is a second one; default: both in a new
         pyplot figure.
     {figsize}
     {motions}
@@ -99,7 +98,7 @@ def plot_forces(
 def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, tuple[Stems, ...]]:
     """Draw and return N and F of each motion, the band +-friction N of F, and impulses of impacts.
 
-    The axis is linear, or beyond the weight logarithmic, where spikes tower.
+    The axis is linear, or logarithmic beyond the weight if a spike towers over it.
     """
     limits = tuple(_draw_limit(ax, *each) for each in shown)
     normal, friction = draw_curves(ax, shown, "force [N]", _FORCES)
@@ -107,7 +106,7 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
     ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     motions = shown.motions
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
-    if ax.dataLim.height < 1e-9 * weight:  # flight all the time: the forces give no scale
+    if ax.dataLim.height < 1e-9 * weight:  # flight throughout: the forces give no scale
         ax.set_ylim(-weight, weight)
     if max(float(np.max(np.abs(m.normal_force))) for m in motions) > _SPIKE * weight:
         decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
@@ -121,7 +120,7 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
 
 
 def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | None:
-    """Draw the band of a motion; infinite friction has none."""
+    """Draw the band of possible friction forces of a motion; none for infinite friction."""
     if not math.isfinite(motion.scene.friction):
         return None
     t, bound = motion.t, motion.scene.friction * motion.normal_force
@@ -132,10 +131,10 @@ def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | 
 
 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
-    """Draw impulses as stems as high as the mean force over a time that their label states.
+    """Draw impulses as stems whose height is the mean force over a time that their label states.
 
-    Over this time, a power of ten below sqrt(size/gravity), the impulse of a fall from the body's
-    own height becomes a force of some weights.
+    The time is a power of ten below sqrt(size/gravity): over it, the impulse of a fall from the
+    body's own height becomes a force of a few weights.
     """
     scene = shown.motions[0].scene
     time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
@@ -154,7 +153,7 @@ def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
 
 
 def _fit_lines(ax: Axes) -> None:
-    """Make room for the lines alone, not for a limit of friction far below them."""
+    """Fit the view to the lines alone, not to a limit of friction far from them."""
     scale, values = ax.yaxis.get_transform(), [np.ravel(line.get_ydata()) for line in ax.lines]
     low, high = scale.transform([f(np.concatenate(values)) for f in (np.nanmin, np.nanmax)])
     air = 0.05 * (high - low)

@@ -1,7 +1,7 @@
 """The body and its ground as matplotlib artists, for still and moving pictures alike.
 
-Artists live in ground axes (x along the ground, z normal to it); `tilted` turns them to what the
-eye sees.
+Artists live in ground axes (x along the ground, z normal to it); `tilted` rotates them to the view
+on the page.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from .palette import PLUM, palette_of
 
 Places = tuple[FloatArray, FloatArray]  # x and z, (n,) [m]
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
-SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
+SHOWN_TURNS = 3.0  # maximum in a still picture: more turns would make it a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 QUARTER = math.pi / 2
-_TICKS = 8.0  # most ticks of the ground on an inch
-_LONG = 1e6  # figures beyond it are left to matplotlib, which takes an offset out of them
+_TICKS = 8.0  # maximum number of ticks of the ground per inch
+_LONG = 1e6  # larger numbers are left to matplotlib, which factors out an offset
 
 
 def tilted(scene: Scene) -> Affine2D:
@@ -76,22 +76,22 @@ def tip(trajectory: Trajectory) -> Places:
 
 
 def contact_points(trajectory: Trajectory, *, sliding: bool = False) -> Places:
-    """Return where the body touches the ground, or only where it slides; NaN elsewhere."""
+    """Return where the body touches the ground (or, if `sliding`, slides on it); NaN elsewhere."""
     mode = trajectory.mode
     here = mode == Mode.SLIDING if sliding else mode != Mode.FLIGHT
     return np.where(here, trajectory.contact_x, np.nan), np.where(here, 0.0, np.nan)
 
 
 def touching_x(scene: Scene, state: InitialState) -> float:
-    """Return the place on the ground that an event's body touches, or is above [m]."""
+    """Return the point on the ground that the body touches, or is above, at an event [m]."""
     return state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
     """Return left, right, bottom, top [m] of a view of a body with centres at x, z [m].
 
-    It has a little air around the body. It is refused if a double at that distance cannot resolve a
-    thousandth of the body.
+    The view leaves a margin around the body. ValueError is raised if a double at that distance
+    cannot resolve a thousandth of the body.
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
@@ -108,7 +108,7 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
 
 
 def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Polygon:
-    """Fill the earth below z = 0, well past `span` [m] around all places x [m]."""
+    """Fill the ground below z = 0, well beyond `span` [m] around all positions x [m]."""
     left, right = float(np.min(x)) - span, float(np.max(x)) + span
     reach = right - left + 100 * max(scene.a, scene.b)
     left, right = left - reach, right + reach
@@ -118,15 +118,15 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
         facecolor=palette.earth, edgecolor=palette.grey, lw=1, zorder=1,
         transform=on_slope(ax, scene),
     )  # fmt: skip
-    ax.add_artist(earth)  # add_patch would widen the view to the whole earth
+    ax.add_artist(earth)  # add_patch would widen the view to all of the ground
     return earth
 
 
 class Ruler:
-    """Ticks of the ground, every fifth longer and with its distance.
+    """Ticks of the ground, every fifth longer and labelled with its distance.
 
-    They make the rolling visible. Only those within `span` [m] of a place are drawn, so that the
-    cost does not grow with the distance.
+    They make the rolling visible. Only those within `span` [m] of a given point are drawn, so that
+    the cost does not grow with the distance.
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
@@ -136,7 +136,7 @@ class Ruler:
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._unit = length_unit(max(scene.a, scene.b))
         self._fifths = math.ceil(span / (5 * self.step))
-        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim would cut figures
+        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim cuts figures off
         grey = palette_of(ax).grey
         self.ticks = LineCollection([], colors=grey, lw=1, **in_ground_axes)
         ax.add_artist(self.ticks)
@@ -149,7 +149,7 @@ class Ruler:
         ]  # fmt: skip
 
     def move(self, x: float) -> None:
-        """Put the ticks around x [m]."""
+        """Move the ticks to surround x [m]."""
         middle = 5 * round(x / (5 * self.step))
         marks = middle + np.arange(-5 * self._fifths, 5 * self._fifths + 1)
         lengths = self._depth * np.where(marks % 5 == 0, 2, 1)

@@ -1,4 +1,4 @@
-"""Labels that do not overlap: beside lines, upright at a time, along lines."""
+"""Labels that do not overlap: beside lines, upright at a time, or along lines."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .._ask.check import FloatArray
 from .palette import INK, palette_of
 
 _SMALL = "x-small"
-_CROSSED = 4  # most dots of lines under a text that may be left out
-_GAP = 2.0  # between a line and a text beside it [points]
-_PAD = np.array([5.0, 1.0])  # least sum of the gaps on both sides of a text [points]
-_BODY = 0.7  # height of the letters, in heights of a text along a curve
-_FARTHEST = 0.6  # farthest place from the wanted one, as a share of the line
-_TALLEST = 0.35  # largest height of an upright label, in heights of the axes
-_FINE = 16  # parts into which a straight piece of a line is cut, to find where it enters the view
+_CROSSED = 4  # maximum number of dots of lines that an optional text may cover
+_GAP = 2.0  # gap between a line and a text beside it [points]
+_PAD = np.array([5.0, 1.0])  # minimum total gap along and across a text [points]
+_BODY = 0.7  # height of the letters of a text along a curve, relative to that of the text
+_FARTHEST = 0.6  # largest distance from the preferred point, as a share of the line
+_TALLEST = 0.35  # largest height of an upright label, as a share of the axes' height
+_FINE = 16  # subdivisions of a straight segment, to find where it enters the view
 
 Sides = tuple[tuple[int, int], ...]
 BELOW_FIRST: Sides = ((0, -1), (0, 1))
@@ -31,13 +31,13 @@ ABOVE_FIRST, BESIDE = BELOW_FIRST[::-1], ((1, 0), (-1, 0))
 
 
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
-    """Return places from low to high, at least a gap apart, next to rising wanted ones.
+    """Return positions from low to high, at least a gap apart, close to ascending preferred ones.
 
-    The sum of the squared moves is least: places too near each other become a block around their
-    mean.
+    The sum of the squared moves is minimal: positions too close to each other become a block around
+    their mean.
     """
     steps = gap * np.arange(wanted.size)
-    blocks: list[tuple[float, int]] = []  # mean of the wanted starts of the members, their number
+    blocks: list[tuple[float, int]] = []  # mean of the members' preferred starts, and their number
     for start, count in zip((wanted - steps).tolist(), [1] * wanted.size, strict=True):
         while blocks and blocks[-1][0] > start:
             before, members = blocks.pop()
@@ -55,7 +55,7 @@ def size_in_points(ax: Axes) -> FloatArray:
 
 
 def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
-    """Write names upright at times, above the curves; none if they crowd."""
+    """Write names upright at given times, above the curves; none if they would crowd."""
     if not names:
         return []
     points = FontProperties(size=_SMALL).get_size_in_points()
@@ -81,21 +81,21 @@ def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation
 
 
 def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the longest part of a line in view: points (n, 2) in shares of the axes."""
+    """Return the longest part of a line in view: points (n, 2) in axes coordinates."""
     with np.errstate(invalid="ignore"):
         corners = (ax.transData - ax.transAxes).transform(np.column_stack([x, y]))
     points = np.asarray(Path(corners).interpolated(_FINE).vertices)
     inside = np.all((points >= -1e-9) & (points <= 1 + 1e-9), axis=1)
-    runs = np.split(points, np.flatnonzero(np.diff(inside)) + 1)  # in turn inside and outside
+    runs = np.split(points, np.flatnonzero(np.diff(inside)) + 1)  # alternately inside and outside
     return max(runs[0 if inside[0] else 1 :: 2], key=len, default=points[:0])
 
 
 class Label(NamedTuple):
-    """Texts for a line, from long to short, of which the first with a clear place is written.
+    """Candidate texts for a line, longest first; the first that fits in a clear spot is drawn.
 
-    `line` is in shares of the axes, `place` the wanted share of its length, and `sides` are
-    directions from the line to the text. The text is level, or runs along the line. What must be
-    written is bold, and its last text may cross lines.
+    `line` is in axes coordinates, `place` is the preferred fraction of its length, and `sides` are
+    directions from the line to the text. The text is level, or runs along the line. A mandatory
+    label is bold, and its last text may cross lines.
     """
 
     texts: Sequence[str]
@@ -109,7 +109,7 @@ class Label(NamedTuple):
 
 
 def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any, Text]:
-    """Write those labels that find a place clear of lines and of labels before them [points]."""
+    """Write the labels that fit in spots clear of lines and earlier labels; `size` is in points."""
     page = size_in_points(ax)
     dots = [page[None]]
     for line in ax.lines:
@@ -135,7 +135,7 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
 
 
 class _Spot(NamedTuple):
-    """A place of a text on the page [points]: a point of the line, middle, direction and side."""
+    """A spot for a text on the page [points]: a point on the line, middle, direction and side."""
 
     foot: FloatArray
     middle: FloatArray
@@ -156,14 +156,14 @@ def _best(
     label: Label, extent: FloatArray, lines: FloatArray, taken: FloatArray, page: FloatArray,
     most: float,
 ) -> _Spot | None:  # fmt: skip
-    """Return the free place with the least sum of lines crossed, rank of side and distance."""
+    """Return the free spot with the least sum of lines crossed, rank of side and distance."""
     line = label.line * page
     along = _along(line)
     share = np.linspace(0.0, 1.0, 2 + int(1.5 * along[-1] / extent[1]))
     middle, moved = share * along[-1], np.abs(share - label.place)
     feet = _at(middle, along, line)
     lead = np.tile([1.0, 0.0], (share.size, 1))
-    if label.along:  # text runs from left to right, or upwards
+    if label.along:  # text reads from left to right, or upwards
         lead = _at(middle + extent[0] / 2, along, line) - _at(middle - extent[0] / 2, along, line)
         lead *= np.where((lead[:, :1] < -1e-6) | ((lead[:, :1] < 1e-6) & (lead[:, 1:] < 0)), -1, 1)
         lead /= np.maximum(np.hypot(*lead.T), 1e-9)[:, None]
@@ -218,7 +218,7 @@ def _written(ax: Axes, text: str, label: Label, spot: _Spot, size: float) -> Tex
 
 
 def _along(line: FloatArray) -> FloatArray:
-    """Return the length of a line up to each of its points."""
+    """Return the length along a line up to each of its points."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 
@@ -227,6 +227,6 @@ def _at(places: FloatArray, along: FloatArray, line: FloatArray) -> FloatArray:
 
 
 def _dotted(line: FloatArray, step: float) -> FloatArray:
-    """Return points of the line that are at most a step apart."""
+    """Return points along the line, at most a step apart."""
     along = _along(line)
     return _at(np.linspace(0, along[-1], max(int(along[-1] / step) + 2, 2)), along, line)

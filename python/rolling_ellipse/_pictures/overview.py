@@ -1,4 +1,4 @@
-"""One figure of a motion: the body at even times over curves of all its quantities."""
+"""One figure of a motion: the body at evenly spaced times over curves of all its quantities."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
 
 _STATES = {"theta": "θ [rad]", "omega": "ω [rad/s]", "z": "z of centre [m]"}
-_MANY = 100.0  # angle from which its rounding is drawn among the errors [rad]
-_SHARE = 0.16  # height of the bodies' axes over the width of the figure
+_MANY = 100.0  # from this angle on, its rounding error is drawn among the errors [rad]
+_SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
 
 
 @dataclass(frozen=True, repr=False)
 class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
-    `phase` is None for angles that `plot_phase` refuses.
+    `phase` is None for angles that `plot_phase` rejects.
     """
 
     strobe: Strobe
@@ -68,25 +68,25 @@ def plot(
 ) -> Overview:
     """Draw one figure of a motion: positions, phase plane, curves over time and errors.
 
-    Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
-    From 100 rad on a line shows the rounding of the angle, which bounds exact motions, too. Where
-    the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
-    ranges, as in `plot_forces`; the title then says so.
+    Behind the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
+    From 100 rad on, a line shows the rounding error of the angle, which limits exact motions, too.
+    Where the model is not valid, the whole background is grey. Curves are sampled as finely as they
+    are drawn, or show ranges, as in `plot_forces`; the title then says so.
 
     Parameters
     ----------
     trajectory : Trajectory
     path : path, optional
         File to write, in any format of matplotlib: "motion.png", .pdf, .svg. A new figure is then
-        closed in pyplot.
+        removed from pyplot.
     figure : matplotlib Figure or SubFigure, optional
-        Where to draw; one without a layout engine gets the constrained one. Without it, in a new
-        pyplot figure.
+        Where to draw; one without a layout engine gets the constrained one. Default: a new pyplot
+        figure.
     {figsize}
     count, t_end
         For the positions, as in `plot_strobe`; the curves show the whole motion.
     """
-    check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
+    check_strobe(trajectory, count, t_end)  # rejects wrong arguments before anything is drawn
     shown = Comparison(trajectory).sampled(over_time)
     name = picture_file(path)
     whole = figure_of(figure, (8.6, 8.0), figsize)
@@ -140,9 +140,9 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
 
 
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Give two columns of three panels one time axis, and legends to panels of several lines."""
+    """Give two columns of three panels a common time axis, and panels of several lines a legend."""
     for panel in panels[4:]:
-        name_curves(panel)  # before the marks, which the legend of the forces explains
+        name_curves(panel)  # before the marks, which are explained by the legend of the forces
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)

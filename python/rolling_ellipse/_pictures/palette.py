@@ -1,7 +1,7 @@
-"""The colours of all pictures, which follow the style in force.
+"""The colours of all pictures, which follow the active style.
 
-They differ in lightness as well as in hue, so that they differ in grey and for colour-blind eyes.
-A style with its own colours, as "dark_background" or "grayscale", replaces them.
+They differ in lightness as well as in hue, so that they can be told apart in grey and by the
+colour-blind. A style with its own colours, such as "dark_background" or "grayscale", replaces them.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from .._ask.records import cached_property
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
 _DARK = "#e8ecf4", "#6fb3d9", "#ffa033", "#8d99a6", "#36332e", "#3f6f8c", "#d58aa8"
-_APART = 0.25  # least difference of a component between two colours that look different
+_APART = 0.25  # smallest difference in a component between two colours that look different
 
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours before one background; ink is the colour of the first curve."""
+    """Colours on one background; ink is the colour of the first curve."""
 
     background: str
     ink: str
@@ -35,7 +35,7 @@ class Palette:
     plum: str
 
     def shade(self, share: float) -> str:
-        """Return the background with a share of ink."""
+        """Return the background mixed with a share of the text colour."""
         paper, ink = np.array(colors.to_rgb(self.background)), np.array(colors.to_rgb(self.text))
         return colors.to_hex((*((1 - share) * paper + share * ink).tolist(), 1.0))
 
@@ -52,12 +52,12 @@ class Palette:
 
     @property
     def curves(self) -> tuple[str, ...]:
-        """Colours of several motions."""
+        """Colours for several motions."""
         return self.ink, self.orange, self.blue, self.sky, self.plum
 
 
 def palette_of(ax: Any = None) -> Palette:
-    """Return the colours of the style in force that suit the background of Axes, or of new ones."""
+    """Return the colours of the active style that suit the background of Axes, or of new ones."""
     colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
     if isinstance(ax, Axes):
         places = ax, ax.get_figure(), ax.get_figure(root=True)
@@ -73,7 +73,7 @@ def palette_of(ax: Any = None) -> Palette:
 
 
 def _styled(background: str) -> Palette:
-    """Return the colours of a style with its own, those first that differ most from others."""
+    """Return the colours of a style that has its own, those that differ most from others first."""
     plain = Palette(background, "", "", "", "", "", "", "")
     given = [properties.get("color") for properties in rcParams["axes.prop_cycle"]]
     left = [colors.to_hex(colour) for colour in given if colors.is_color_like(colour)]

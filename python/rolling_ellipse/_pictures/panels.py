@@ -1,8 +1,8 @@
 """Curves over time and the marks under them, shared by forces, energies and errors.
 
 The `style` of a curve belongs to its motion. A motion with the plain style is alone; its quantities
-differ in colour. Modes are greys that differ in hatches, too, so that they differ in print. Events
-are dotted lines with names. Where the model of a motion is not valid, its curves have grey ground.
+differ in colour. Modes are greys with different hatches, so that they differ in print. Events are
+dotted lines with names. Where the model of a motion is not valid, the background is grey.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
-_RANGE = 0.6  # how opaque a range is: there may be one over another
+_RANGE = 0.6  # opacity of a range: ranges may overlap
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
     Mode.SLIDING: (0.05, 0.28, "////"),
@@ -36,7 +36,7 @@ _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, a
     Mode.REST: (0.02, 0.28, "..."),
 }
 _FEW_EVENTS = 8  # more of them are counted, not named
-_ROW = 0.05  # height of the row of one motion, in heights of the axes
+_ROW = 0.05  # height of the row of one motion, as a share of the axes' height
 
 
 def dot(t: FloatArray) -> dict[str, Any]:
@@ -49,7 +49,7 @@ def draw_curves(
 ) -> tuple[tuple[Line2D, ...], ...]:
     """Draw up to three quantities of each motion, and return the lines of each quantity.
 
-    `names` has their names in legends by their attributes, `label` is for the axis.
+    `names` maps their attributes to their names in legends, `label` is for the axis.
     """
     lines: list[list[Line2D]] = [[] for _ in names]
     for motion, style in shown:
@@ -65,26 +65,26 @@ def draw_curves(
 
 
 def draw_line(ax: Axes, motion: Trajectory, values: FloatArray, **style: Any) -> Line2D:
-    """Draw values of a motion over time, or their range in each of many parts of the time."""
+    """Draw values of a motion over time, or their range in each of many intervals of time."""
     t, values = curve(motion.t, values)
     style |= dot(t) | ({"alpha": _RANGE} if are_ranges(motion) else {})
     return ax.plot(t, values, **style)[0]
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:
-    """Return the options of a line for a few markers of its motion, evenly along it."""
+    """Return line options for a few evenly spaced markers of its motion."""
     return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1} if style.marker else {}
 
 
 def dress_grid(ax: Axes) -> None:
-    """Draw a pale grid, and no frame on the right and at the top."""
+    """Draw a pale grid, and no frame at the right and top."""
     ax.grid(color=palette_of(ax).shade(0.08), lw=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
 
 def ending_of(*motions: Trajectory) -> str:
-    """Return the remark of a title on motions that stop early or are at rest; "" for others."""
+    """Return the title's remark on motions that stop early or are at rest; "" for others."""
     for motion in motions:
         if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
             return f"ends at {motion.t_end:.4g} s: {motion.status.name}"
@@ -98,7 +98,7 @@ def events_shown(motion: Trajectory) -> list[Event]:
 
 
 def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
-    """Return start and length [s] of every span of each mode but rolling, within the samples.
+    """Return start and length [s] of every span of each mode except rolling, within the samples.
 
     Only contact motions have spans: other models have one mode.
     """
@@ -117,7 +117,7 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
 
 
 def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> list[Artist]:
-    """Shade sliding, flight and rest: the whole ground, or a row at the top edged in a `colour`."""
+    """Shade sliding, flight and rest: full height, or in a row at the top edged in `colour`."""
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
     shade, shades = palette_of(ax).shade, list[Artist]()
     for mode, spans in mode_spans(motion).items():
@@ -130,7 +130,7 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:
-    """Draw dotted lines at the events, if `named` with a few names, or counted in their label."""
+    """Draw dotted lines at the events, with names if `named` and few, else counted in the label."""
     events = [(event.t, EVENT_NAMES[event.kind]) for event in events_shown(motion)]
     if not events:
         return []
@@ -143,7 +143,7 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
-    """Shade the time without validity by a `share` of the darkness, after a line in `colour`."""
+    """Shade the time after validity is lost, at a `share` of full opacity; `colour` adds a line."""
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []
@@ -153,7 +153,7 @@ def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float
 
 
 def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) -> Line2D:
-    """Draw grey ground along a curve; y is NaN where the model is valid."""
+    """Draw a grey background along a curve; y is NaN where the model is valid."""
     (ground,) = ax.plot(
         x, y, color=palette_of(ax).shade(0.13), lw=8, solid_capstyle="round", zorder=1.7,
         label="_invalid", **options,
@@ -162,7 +162,7 @@ def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) 
 
 
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
-    """Label the time axis; mark modes, events (of one motion by name if `named`), and validity."""
+    """Label the time axis; mark modes, events (by name for one motion if `named`), and validity."""
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
     dress_grid(ax)
@@ -176,20 +176,20 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
 
 
 def note_of(shown: Comparison) -> str:
-    """Return the remark of a title on curves that show ranges, and on how a motion ends."""
+    """Return the title's remarks on curves that show ranges, and on how a motion ends."""
     long = [motion for motion in shown.motions if are_ranges(motion)]
     count = f"{max(map(half_turns, long)):_.0f} half turns: ranges" if long else ""
     return "; ".join(filter(None, [count.replace("_", "\u202f"), ending_of(*shown.motions)]))
 
 
 def entries_of(marks: Sequence[Artist]) -> list[Artist]:
-    """Return entries of a legend for modes and counted events, one of each name."""
+    """Return legend entries for modes and counted events, one for each name."""
     by_name = {str(mark.get_label()): mark for mark in marks}
     return [mark for name, mark in by_name.items() if name and not name.startswith("_")]
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Dress one panel or two; the first gets the title and a legend of `handles` and marks."""
+    """Style one panel or two; the first gets the title and a legend of `handles` and marks."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])

@@ -27,19 +27,19 @@ from .palette import palette_of
 from .panels import draw_invalid_ground, dress_grid, ending_of
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
 
-_FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
+_FEW_TURNS = 2.0  # a motion with more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
 _TICK = 0.45  # room for a tick [inch]
 _POINTS = 801, 100_000  # points of a separatrix: in one half turn, and in all
-_SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
+_SMALL = 0.1  # share of the roll-over speed: a slower motion would be a dot in the eye
 
 
 @dataclass(frozen=True, repr=False)
 class Phase(Artists):
     """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
 
-    `separatrices` has a line for each different body on level ground that is no circle, and
+    `separatrices` has a line for each different body on level ground that is not a circle, and
     `equilibria` the centres and the saddles of the first of these. Where theta is folded, a line
     has its samples and, at each fold, two points with a break (NaN) between.
     """
@@ -66,19 +66,19 @@ def plot_phase(
 
     On level ground a dotted line shows the separatrix of rolling: inside its eyes the body rocks,
     outside it turns over and over. Circles mark the flat positions, where the body can rest, and
-    crosses the tips, where it can balance. Where the model is not valid, the line has grey ground.
+    crosses the tips, where it can balance. Where the model is not valid, the background is grey.
 
-    The lines are those of the motions themselves, whatever samples the trajectories have. Of many
-    turns of exact rolling, which are all alike, one is drawn, of other motions the first 1000 half
-    turns; the title then says so.
+    The lines are those of the motions themselves, whatever samples the trajectories have. If there
+    are many turns, only one turn of exact rolling is drawn, as all its turns are alike, and only
+    the first 1000 half turns of other motions; the title then says so.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-        Of angles of which a double knows thousandths of a radian.
+        Its angles must be small enough for doubles to resolve a thousandth of a radian.
     fold : bool, optional
         Whether to show theta within one half turn around the flat position, after which an
-        ellipse is the same again; without it, where a motion goes through more than two turns.
+        ellipse is the same again; default: if a motion makes more than two turns.
     {ax}
     {motions}
     """
@@ -120,7 +120,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """Return the part of a motion that is drawn, finely sampled, and a note on a part."""
+    """Return the part of a motion that is drawn, finely sampled, and a note if it is not all."""
     if not is_at_hand(motion):
         return motion, ""
     start, end = span_of(motion)
@@ -164,12 +164,12 @@ def folded(theta: Any, flat: float) -> Any:
 
 
 def knows_turns(motion: Trajectory) -> bool:
-    """True if a double knows the angles of a motion to parts of a turn."""
+    """Whether doubles resolve the angles of a motion to thousandths of a radian."""
     return bool(np.spacing(np.abs(motion.theta).max()) <= _COARSE)
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
-    """Return the different bodies that have a separatrix, with their colours; grey for one."""
+    """Return the different bodies that have a separatrix, with colours; a single one is grey."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
     for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
@@ -181,7 +181,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
-    """Show whole eyes of the separatrix; a small motion fills the view instead."""
+    """Show whole eyes of the separatrix, unless a small motion fills the view instead."""
     theta, omega = (np.concatenate([getattr(m, n) for m in motions]) for n in ("theta", "omega"))
     fastest = float(np.max(np.abs(omega)))
     if fold:

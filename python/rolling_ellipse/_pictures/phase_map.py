@@ -1,8 +1,8 @@
 """The phase map: the first outcome of rolling, over two of shape, energy and friction.
 
-Two quantities are along the axes of its plane, the others are fixed. A point of it is a uniform
-disc that passes the flat position with a speed. Quantities have the units of the arguments of
-`plot_phase_map`. Lines over it are thresholds of its bodies, each with its name at the line.
+Two quantities are along the axes of its plane, the others are fixed. Each point is a uniform disc
+that passes the flat position at some speed. Quantities have the units of the arguments of
+`plot_phase_map`. Lines over the map are thresholds of its bodies, each labelled with its name.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ AXIS_NAMES = {
     "aspect": "a/b", "energy": "energy / that to roll over", "speed": "ω lying flat [rad/s]",
     "friction": "μ",
 }  # fmt: skip
-_LEVELS = {"energy", "speed"}  # each follows from the other
-_WIDEST = 1e3  # largest a/b, as everywhere
+_LEVELS = {"energy", "speed"}  # either follows from the other
+_WIDEST = 1e3  # largest a/b, as in the whole package
 _FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
 _SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
-_FASTEST = 2.0  # of the speeds shown, in units of sqrt(g/b)
+_FASTEST = 2.0  # largest speed shown, in units of sqrt(g/b)
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",
     Outcome.ROCKS: SKY,
@@ -51,24 +51,24 @@ COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.EDGE: GREY,
 }
 TIP_ASPECT = math.sqrt(3)
-"""Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.
+"""Up to this a/b of a uniform disc, the N of rolling vanishes first at the tip.
 
-Exactly: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
-k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: beyond, N is least before the tip.
+This is exact: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
+k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: for larger a/b, N is least before the tip.
 """
 LAST_ASPECT = 9.75321681656
 """Above this a/b of a uniform disc rolling ends before the tip, whatever the friction.
 
-There the speed that N > 0 allows is the one that rolling over takes, both of `thresholds`.
+At this a/b the largest speed with N > 0 equals the roll-over speed, both as in `thresholds`.
 """
 _ASPECTS = {
     "tip": (TIP_ASPECT, ("beyond √3 N fails midway", "√3")),
     "last to roll over": (LAST_ASPECT, ("beyond 9.753 none rolls over", "9.75")),
 }
-_POINTS = 49  # of a curve; each takes a call of `thresholds`, some milliseconds
+_POINTS = 49  # points of a curve; each takes a call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
-_FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has even ticks
+_FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has evenly spaced ticks
 _FINEST = 10_000  # cells along an axis
 
 
@@ -76,8 +76,8 @@ _FINEST = 10_000  # cells along an axis
 class PhaseMap(Artists):
     """Artists of `plot_phase_map`.
 
-    The array of `cells` has the `Outcome` codes, a row for each y. `marks` has the lines in view
-    by name, `names` what is written along them, where there is room: "separatrix", "contact loss",
+    The array of `cells` has the `Outcome` codes, one row per y. `marks` has the lines in view by
+    name, `names` the texts along them, where there is room: "separatrix", "contact loss",
     "lift-off", "Painlevé", "tip" (a/b = root 3), "last to roll over" (a/b = 9.753).
     """
 
@@ -117,33 +117,33 @@ def plot_phase_map(
     ============  ========================================================  ====================
 
     Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
-    (solid), the lift-off of the body (dashes and dots, plum), and Painlevé's friction (dashes and
-    dots). Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which
-    no friction lets a disc roll over.
+    (solid), the lift-off of the body (dash-dotted, plum), and Painlevé's friction (dash-dotted).
+    Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which no
+    friction lets a disc roll over.
 
     Parameters
     ----------
     x, y : str
         Quantities along the axes: two of aspect, energy or speed, and friction.
     aspect, energy, speed, friction : float, optional
-        The quantity that is not along an axis, as above; without it, aspect 2 (above 1, up to
-        1000), energy 1.5, friction infinite. Of energy and speed one.
+        The quantity that is not along an axis, as above; default: aspect 2 (above 1, up to 1000),
+        energy 1.5, friction infinite. Give either energy or speed.
     x_range, y_range : (float, float), optional
-        Ends of the axes; without them, as above.
+        Ends of the axes; default: as above.
     b : float
-        Short semi-axis [m]; only the scale of speeds.
+        Short semi-axis [m]; it only scales speeds.
     gravity : float
         Acceleration of gravity [m/s^2]; likewise.
     resolution : int
-        Number of cells along each axis; what is shown is the outcome at their middles.
+        Number of cells along each axis; each shows the outcome at its middle.
     workers : int or executor
-        Number of threads, -1 for all, or an executor, as of `classify`.
+        Number of threads, -1 for all, or an executor, as for `classify`.
     ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure. Limits set before stay.
+        Where to draw; default: a new pyplot figure. Limits set before are kept.
     {figsize}
     """
     if ax is not None:
-        require_axes(ax)  # refuses a wrong ax before the work
+        require_axes(ax)  # rejects a wrong ax before any work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
     count = whole_within("resolution", resolution, _FINEST)
@@ -186,10 +186,10 @@ def _dress_map(ax: Axes, plane: Plane) -> None:
 
 
 class _Mark(NamedTuple):
-    """A line over one axis of the plane: places on it, and values on the other axis.
+    """A line in the plane: values along one of its axes, and the corresponding ones on the other.
 
-    Its names, from long to short, are written at the share `place` of the visible line, `above` it
-    or below for a reader. `line` are properties of Line2D.
+    Its name, the longest of `names` that fits, is written at the fraction `place` of the visible
+    line, `above` it or below it on the page. `line` are properties of Line2D.
     """
 
     key: str
@@ -283,7 +283,7 @@ class Plane:
 
     @property
     def level(self) -> str:
-        """The quantity of the strength of the motion: "energy" or "speed"."""
+        """The quantity that measures the strength of the motion: "energy" or "speed"."""
         return "speed" if "speed" in (*self.axes, *self.fixed) else "energy"
 
     def range_of(self, name: str) -> tuple[float, float]:
@@ -294,7 +294,7 @@ class Plane:
         return self.axes[1 - self.axes.index(name)]
 
     def spaced(self, name: str, count: int) -> FloatArray:
-        """Return even places from end to end of an axis, even in the logarithm for the aspect."""
+        """Return evenly spaced values of an axis, with both ends; logarithmic for the aspect."""
         space: Any = np.geomspace if name == "aspect" else np.linspace
         places: FloatArray = space(*self.range_of(name), count)
         places[[0, -1]] = self.range_of(name)
@@ -316,7 +316,7 @@ class Plane:
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def caption(self) -> str:
-        """Return the fixed quantities as text: "μ = 0.5"; with b where speeds depend on it."""
+        """Return the fixed quantities as text: "μ = 0.5"; with b if speeds depend on it."""
         values = [
             f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
             + " rad/s" * (name == "speed")

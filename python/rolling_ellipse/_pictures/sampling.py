@@ -1,7 +1,8 @@
 """A motion sampled as finely as a picture draws it, whatever samples its trajectory holds.
 
-Few half turns are all drawn, with more points where curves bend. Of more than can be distinguished
-a picture over time shows ranges: the least and the largest value in each of many parts of the time.
+A few half turns are all drawn, with more points where curves bend. If there are too many to
+distinguish, a picture over time shows ranges: the least and largest value in each of many
+intervals.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .ground import flat_angle
 
-FEW = 120.0  # most half turns or swings that are drawn one by one over time
-PARTS = 800  # parts of the time of a motion with more
-_IN_A_PART = 96  # samples of a part
-_POINTS = 400, 32  # first points of a curve: in all, and in a half turn
-_MOST_POINTS = 30_000  # most points of a curve
-_FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
-_ROUNDS = 16  # most halvings of an interval
-_BEND = 1e-3  # a curve farther from its chord, as a share of its range, bends
+FEW = 120.0  # maximum number of half turns or swings that are drawn one by one over time
+PARTS = 800  # number of intervals of time, for a motion with more
+_IN_A_PART = 96  # samples per interval
+_POINTS = 400, 32  # initial points of a curve: in all, and per half turn
+_MOST_POINTS = 30_000  # maximum number of points of a curve
+_FEWEST_DOTS = 100  # fewer samples are replaced by a curve's points
+_ROUNDS = 16  # maximum number of halvings of an interval
+_BEND = 1e-3  # a curve bends if it is farther than this from its chord, relative to its range
 _COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
-_STEADY = 1.05  # counts of half turns in a smaller ratio agree
-_EVENTS = 4000  # the first and last half of so many events are drawn as jumps
+_STEADY = 1.05  # counts of half turns with a smaller ratio agree
+_EVENTS = 4000  # if there are more events, half as many are drawn as jumps at each end
 _SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
-_COMPARED = 64  # samples that are compared with the motion
+_COMPARED = 64  # number of samples compared with the motion
 _SEEN = 1e-6  # no picture shows a smaller relative difference
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
@@ -41,7 +42,7 @@ _Places = npt.NDArray[np.intp]
 
 
 def over_time(motion: Trajectory) -> Trajectory:
-    """Return a motion at the times at which its curves are drawn, from its first to its last.
+    """Return a motion at the times at which its curves are drawn, from first to last sample.
 
     A motion of more than `FEW` half turns has more samples than its curve has points: see `curve`.
     """
@@ -52,7 +53,7 @@ def over_time(motion: Trajectory) -> Trajectory:
     if count <= FEW:
         return _refined(motion, start, end, count)
     part = (end - start) / PARTS
-    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, for all of its part
+    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, for the whole interval
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
     starts = start + part * np.arange(PARTS) + 0.5 * (part - window)
     times = np.add.outer(starts, inside).ravel()
@@ -61,7 +62,7 @@ def over_time(motion: Trajectory) -> Trajectory:
 
 
 def for_dots(motion: Trajectory) -> Trajectory:
-    """Return a motion at its own samples; few or unordered ones become the times of curves."""
+    """Return a motion at its own samples, or at a curve's times if they are few or unordered."""
     own = motion.t.size >= _FEWEST_DOTS and bool(np.all(np.diff(motion.t) > 0))
     return motion if own else over_time(motion)
 
@@ -72,7 +73,7 @@ def between(motion: Trajectory, start: float, end: float, count: float) -> Traje
 
 
 def _refined(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
-    """Return a motion at even times and at those where a quantity bends more than `_BEND`."""
+    """Return a motion at even times, with more where a quantity bends by more than `_BEND`."""
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
     times = np.union1d(even_times(start, end, points), _jumps(motion, start, end))
     values = _bending(motion, times)
@@ -95,14 +96,14 @@ def _refined(motion: Trajectory, start: float, end: float, count: float) -> Traj
 
 
 def halve(times: FloatArray, places: _Places) -> tuple[FloatArray, _Places]:
-    """Return rising times with the middles of some intervals, and the places of their halves."""
+    """Return rising times with the middles of some intervals, and the indices of the halves."""
     middles = 0.5 * (times[places] + times[places + 1])
     first = places + np.arange(places.size)
     return np.insert(times, places + 1, middles), np.stack([first, first + 1], axis=1).ravel()
 
 
 def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a line; of too many, the least and the largest value in each part."""
+    """Return the points of a line; if too many, the least and the largest value in each part."""
     if t.size <= _MOST_POINTS:
         return t, values
     middles, low, high = ranges(t, values)
@@ -120,7 +121,7 @@ def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def are_ranges(motion: Trajectory) -> bool:
-    """True if the curves of a motion are drawn as ranges."""
+    """Whether the curves of a motion are drawn as ranges."""
     return motion.t.size > _MOST_POINTS
 
 
@@ -137,7 +138,7 @@ def half_turns(motion: Trajectory) -> float:
     """
     start, end = span_of(motion)
     if motion.model != "contact" and motion.start is None:
-        with suppress(ValueError):  # downhill for ever
+        with suppress(ValueError):  # downhill forever
             swing = period(motion.scene)
             return 2 * (end - start) / swing if math.isfinite(swing) else 1.0
     turned = 0.0
@@ -154,10 +155,10 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] after so many turns or, if earlier, a path of `turns` 2 pi max(a, b).
+    """Return the time [s] after `turns` turns or, if earlier, after `turns` 2 pi max(a, b) of path.
 
-    It is at most the time of the last sample, and of the end of the first whole swing: of the
-    second turning point, where a rate ("omega", "x_dot") changes its sign, or starts from 0.
+    It is at most the time of the last sample, and of the end of the first whole swing: the second
+    turning point, where a rate ("omega", "x_dot") changes its sign, or starts from 0.
     """
     start, end = span_of(motion)
     if not is_at_hand(motion):
@@ -170,7 +171,7 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
-    """Return a motion at times [s], or its samples nearest to them if nothing else is known."""
+    """Return a motion at the given times [s], or its nearest samples if nothing else is known."""
     if is_at_hand(motion):
         return motion.sol(times)
     nearest = np.argmin(np.abs(np.subtract.outer(times, motion.t)), axis=1)
@@ -178,17 +179,17 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
 
 
 def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
-    """Return samples at some places: of an array, or of each array in a tuple."""
+    """Return samples at some indices: of an array, or of each array in a tuple."""
     if isinstance(values, tuple):
         return getattr(values, "_make", tuple)([_taken(part, places) for part in values])
     return None if values is None else values[places]
 
 
 def is_at_hand(motion: Trajectory) -> bool:
-    """True if the motion of a trajectory can be sampled at any time; warns if not.
+    """Whether the motion of a trajectory can be sampled at any time; warns if not.
 
-    One computed by `simulate` can, also after reading it from a file. Samples from elsewhere have
-    no known motion between them.
+    One computed by `simulate` can, even after it was read from a file. Between external samples the
+    motion is unknown.
     """
     some = np.unique(np.linspace(0, motion.t.size - 1, _COMPARED).round().astype(int))
     t, own = motion.t[some], np.array([motion.theta, motion.omega, motion.x])[:, some]
@@ -223,9 +224,9 @@ def _jumps(motion: Trajectory, start: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """Return the time of so many turns, or of the end of the first swing if it is earlier.
+    """Return the time after `turns` turns, or of the end of the first swing if that is earlier.
 
-    It is infinite if neither is among the samples.
+    It is infinite if the samples reach neither.
     """
     t, x, scene = seen.t, seen.x, seen.scene
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)
@@ -233,7 +234,7 @@ def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
     used = np.maximum.accumulate(np.maximum(turned, moved)) / turns
     end = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
     speed = getattr(seen, rate)
-    swung = int(speed[0] != 0)  # turning points before the end of a swing; 0 from a turning point
+    swung = int(speed[0] != 0)  # turning points before the end of a swing; 0 if it starts at one
     for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[swung : swung + 1]:
         zero = t[i] + (t[i + 1] - t[i]) * speed[i] / (speed[i] - speed[i + 1])
         end = min(end, float(zero))

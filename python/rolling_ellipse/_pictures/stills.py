@@ -1,4 +1,4 @@
-"""Still pictures over the ground: the body at even times, and the paths of three of its points."""
+"""Still pictures over the ground: the body at evenly spaced times, and paths of three points."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ _EVENTS = {
     EventKind.REST: "s",
     EventKind.JAM: "X",
 }
-_PILE = 0.4  # opacity of all bodies in one place together, roughly
-_MOST = 10_000  # positions; each takes some milliseconds
+_PILE = 0.4  # approximate opacity where all bodies overlap
+_MOST = 10_000  # largest number of positions; each takes some milliseconds
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,7 +46,7 @@ class Strobe(Artists):
     """Artists of `plot_strobe`; bodies[i], hands[i] and point i of `contacts` belong together.
 
     All data are in ground axes: x along the ground, z normal to it [m]. Points of `contacts` and
-    `contact_path` are NaN in flight, those of `slides` and `skid_path` wherever nothing slides.
+    `contact_path` are NaN in flight, those of `slides` and `skid_path` unless the body slides.
     """
 
     bodies: tuple[Ellipse, ...]
@@ -69,22 +69,22 @@ def plot_strobe(
     t_end: float | None = None,
     **options: Any,
 ) -> Strobe:
-    """Draw the body at even times over the ground, early ones light and late ones dark.
+    """Draw the body at evenly spaced times over the ground, from light (early) to dark (late).
 
     The hand of each body points to the end of axis a that lies on the right at theta = 0. On a
-    slope the picture is tilted, so that down is down. A ring marks where the body touches the
-    ground, a diamond where it slides there, and a broad line on the ground how far it slides.
-    Positions that the model is not valid for are dotted.
+    slope the picture is tilted, so that gravity points down. A ring marks where the body touches
+    the ground, a diamond where it slides, and a broad line on the ground how far it slides.
+    Positions for which the model is not valid are dotted.
 
     Parameters
     ----------
     trajectory : Trajectory
     {ax}
     count : int
-        Number of positions, even in time from the first sample to `t_end`.
+        Number of positions, evenly spaced in time from the first sample to `t_end`.
     t_end : float, optional
-        Last time shown [s]. Without it the whole motion is shown, or its first three turns, or
-        its first swing, where it is longer (the title then says so).
+        Last time shown [s]. By default the whole motion is shown or, if it is longer, its first
+        three turns or its first swing (the title then says so).
     **options
         Properties of `matplotlib.patches.Ellipse` for all bodies.
     """
@@ -111,7 +111,7 @@ def plot_strobe(
 
 
 def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> None:
-    """Raise as `plot_strobe` says."""
+    """Raise the errors of `plot_strobe`."""
     require_motion(trajectory)
     whole_within("count", count, _MOST)
     first, last = span_of(trajectory)
@@ -164,10 +164,10 @@ def _draw_tracks(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
 def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, float]) -> None:
     """Show a view of the ground with equal scales and labelled axes."""
     left, right, bottom, top = view
-    ax.update_datalim([(left, bottom), (right, top)])  # the equal aspect never cuts these
+    ax.update_datalim([(left, bottom), (right, top)])  # the equal aspect never cuts these off
     ax.set_xlim(left, right, auto=True)  # auto: equal scales may widen either axis
     ax.set_ylim(bottom, top, auto=True)
-    ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width
+    ax.set_aspect("equal", adjustable="datalim")  # lets the ground fill the whole width
     level = scene.slope == 0
     drawing.label_lengths(ax.xaxis, "x" if level else "horizontal", scene)
     drawing.label_lengths(ax.yaxis, "z" if level else "vertical", scene)
@@ -177,10 +177,10 @@ def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, f
 
 @dataclass(frozen=True, repr=False)
 class Paths(Artists):
-    """Artists of `plot_paths`; item i of each tuple but `marks` belongs to motion i.
+    """Artists of `plot_paths`; item i of each tuple except `marks` belongs to motion i.
 
     All data are in ground axes: x along the ground, z normal to it [m]. Each line of `events` has
-    the places of one kind of event.
+    the points of one kind of event.
     """
 
     centres: tuple[Line2D, ...]
@@ -203,11 +203,11 @@ def plot_paths(
 ) -> Paths:
     """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
 
-    That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
-    is down. The path of the contact ends where the body leaves the ground and resumes where it hits
-    it; markers on it are events. Dots and an outline show the start. Of a long path the first three
-    turns are shown, or the first swing (the title then says so). Where the model is not valid, the
-    path of the centre has grey ground.
+    That end is the one on the right at theta = 0. On a slope the picture is tilted, so that gravity
+    points down. The path of the contact ends where the body leaves the ground and resumes where it
+    lands; markers on it are events. Dots and an outline show the start. Only the first three turns
+    of a long path are shown, or its first swing (the title then says so). Where the model is not
+    valid, the path of the centre has a grey background.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ def _until(motion: Trajectory, end: float) -> Trajectory:
 def _draw_paths(
     ax: Axes, motion: Trajectory, style: Style, share: float
 ) -> tuple[Line2D, Line2D, Line2D]:
-    """Draw the three paths of a motion; `share` of the motions are drawn before it."""
+    """Draw the three paths of a motion; a `share` of all motions has been drawn before."""
     draw = partial(ax.plot, transform=drawing.on_slope(ax, motion.scene))
     palette, name = palette_of(ax), f"{style.label}, " if style.label else ""
     drawing.draw_body(ax, motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
@@ -273,7 +273,7 @@ def _draw_paths(
         *drawing.tip(motion), color=style.colour or palette.blue, ls=_TIP, lw=1.2, zorder=4,
         label=f"{name}end of axis a", **start,
     )  # fmt: skip
-    (contact,) = draw(  # narrower than the contacts below it, so that all are seen
+    (contact,) = draw(  # narrower than the contacts below it, so that all are visible
         *drawing.contact_points(motion), color=style.colour or palette.ink, lw=2.4 + 4 * share,
         solid_capstyle="butt", zorder=3 - share, label=f"{name}contact", **start,
     )  # fmt: skip
@@ -281,7 +281,7 @@ def _draw_paths(
 
 
 def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...]:
-    """Mark where the body touches the ground at its events, a line for each kind."""
+    """Mark where the body touches the ground at its events, one line per kind."""
     look: dict[str, Any] = {"mec": colour, "mew": 1.2, "mfc": palette_of(ax).background, "ms": 6}
     look |= {"ls": "none", "transform": drawing.on_slope(ax, motion.scene), "zorder": 6}
     places: dict[EventKind, list[float]] = {}

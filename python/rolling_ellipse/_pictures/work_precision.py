@@ -1,4 +1,4 @@
-"""The work-precision diagram: the front of some contenders before the front of all others."""
+"""The work-precision diagram: the front of some contenders compared with that of all others."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _NAMES = {
     "samples_time": "time of a call for all samples", "setup": "set-up",
 }  # fmt: skip
 _SECONDS = ("time", "samples_time", "setup")
-_LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn there; larger ones are out of view
-_TEXT = 8.0  # size of all text in the axes and below [points]
-_LETTER = 0.63  # width of a letter of the table, in sizes
-_ROWS, _COLUMNS = 9, 70  # most rows, and least letters in a line, of a table below the axes
+_LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn at the first; larger ones, not at all
+_TEXT = 8.0  # size of all text in the axes and below them [points]
+_LETTER = 0.63  # width of a letter of the table relative to its size
+_ROWS, _COLUMNS = 9, 70  # of a table below the axes: maximum rows, minimum letters per line
 _AROUND = (1, 0), (0, 1), (0, -1)  # sides of a label at the end of a line: right, above, below
-_NAMED = 8  # most names of contenders
+_NAMED = 8  # largest number of contenders named
 _DECADES = tuple(10.0**-k for k in range(2, 16))
 _STAMP = ("processor", "vectors", "date")
 
@@ -51,9 +51,9 @@ class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
     `lines` and `names` have the names of contenders as keys, `fronts` "highlight" and "others", and
-    `factors` the errors. `gaps` is the table of missing runs, and `below` the text
-    under an own figure: this table, where it fits, and the machine. `limit` exists for errors of
-    the state.
+    `factors` the errors. `gaps` is the table of missing runs, and `below` the text at the bottom of
+    a figure of its own: this table, if it fits, and the machine. `limit` exists for errors of the
+    state.
     """
 
     gaps: Gaps
@@ -110,14 +110,14 @@ class _Race:
     ) -> None:
         self.x, self.y, self.runs = x, y, runs
         self.gaps = replace(results, runs=runs).gaps(t_end=runs[0].t_end)
-        limits = results.judged_by(runs[0].t_end).limits(x)  # attained and judged at best
+        limits = results.judged_by(runs[0].t_end).limits(x)  # attainable and judged limits
         self.limit = float(np.nanmax([_LEAST, *limits]))
         self.points: dict[str, list[Point]] = {}
         for run in runs:
             at, value = max(run.value(x), self.limit), run.value(y)
             if run.completed and value > 0 and not math.isnan(at):
                 points = self.points.setdefault(run.name, [])
-                if not points or points[-1][0] != at:  # finer settings may gain nothing
+                if not points or points[-1][0] != at:  # finer settings may not gain anything
                     points.append((at, value))
         own = {run.name for run in runs if "own" in run.tags}
         if highlight is not None:
@@ -133,7 +133,7 @@ class _Race:
         }
 
     def _front(self, names: Iterable[str]) -> dict[Point, str]:
-        """Return the holders of the points that none of these contenders beats, by error."""
+        """Return the points that none of these contenders beats, each with its contender."""
         front: dict[Point, str] = {}
         least = _MOST
         for value, at, name in sorted((y, x, n) for n in names for x, y in self.points[n]):
@@ -155,12 +155,12 @@ def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
 
 
 def _least(front: dict[Point, str], error: float) -> tuple[float, str]:
-    """Return the least value at an error of at most `error` and who holds it; NaN if nobody."""
+    """Return the least value for an error of at most `error` and who attains it; NaN if nobody."""
     return next(((v, name) for (at, v), name in front.items() if at <= error), (math.nan, ""))
 
 
 def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, Any]:
-    """Draw the lines and the fronts; members of a small multiple stand out instead of a camp."""
+    """Draw lines and fronts; in a small multiple its members stand out instead of a camp."""
     palette = palette_of(ax)
     colors = {"highlight": palette.blue, "others": palette.orange}
     strong = race.ours if members is None else members
@@ -169,7 +169,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
         color, width, size = palette.shade(0.28), 0.7, 1.5
         if name in strong:
             color, width, size = colors["highlight" if name in race.ours else "others"], 1.0, 2.6
-        # one answer serves every larger error
+        # a single answer is accurate enough for every larger error
         first = [(max(_MOST, points[0][0]), points[0][1])] if len(points) == 1 else []
         lines[name] = ax.plot(
             *zip(*first, *points, strict=True), color=color, lw=width, marker="o", ms=size, mew=0,
@@ -178,7 +178,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
     for camp, front in race.fronts.items():
         if front:
             corners = [corner for _, part in parts(front) for corner in part]
-            apart = members is None or camp == "highlight"  # in a multiple, orange has its members
+            apart = members is None or camp == "highlight"  # orange marks members in a multiple
             fronts[camp] = ax.plot(
                 *zip(*corners, strict=True), solid_capstyle="butt",
                 color=colors[camp] if apart else palette.shade(0.6),
@@ -188,7 +188,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
 
 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
-    """Set the axes, with errors from 10 to what can be attained; mark the latter."""
+    """Set the axes, with errors from 10 to the attainable limit; mark the latter."""
     palette, x, y = palette_of(ax), race.x, race.y
     across, up = f"{_NAMES.get(x, x)} (smaller →)", _NAMES.get(y, y)
     ax.set(xscale="log", yscale="log", xlabel=across, ylabel=up)
@@ -218,7 +218,7 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
 
 
 def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
-    """Write the factors between the fronts, and the names of contenders and of the limit."""
+    """Write the factors between the fronts, and the names of the contenders and the limit."""
     palette = palette_of(ax)
     halo = palette.background
     ours, others = race.fronts["highlight"], race.fronts["others"]
@@ -265,7 +265,7 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
 
 
 def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Text:
-    """Write the legend of an own figure, and below its axes the table of gaps and the machine."""
+    """Write the legend of a separate figure, and below it the table of gaps and the machine."""
     figure: Any = ax.figure
     width, height = 72 * figure.get_size_inches()
     room = int(width / (_LETTER * _TEXT)) - 2
@@ -291,7 +291,7 @@ def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Tex
 
 
 def _multiples(race: _Race) -> WorkPrecisionChart:
-    """Draw a chart for each library, whose lines stand out, all with the same axes."""
+    """Draw one chart per library, whose lines stand out, all with the same axes."""
     libraries: dict[str, list[str]] = {}
     for run in race.runs:
         library = "rolling_ellipse" if "own" in run.tags else run.name.split()[0]

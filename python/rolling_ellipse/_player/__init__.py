@@ -1,4 +1,4 @@
-"""The player of films in a browser, and the blows that a reader tries there."""
+"""The player of films in a browser, and the blows that a reader can try there."""
 
 from .._pictures.animation import animate
 from .explorer import Explorer, explore

@@ -1,4 +1,4 @@
-"""The blows that a page lets its reader try on a scene, and what it says about both."""
+"""The blows that a page lets its reader try on a scene, and its texts about both."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from ..geometry import support
 from .film import body, columns, events, sample_times
 
 WIDE = 14.0  # width of the view [longer semi-axes]
-_STRENGTHS = 16  # the strongest blow over the weakest
-_PIXEL = 2.5e-4  # tolerance over the width of the view
-_SAMPLES = 100  # of a motion; up to ten times as many if places or forces need them
+_STRENGTHS = 16  # ratio of the strongest blow to the weakest
+_PIXEL = 2.5e-4  # tolerance per width of the view
+_SAMPLES = 100  # of a motion; up to ten times as many if positions or forces need them
 _STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
-_SLIDES = 240  # steps of a slider
+_SLIDES = 240  # number of steps of a slider
 
 
 def axes(scene: Scene) -> list[dict[str, Any]]:
-    """Return the ranges of the place d [m] and of the strength F [N s] of blows, and their steps.
+    """Return the ranges and steps of the position d [m] and of the strength F [N s] of blows.
 
-    Places cover the width of the body as it lies. The strongest blow, at the rim, gives some three
-    times the speed that carries the body over its tip.
+    Positions cover the width of the body as it lies. The strongest blow, at the rim, gives about
+    three times the speed that carries the body over its tip.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -45,7 +45,7 @@ def axes(scene: Scene) -> list[dict[str, Any]]:
 
 
 def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) -> Impulse:
-    """Return the scene's own press, or a strong one at its place, in the ranges of two axes."""
+    """Return the scene's own press, or a strong one at the same point, within the axes' ranges."""
     own: Any = scene.impulse
     d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
     if F <= 0:
@@ -55,13 +55,13 @@ def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) ->
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion of a scene after a blow; its message replaces warnings."""
+    """Return the motion of a scene after a blow, without warnings: its message says the same."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the numbers of the scene in words, and by their names those that it seldom has."""
+    """Return the scene's parameters in words; rarely changed ones are listed by name."""
     seldom = scene._changed().keys() - {"a", "b", "mass", "friction", "restitution", "slope"}
     said = [
         filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
@@ -73,7 +73,7 @@ def card(scene: Scene, words: dict[str, str]) -> str:
 
 
 def code(scene: Scene, t_end: float) -> str:
-    """Return the lines of Python of the simulation, with {F} and {d} for the blow."""
+    """Return the Python code of the simulation, with {F} and {d} for the blow."""
     return (
         "import rolling_ellipse\n\n"
         "blow = rolling_ellipse.Impulse.press({F}, {d})\n"
@@ -83,16 +83,16 @@ def code(scene: Scene, t_end: float) -> str:
 
 
 def numbers(scene: Scene) -> dict[str, float | None]:
-    """Return the numbers of a scene in types of JSON: infinite friction is None."""
+    """Return the parameters of a scene as JSON types: infinite friction is None."""
     values = {name: getattr(scene, name) for name in SCENE_UNITS}
     values |= {name: getattr(scene.impulse, name, None) for name in ("jx", "jz", "dx", "dz")}
     return values | {"friction": scene.friction if scene.friction < math.inf else None}
 
 
 def strip(motion: Trajectory) -> dict[str, Any]:
-    """Return a motion for the player in a window for the body before the blow.
+    """Return a motion for the player, in a window chosen for the body before the blow.
 
-    A motion that needs too many samples has them at even times.
+    A motion that needs too many samples has evenly spaced ones.
     """
     scene = motion.scene
     longer, start = max(scene.a, scene.b), scene.initial_state

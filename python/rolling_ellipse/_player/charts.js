@@ -1,4 +1,4 @@
-// Charts beside the film: the frame of a map, and curves over time. They need strip.js.
+// Charts next to the film: the frame of a map, and curves over time. Needs strip.js.
 
 /** The part of a canvas that a map fills [CSS px]. */
 export function cellsOf({ clientWidth, clientHeight }) {
@@ -6,7 +6,7 @@ export function cellsOf({ clientWidth, clientHeight }) {
   return { left, top, across: clientWidth - left - 12, up: clientHeight - top - 36 };
 }
 
-/** Write values along both sides of a map, at parts of its width and height, and their names. */
+/** Label both sides of a map: values at fractions of its width and height, and axis names. */
 export function paintSides(ink, { grey }, { left, top, across, up }, xs, ys, names) {
   for (const [part, value] of xs)
     text(ink, grey, round(value), left + part * across, top + up + 14, "center", 11);
@@ -42,7 +42,7 @@ function ticksOf(low, high) {
   return Array.from({ length: count }, (_, i) => (first + i) * step);
 }
 
-/** Draw curves, each with its name, colour and dash, over the time up to an end, and now. */
+/** Draw curves, each with name, colour and dash, over time up to an end, and a mark for now. */
 export function paintCurves(ink, colours, canvas, curves, { low, high, end, now, impacts }) {
   const [left, top] = [44, 18], across = canvas.clientWidth - left - 14;
   const up = canvas.clientHeight - top - 24;

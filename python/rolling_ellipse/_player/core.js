@@ -4,9 +4,9 @@
 const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
 
 export class Core {
-  /** The core from its bytes; an error where the page may not use WebAssembly. */
+  /** The core from its bytes; an error if the page may not use WebAssembly. */
   static async of(bytes) {
-    const nothing = new Proxy({}, { get: () => () => 0 }); // the core asks its system for nothing
+    const nothing = new Proxy({}, { get: () => () => 0 }); // the core needs nothing from its system
     const { instance } = await WebAssembly.instantiate(bytes,
       { env: nothing, wasi_snapshot_preview1: nothing });
     instance.exports._initialize();
@@ -27,12 +27,12 @@ export class Core {
   call(name, numbers, more) {
     const { malloc, free } = this.exports, place = malloc(8 * numbers.length);
     new Float64Array(this.exports.memory.buffer, place, numbers.length).set(numbers);
-    const answer = this.exports[name](place, more); // each call may make memory grow
+    const answer = this.exports[name](place, more); // any call may grow the memory
     free(place);
     return answer;
   }
 
-  /** Simulate a scene up to an end, with sentences if wanted; an error says why it cannot be. */
+  /** Simulate a scene up to an end, with sentences if requested; an error states why it cannot. */
   ask(scene, end, inWords = true) {
     const numbers = this.names.scene.map((name) => scene[name] ?? NaN);
     const answer = this.text(this.call("ask", [...numbers, end], inWords));
@@ -57,7 +57,7 @@ export class Core {
     return { found, times, columns, track: trackOf(times, columns) };
   }
 
-  /** Ends of intervals and their middles in turn; events, and the doubles before them, are ends. */
+  /** Alternating ends and middles of intervals; events, and the doubles before them, are ends. */
   timesOf({ until, events }, theta) {
     if (!until) return Float64Array.of(0);
     const turn = Math.abs(this.samples([until]).theta[0] - theta);
@@ -71,7 +71,7 @@ export class Core {
   }
 }
 
-/** Columns for a track; between a jump and the double before it a force has their mean. */
+/** Columns for a track; between a jump and the double before it a force has the mean of both. */
 function trackOf(times, columns) {
   const isEnd = (_, i) => i % 2 === 0, track = { t: times.filter(isEnd) };
   for (const name in columns) track[name] = columns[name].filter(isEnd);

@@ -1,19 +1,19 @@
-// The player with a blow to move over the body, computed in the page by the core, and a map of what
-// all blows do. It needs all modules before it.
+// The player with a blow that can be moved over the body, computed in the page by the core, and a
+// map of the outcomes of all blows. Needs all earlier modules.
 
 const STROBES = 8;
-const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // ends of the plot of forces, and furthest [weights]
-const STEPS = { // in columns and rows of the map, by a key on it
+const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // default and farthest ends of the force plot [weights]
+const STEPS = { // columns and rows of the map moved by each key
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
 const CELLS = [48, 32]; // columns and rows of the map
-const COARSE = [8, 4, 2, 1]; // sizes of its cells, one after the other
-const BUDGETS = [10, 6]; // time of a frame up to which cells of the map are begun, and while
-// numbers change [ms]
+const COARSE = [8, 4, 2, 1]; // sizes of its cells, in turn
+const BUDGETS = [10, 6]; // time of a frame spent on cells of the map: usually, and
+// while numbers change [ms]
 
 export class Explorer extends Player {
-  /** Start with the core; where WebAssembly is missing or forbidden, only the film plays. */
+  /** Start with the core; if WebAssembly is missing or forbidden, only the film plays. */
   static async on(host, film) {
     host.dataset.ready = "";
     try {
@@ -26,7 +26,7 @@ export class Explorer extends Player {
 
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
-    strip.blow = null; // the hand shows it
+    strip.blow = null; // the hand shows the blow
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();
@@ -52,7 +52,7 @@ export class Explorer extends Player {
     });
   }
 
-  /** Move on the map by keys. */
+  /** Move on the map with the keys. */
   key(event) {
     const { key, target } = event, steps = STEPS[key];
     if (!steps || target !== this.map || event.ctrlKey || event.altKey || event.metaKey)
@@ -62,7 +62,7 @@ export class Explorer extends Player {
     this.changeParts(Object.fromEntries(moved.map((k) => [k, this.part(k) + steps[k] / CELLS[k]])));
   }
 
-  /** Call `moved` for a pointer from a press that `holds` accepts to its release, and for a tap. */
+  /** Call `moved` for a pointer from a press accepted by `holds` to its release, and for a tap. */
   grab(canvas, holds, moved) {
     let held = false;
     canvas.addEventListener("pointerdown", (event) => {
@@ -71,7 +71,7 @@ export class Explorer extends Player {
       canvas.setPointerCapture(event.pointerId);
       moved(event);
     });
-    canvas.addEventListener("touchstart", (event) => { // a held finger does not scroll the page
+    canvas.addEventListener("touchstart", (event) => { // a dragging finger must not scroll
       if (held && event.cancelable) event.preventDefault();
     }, { passive: false });
     canvas.addEventListener("pointermove", (event) => {
@@ -90,7 +90,7 @@ export class Explorer extends Player {
 
   // ---------------------------------------------------------------------------- the numbers
 
-  /** Take other numbers; they are computed in the next frame. */
+  /** Set new numbers; their motion is computed in the next frame. */
   change(numbers) {
     Object.assign(this.given, numbers);
     this.pause();
@@ -104,13 +104,13 @@ export class Explorer extends Player {
     return this.axes[k];
   }
 
-  /** The part of an axis at which the given number is. */
+  /** The given number's position along an axis, as a fraction. */
   part(k) {
     const { name, least, most } = this.axis(k);
     return Math.min(1, Math.max(0, (this.given[name] - least) / (most - least)));
   }
 
-  /** Take the numbers at parts of the axes. */
+  /** Set the numbers at fractions of the axes. */
   changeParts(parts) {
     this.change(Object.fromEntries(Object.entries(parts).map(([k, part]) => {
       const { name, least, most, step } = this.axis(k), count = (part * (most - least)) / step;
@@ -124,7 +124,7 @@ export class Explorer extends Player {
     return { ...scene, friction: scene.friction ?? Infinity, jx: 0, jz: -F, dx: d, dz: 0 };
   }
 
-  /** Compute the motion of the given numbers; an error says why there is none. */
+  /** Compute the motion for the given numbers; an error states why there is none. */
   renew() {
     const { strip, film: { end, core } } = this;
     const { found, times, columns, track } = core.motion(this.sceneOf(this.given), end);
@@ -173,7 +173,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------ the words
 
-  /** Write what happens, and speak it when another reason holds. */
+  /** Write what happens, and announce it if the reason has changed. */
   tell() {
     const { headline, reasons } = this.found;
     const inWords = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
@@ -196,7 +196,7 @@ export class Explorer extends Player {
       + (isCut ? this.say("forces_cut", { peak }) : "");
   }
 
-  /** Write what the blow does, and speak where it is. */
+  /** Write what the blow does, and announce where it is. */
   describe() {
     const { d, F } = this.given;
     this.tell();
@@ -223,7 +223,7 @@ export class Explorer extends Player {
     try {
       await navigator.clipboard.writeText(lines);
       button.textContent = this.say("copied");
-    } catch { // a page that may not write there shows them instead
+    } catch { // a page without access to the clipboard shows the code instead
       const shown = Object.assign(document.createElement("pre"), { textContent: lines });
       button.replaceWith(shown);
       getSelection().selectAllChildren(shown);
@@ -232,7 +232,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the map
 
-  /** Paint the map with more of its cells, and go on in later frames until it has all of them. */
+  /** Paint the map with more of its cells, and continue in later frames until it is complete. */
   paintMap(until) {
     const done = this.fill(until), ink = sized(this.map, this.map.clientHeight);
     const area = cellsOf(this.map), { left, top, across, up } = area;
@@ -249,7 +249,7 @@ export class Explorer extends Player {
     });
   }
 
-  /** Colour cells of the map, coarse ones first, until a time; true if there are no more. */
+  /** Colour cells of the map, coarse ones first, until a time; true if none are left. */
   fill(until) {
     const axes = [this.axis(0), this.axis(1)], others = { ...this.given };
     for (const { name } of axes) delete others[name];
@@ -272,7 +272,7 @@ export class Explorer extends Player {
     return false;
   }
 
-  /** Colour and its strength for a cell: that of the first outcome, whose name then is shown. */
+  /** Colour of a cell and its strength: that of the first outcome, whose name is then shown. */
   colourOf(given) {
     const { core, end, outcomes } = this.film, { first } = core.ask(this.sceneOf(given), end);
     this.box.querySelector(`[data-outcome=${first}]`).hidden = false;
@@ -286,7 +286,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- pictures
 
-  /** Draw over the body: the path of the motion, and the hand. */
+  /** Draw over the body: the motion's path, and the hand. */
   over(ink) {
     const { strip, colours, views: [view] } = this, end = strip.motion.end;
     ink.globalAlpha = 0.4;
@@ -306,7 +306,7 @@ export class Explorer extends Player {
     text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
   }
 
-  /** Let the picture fit a width: the numbers of the ruler are 34 pixels high. */
+  /** Fit the picture to a width: the numbers of the ruler are 34 pixels high. */
   fit(width) {
     const [left, right, , top] = this.strip.window;
     this.film.shape = Math.max(this.lowest, top / (right - left) + 34 / width);

@@ -1,4 +1,4 @@
-"""A page where the reader moves a blow and sees the motion at once, without a Python kernel."""
+"""A page on which the reader moves a blow and sees the motion at once, without a Python kernel."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .page import core, document, escaped, fragment, packaged, words
 
 LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 _FILM = {"fps": 60, "speed": 1, "decimals": 2, "follows": "edge", "waits": True}
-# Of the map, by the first outcome; a body may stay in the air, too
+# Colours of the map, by the first outcome; the body may also stay in the air
 _COLOURS = {outcome.name: COLOURS[outcome] for outcome in Outcome}
 _COLOURS["IN_THE_AIR"] = COLOURS[Outcome.LOSES_CONTACT]
 
@@ -37,48 +37,48 @@ def explore(
     language: str | Mapping[str, str] = "en",
     live: bool | None = None,
 ) -> Explorer:
-    """Let the reader strike the body: where and how hard, by dragging a hand over it.
+    """Let the reader strike the body by dragging a hand over it, which sets where and how hard.
 
     The page shows the motion with its forces, its first outcome with the reason, its events, and a
-    map of the outcomes of all blows. It carries the core, compiled to WebAssembly, and computes
-    each blow with the numbers of `simulate`: without a kernel and without a network. A button
-    copies the lines of Python that simulate it. All of it can be used with a keyboard alone. Where
-    a browser or a policy forbids WebAssembly, or this installation came without the file, it plays
+    map of the outcomes of all blows. It contains the core, compiled to WebAssembly, and computes
+    each blow with the same results as `simulate`, without a kernel or a network. A button copies
+    the Python code that simulates it. The whole page can be used with a keyboard alone. Where a
+    browser or a policy forbids WebAssembly, or this installation came without the file, it plays
     the film of the first blow, and says so.
 
     Parameters
     ----------
     scene : Scene
-        The body before the blow, on the ground or in the air; if it has an impulse, that is only
-        the first blow: its vertical part, and its place.
+        The body before the blow, on the ground or in the air; if it has an impulse, the vertical
+        component and the point of attack are used as the first blow.
     t_end : float, optional
-        How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); without
-        it 12 times that root.
+        How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); default:
+        12 times that root.
     language : str or mapping of str to str, optional
-        "en" or "de"; or all texts, as `explore(scene).words` has them, with numbers in braces.
+        "en" or "de"; or all texts, as in `explore(scene).words`, with placeholders in braces.
     live : bool, optional
-        Deprecated and without effect: every page carries the core.
+        Deprecated and without effect: every page contains the core.
 
     Returns
     -------
     Explorer
-        Shows itself in a notebook; `to_html(path)` writes a page.
+        A notebook displays it; `to_html(path)` writes a page.
 
     Raises
     ------
     TypeError
-        If `scene` is no Scene, `t_end` no number, `live` no bool, or `language` no name and no
-        mapping of strings.
+        If `scene` is not a Scene, `t_end` not a number, `live` not a bool, or `language` neither
+        a name nor a mapping of strings.
     ValueError
-        If `t_end` is out of range, the body so far away that a double does not know a thousandth
-        of it there, or `language` unknown, or without one of the keys.
+        If `t_end` is out of range, the body so far away that a double cannot resolve a thousandth
+        of it, or `language` unknown or without one of the keys.
 
     Notes
     -----
-    The page follows the light or dark theme of the reader's system, unless it stands in an element
+    The page follows the light or dark theme of the reader's system, unless it is inside an element
     (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.
 
-    In a frame it tells the page around it how high it is. This is all that the other page needs::
+    In a frame it reports its height to the page around it, which only needs this::
 
         <iframe src="strike.html" style="width: 100%; border: 0"></iframe>
         <script>
@@ -105,7 +105,7 @@ def explore(
 
 @dataclass(frozen=True)
 class Explorer(FieldsOnly):
-    """The result of `explore`; a notebook shows it by itself.
+    """The result of `explore`; a notebook displays it.
 
     Attributes
     ----------
@@ -126,16 +126,16 @@ class Explorer(FieldsOnly):
     @overload
     def to_html(self, path: str | PathLike[str]) -> None: ...
     def to_html(self, path: str | PathLike[str] | None = None) -> str | None:
-        """Return a page that needs nothing but itself, or write it if there is a path.
+        """Return a self-contained page, or write it if there is a path.
 
         Raises
         ------
         ValueError
             If the path does not end in .html.
         TypeError
-            If it is no path.
+            If it is not a path.
         OSError
-            If it cannot be written; what was there then stays.
+            If it cannot be written; an old file is kept.
         """
         if path is None:
             return document(self.words["title"], self._repr_html_(), self.words["lang"])
@@ -159,9 +159,9 @@ class Explorer(FieldsOnly):
         return self._fragment("Explorer")
 
     def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
-        """Return the page's content; a class of a module may start it, with more data.
+        """Return the page's content; a class from `module` may start it, with more data.
 
-        It has the film of the first blow, for pages without the core.
+        It includes the film of the first blow, for pages without the core.
         """
         axes = blows.axes(self.scene)
         blow = blows.first_blow(self.scene, *axes)
@@ -188,7 +188,7 @@ class Explorer(FieldsOnly):
         return fragment(data, [shown], text, starts, self._markup(motion), module)
 
     def _markup(self, motion: Trajectory) -> str:
-        """Return the parts around the player with their texts, and what happens in the film."""
+        """Return the markup around the player with its texts, which describe the film."""
         texts = escaped(self.words)
         _, headline, reasons = _core.describe(motion.scene.core, motion._solution)
         texts |= {

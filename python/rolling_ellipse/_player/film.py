@@ -1,6 +1,6 @@
 """The player of an animation: its page, and its motions as packed samples.
 
-Samples are so dense that cubics, and parabolas of forces, will do.
+Samples are dense enough for cubics between them, and parabolas for forces.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from .._pictures.ground import touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
-_PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of a film 2000 pixels wide
-_HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and for the ruler, over the width
-_TALLEST = 0.42  # largest height of a film over its width; half of it for each of several motions
-MOST_SAMPLES = 20_000  # most samples of one motion, 1 MB
+_PIXEL = 2.5e-5  # tolerance per width of the view: 1/20 pixel of a film 2000 pixels wide
+_HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and the ruler, as shares of the width
+_TALLEST = 0.42  # maximum height of a film over its width; half of it for each of several motions
+MOST_SAMPLES = 20_000  # maximum for one motion, 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 FORCES = ("normal_force", "friction_force")
 _MIDDLES = {name: f"{name}_middle" for name in FORCES}
-# Places in an interval at which a curve is compared with the motion. They are irregular, so that a
+# Points of an interval at which a curve is compared with the motion. They are irregular, so that a
 # motion whose period divides the intervals does not look like a straight line.
 _WITHIN = np.array([0.13, 0.31, 0.5, 0.74, 0.9])
-_FORCE = 0.005  # error over force + weight: at most a pixel in a plot of 84 pixels a weight
-_FIRST = 17  # intervals to begin with
+_FORCE = 0.005  # error over force + weight: at most a pixel in a plot with 84 pixels per weight
+_FIRST = 17  # initial number of intervals
 
 
 def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float) -> dict[str, Any]:
-    """Return the parts (begin and end [s]) of a motion in types of JSON: columns, and their starts.
+    """Return the parts (start, end [s]) of a motion as JSON types: columns, and where parts start.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
-    motion that needs more than `MOST_SAMPLES` is refused. Parts after its end have one sample.
+    motion that needs more than `MOST_SAMPLES` is rejected. Parts after its end have one sample.
     """
     last, found, starts = float(motion.t[-1]), np.empty(0), []
     for begin, end in parts:
@@ -72,7 +72,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
 
 
 def _middles(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return forces at the middles of intervals, and the last ones; a jump has their mean."""
+    """Return forces at the middles of intervals, and the last ones; at a jump, their mean."""
     t = motion.t
     between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
     found = {}
@@ -91,16 +91,16 @@ def sample_times(
     begin: float = 0.0,
     most: int = MOST_SAMPLES,
 ) -> FloatArray | None:
-    """Return times, from `begin` on, between which cubics miss by at most `tolerance` [m].
+    """Return times, from `begin` on, between which cubics are off by at most `tolerance` [m].
 
-    If there are more than `most`, it is None. Parabolas through the forces at the times and midway
-    are near them, too, as long as there are at most half of `most`. Events are among the times, and
-    the doubles just before them.
+    If there are more than `most`, the result is None. Parabolas through the forces at the times and
+    midway between them are also close to the forces, provided that takes at most half of `most`.
+    The times include those of events, and the doubles just before them.
     """
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
     times = np.unique(np.concatenate([even_times(begin, end, _FIRST + 1), jumps, just_before]))
-    # Intervals in which the cubic may miss the motion
+    # Intervals in which the cubic may be off
     places = np.flatnonzero(np.diff(times) > 1e-12 * (end - begin))
     while places.size and times.size <= most:
         left, right = times[places], times[places + 1]
@@ -114,7 +114,7 @@ def sample_times(
 def _misses(
     motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
 ) -> FloatArray:
-    """Return the errors of cubics, and of parabolas of forces, over those that are allowed."""
+    """Return the errors of cubics, and of parabolas for forces, over the allowed ones."""
     size = max(motion.scene.a, motion.scene.b)
     first, last = motion.sol(left), motion.sol(right)
     span = (right - left)[:, None]
@@ -140,9 +140,9 @@ def _misses(
 
 
 def packed(values: FloatArray, error: float) -> dict[str, Any]:
-    """Return a column to within an error, in few bytes: low + step · n, with n in base64.
+    """Return a column, accurate to `error`, in few bytes: low + step · n, with n in base64.
 
-    n are unsigned integers of two bytes if these are fine enough, else floats of four or eight.
+    The n are two-byte unsigned integers if these are fine enough, else floats of four or eight.
     """
     low, high = float(np.min(values)), float(np.max(values))
     step = (high - low) / 65535
@@ -173,10 +173,10 @@ def film_html(animation: RollingAnimation) -> str:
     parts = [(begin, min(end, last)) for begin, end in pace.parts]
     labels = [in_rows(label) if beside else label for label in animation.labels]
     rows = 2 + max(label.count("\n") for label in labels) if beside else 0
-    head, foot = (1 + rows) * _HEAD, _FOOT * (1 + beside)  # the bodies of a row are small
+    head, foot = (1 + rows) * _HEAD, _FOOT * (1 + beside)  # bodies side by side are small
     seen = cameras(motions, None, head, foot, beside)
     if seen.shape > (most := _TALLEST * max(1, (not beside) * len(motions) / 2) + rows * _HEAD):
-        seen = cameras(motions, most, head, foot, beside)  # no higher than fits a notebook's cell
+        seen = cameras(motions, most, head, foot, beside)  # no taller than fits a notebook's cell
     wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {
@@ -197,7 +197,7 @@ def film_html(animation: RollingAnimation) -> str:
         "parts": parts,
         "fps": pace.fps,
         "speed": pace.speed,
-        "fastest": pace.fastest * 60 / pace.fps,  # a screen has 60 frames a second
+        "fastest": pace.fastest * 60 / pace.fps,  # a screen shows 60 frames per second
         "decimals": pace.decimals,
         "shape": seen.shape,
         "columns": seen.columns,
@@ -211,7 +211,7 @@ def film_html(animation: RollingAnimation) -> str:
 
 
 def body(scene: Scene) -> dict[str, Any]:
-    """Return the body, its ground, its blow and its unit of length, in types of JSON."""
+    """Return the body, its ground, its blow and its unit of length, as JSON types."""
     blow = scene.impulse
     return {
         "a": scene.a,
@@ -224,7 +224,7 @@ def body(scene: Scene) -> dict[str, Any]:
 
 
 def events(motion: Trajectory, end: float) -> list[list[Any]]:
-    """Return time [s], kind and place on the ground [m] of each event."""
+    """Return time [s], kind and position on the ground [m] of each event."""
     return [
         [each.t, each.kind.name.lower().replace("_", " "),
          touching_x(motion.scene, each.state_after)]

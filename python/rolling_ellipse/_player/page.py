@@ -1,4 +1,4 @@
-"""HTML that contains the player: a fragment for notebooks, a page for files, and their words."""
+"""HTML that contains the player: a fragment for notebooks, a page for files, and their texts."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def fragment(
 ) -> str:
     """Return a `div` with pictures of the motions, whose script replaces them by the player.
 
-    If scripts are not run, pictures and text stay. A page may have the same fragment several
-    times. Data without words get the English ones. `around` is HTML around the player. `module` is
-    JavaScript with the class that `starts` names, if the package has no such class. No key leaves
-    the `div`, and JupyterLab finds its mark there: a notebook would take keys as its own.
+    Without scripts, pictures and text stay. A page may hold the same fragment several times. Data
+    without words get the English ones. `around` is HTML around the player. `module` is JavaScript
+    with the class that `starts` names, if the package has no such class. No key event leaves the
+    `div`, which carries JupyterLab's marker: else the notebook would act on the keys.
     """
     scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")
@@ -59,7 +59,7 @@ def fragment(
         "words": texts,
     }
     known = json.dumps(data, separators=(",", ":"))
-    packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
+    packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half as long
     name = hashlib.sha256(known.encode()).hexdigest()[:12]
     modules = "\n".join([*(packaged(f"{each}.js") for each in scripts), module])
     light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
@@ -75,14 +75,14 @@ def fragment(
 
 
 def with_player(around: str, texts: dict[str, str]) -> str:
-    """Return HTML around the player with the player in its place."""
+    """Return HTML with the player inserted at its placeholder."""
     return around.replace("{player}", packaged("player.html").format_map(escaped(texts)))
 
 
 def document(title: str, content: str, language: str = "en") -> str:
     """Return a page that needs no other file and no network.
 
-    In a frame it posts its height [CSS px] to the page around it, whenever that changes.
+    In a frame it posts its height [CSS px] to the page around it whenever the height changes.
     """
     named = {"language": html.escape(language), "title": html.escape(title), "content": content}
     return Template(packaged("page.html")).substitute(named)
@@ -90,13 +90,13 @@ def document(title: str, content: str, language: str = "en") -> str:
 
 @cache
 def packaged(name: str) -> str:
-    """Return the text of a file beside this one."""
+    """Return the text of a file next to this module."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 @cache
 def core() -> str:
-    """Return the core in WebAssembly, gzipped, in base64; empty where the file is missing."""
+    """Return the core in WebAssembly, gzipped, in base64; empty if the file is missing."""
     file = files(__package__).joinpath("live.wasm.gz")
     return base64.b64encode(file.read_bytes()).decode() if file.is_file() else ""
 
@@ -104,7 +104,7 @@ def core() -> str:
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
     """Return the table of a language, or a copy of a mapping with the keys of the English one.
 
-    A text must not ask for a number in braces that the English one does not have.
+    A text must not use a placeholder that the English one lacks.
     """
     if isinstance(language, str):
         return dict(table(choice("language", language, LANGUAGES)))
@@ -128,5 +128,5 @@ def words(language: str | Mapping[str, str]) -> dict[str, str]:
 
 
 def escaped(words: dict[str, str]) -> dict[str, str]:
-    """Return the texts for HTML."""
+    """Return the texts escaped for HTML."""
     return {key: html.escape(text) for key, text in words.items()}

@@ -1,10 +1,10 @@
 // The player: motions on one clock, drawn on a canvas from samples and their rates.
-// It needs track.js and strip.js.
+// Needs track.js and strip.js.
 
 const NUDGES = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -10, ArrowUp: 10 };
 const RATES = [0.1, 0.25, 0.5, 1, 2, 4];
 const ICONS = { play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z" };
-/** True if the page, or else the reader's system, asks for dark colours. */
+/** True if the page, or else the reader's system, requests dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
@@ -13,7 +13,7 @@ export function isDark(host) {
   return night ? true : day ? false : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-/** The cleared context of a canvas of a height [CSS px], with the resolution of the screen. */
+/** The cleared context of a canvas of given height [CSS px], at the resolution of the screen. */
 export function sized(canvas, height) {
   const dots = window.devicePixelRatio || 1, { clientWidth: width } = canvas;
   const across = Math.round(width * dots), down = Math.round(height * dots);
@@ -51,14 +51,14 @@ export class Player {
     this.draw();
   }
 
-  /** Let a strip show another motion. */
+  /** Make a strip show another motion. */
   take(strip, columns, starts = [0]) {
     strip.motion = new Track(columns, strip.a);
     strip.traces = starts.map((start, k) => strip.motion.states(this.fine, start, starts[k + 1]));
     [strip.trace] = strip.traces;
   }
 
-  /** Seconds of motion that the film shows before a time, and the time after so many. */
+  /** Seconds of motion that the film shows before a time, and the inverse. */
   shown(t) {
     return this.parts.reduce((sum, [begin, end]) =>
       sum + Math.max(0, Math.min(t, end) - begin), 0);
@@ -103,7 +103,7 @@ export class Player {
     this.marks();
   }
 
-  /** Put a mark at the slider for every event; only one for events in the same place. */
+  /** Mark every event at the slider; events at the same point share a mark. */
   marks() {
     const seek = this.slider.parentNode;
     seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
@@ -174,7 +174,7 @@ export class Player {
     this.toggle.setAttribute("aria-label", this.toggle.title);
   }
 
-  /** Run one loop of frames while the film plays in sight; it rests for a second at the end. */
+  /** Run one loop of frames while the film plays in view; it pauses for a second at the end. */
   run() {
     if (this.running || !this.playing || this.seen === false) return;
     this.running = true;
@@ -202,7 +202,7 @@ export class Player {
     return { t: this.now, playing: this.playing, bodies };
   }
 
-  /** Ask for a picture; there is at most one in a frame of the screen. */
+  /** Request a picture; there is at most one per frame of the screen. */
   draw() {
     this.slider.value = this.long > 0 ? this.shown(this.t) / this.long : 0;
     const text = this.t.toFixed(Math.max(3, this.film.decimals));
@@ -224,7 +224,7 @@ export class Player {
     ink.fillRect(0, 0, width, height);
     const t = this.now, part = this.parts.findLastIndex(([begin]) => begin <= t);
     const states = film.strips.map((strip) => strip.motion.at(t)), { columns = 1 } = film;
-    const across = width / columns; // of a strip: they stand over one another, or side by side
+    const across = width / columns; // of a strip: strips are stacked, or side by side
     this.views = this.viewsOf(states, width);
     let floor = 0;
     film.strips.forEach((strip, i) => {
@@ -249,7 +249,7 @@ export class Player {
     canvas.setAttribute("aria-label", this.label(states));
   }
 
-  /** The states in words, for readers who do not see the picture. */
+  /** The states in words, for readers who cannot see the picture. */
   label(states) {
     const near = (value, unit) => Math.round((1000 * value) / unit) * (unit / 1000);
     return states.map(({ theta, x }, i) => this.say("stage", { theta: near(theta, 1),
@@ -262,7 +262,7 @@ export class Player {
     return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) => round(values[name]));
   }
 
-  /** The views of all strips; their cameras follow nothing, the middle, or each its own body. */
+  /** The views of all strips; their cameras stand still, follow the middle, or their own body. */
   viewsOf(states, width) {
     const { strips, follows, shape } = this.film;
     const feet = strips.map(({ slope }, i) =>
@@ -273,7 +273,7 @@ export class Player {
     return strips.map((strip, i) => {
       const [x, y] = feet[i], across = width / (this.film.columns ?? 1);
       let place = follows === "own" ? [x, -y] : follows === "middle" ? [middle, -y] : [0, 0];
-      if (follows === "edge") { // the body stays within so much of where it began
+      if (follows === "edge") { // the body stays within `edge` of where it started
         const { start, edge, slope } = strip, way = states[i].x - start;
         const along = start + way - Math.min(edge, Math.max(-edge, way));
         place = [along * Math.cos(slope), -along * Math.sin(slope)];

@@ -1,11 +1,11 @@
-// One strip of the picture: a body on its ruled ground in a given state. It needs track.js.
+// One strip of the picture: a body on its ruled ground in a given state. Needs track.js.
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
 const SHOWN = 6000; // last points of a trace that are drawn: earlier ones are out of sight
 const ROW = 17; // height of a row of a caption [px]
-const FADES = 1.2; // a blow or an event is seen for so long [seconds of film]
+const FADES = 1.2; // how long a blow or an event is visible [seconds of film]
 
-/** One strip of the picture: turns places on its ground to pixels. */
+/** One strip of the picture: maps points of its ground to pixels. */
 export class View {
   constructor(strip, window, place, floor, width) {
     const [left, right, , top] = window;
@@ -36,7 +36,7 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   paintTexts(ink, colours.ink, shown);
 }
 
-/** Write the clock and the caption beside it or, of strips side by side, in rows below it. */
+/** Write the clock, and the caption beside it or, if strips are side by side, in rows below it. */
 function paintTexts(ink, colour, { caption, clock, beside, floor, width }) {
   text(ink, colour, clock, width - 12, floor + 20, "right");
   const room = width - 24 - (beside || !clock ? 0 : ink.measureText(clock).width + 12);
@@ -78,7 +78,7 @@ export function fill(ink, colour) {
 
 export const point = { sign: "." }; // between the digits of a number
 
-/** The text of a number with a few digits; a text of digits keeps all of them. */
+/** The text of a number to a few digits; a text of digits keeps them all. */
 export function round(value, digits = 3) {
   if (value === Infinity) return "∞";
   const written = typeof value === "number" ? `${+value.toPrecision(digits)}` : `${value}`;
@@ -104,7 +104,7 @@ export function disc(ink, colour, edge, [x, y], radius) {
   if (edge) stroke(ink, edge, 1.5);
 }
 
-/** Make the edge of a body the current path. */
+/** Make the outline of a body the current path. */
 export function outline(ink, strip, at, view) {
   const [u, v] = view.at(at.x, at.z);
   ink.beginPath();
@@ -112,7 +112,7 @@ export function outline(ink, strip, at, view) {
     2 * Math.PI);
 }
 
-/** Draw the earth and its ticks, every fifth longer and with its distance. */
+/** Draw the ground and its ticks, every fifth longer and labelled with its distance. */
 function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   const far = (2 * (width + tall)) / view.scale;
   const [x] = view.ground(width / 2, floor + tall);
@@ -135,7 +135,7 @@ function paintGround(ink, colours, strip, view, { floor, width, tall }) {
     const place = view.at(i * step, -depth * 3), words = `${round(i * step * perMetre, 10)} ${unit}`;
     ink.font = font(11);
     const half = ink.measureText(words).width / 2;
-    if (place[0] < half || place[0] > width - half) continue; // the rim would cut it
+    if (place[0] < half || place[0] > width - half) continue; // the edge would cut it off
     ink.save();
     ink.translate(...place);
     ink.rotate(strip.slope);
@@ -165,7 +165,7 @@ function paintSkids(ink, colours, strip, at, view) {
   ink.globalAlpha = 1;
 }
 
-/** Draw the trace of a place of the body up to now. */
+/** Draw the trace of a point of the body up to now. */
 function paintTrace(ink, colour, width, strip, placeOf, at, view, alpha) {
   ink.globalAlpha = alpha;
   line(ink, colour, width, past(strip, at).map((state) => view.at(...placeOf(state))));
@@ -219,7 +219,7 @@ function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (Math.abs(at.F) > 0.02 * weight) text(ink, colours.plum, "F", along[0], along[1] - 8);
 }
 
-/** Draw the blow at its place on the body at t = 0. */
+/** Draw the blow at its point on the body at t = 0. */
 function paintBlow(ink, colours, strip, view, lasting) {
   const [jx, jz, dx, dz] = strip.blow, size = Math.hypot(jx, jz);
   if (lasting > FADES || !size) return;

@@ -17,7 +17,7 @@ export function unpacked(columns) {
     [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
 }
 
-/** The place of the last of rising times up to t, at least the first; `time` has them by place. */
+/** Index of the last of rising times up to t, at least the first; `time` gives them by index. */
 export function lastUntil(t, count, time) {
   let first = 0, end = count;
   while (end - first > 1) {
@@ -41,7 +41,7 @@ export class Track {
     return this.between(i, last ? 0 : Math.max(0, t - this.t[i]) / (this.t[i + 1] - this.t[i]));
   }
 
-  /** The state at a part u, from 0 to 1, of the way from sample i to the next one. */
+  /** The state at a fraction u, from 0 to 1, of the way from sample i to the next one. */
   between(i, u) {
     const v = 1 - u, j = Math.min(i + 1, this.t.length - 1), span = this.t[j] - this.t[i];
     const line = (p) => v * p[i] + u * p[j];
@@ -58,7 +58,7 @@ export class Track {
     };
   }
 
-  /** The states at some samples, and in so many parts of the intervals between them. */
+  /** The states at some samples, and at even fractions of the intervals between them. */
   states(parts, first = 0, end = this.t.length) {
     const found = [];
     for (let i = first; i < end; i++)
@@ -68,7 +68,7 @@ export class Track {
   }
 }
 
-/** Height of the centre over the ground, and how far the contact lies ahead of it. */
+/** Height of the centre above the ground, and how far the contact is ahead of it. */
 export function support(theta, a, b) {
   const sine = Math.sin(theta), cosine = Math.cos(theta);
   const height = Math.hypot(a * sine, b * cosine);

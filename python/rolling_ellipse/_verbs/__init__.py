@@ -1,1 +1,1 @@
-"""Functions of scenes: simulation of one or many, proofs, classification, races."""
+"""Functions that take scenes: simulation of one or many, proofs, classification, races."""

@@ -1,4 +1,4 @@
-"""Outcome of a blow, the friction that rolling requires, and the blow for a speed."""
+"""The outcome of a blow, the friction that rolling requires, and the blow for a speed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .certify import certify
 from .workers import Columns, shared
 
 _SPEEDS = 2048  # number of speeds tried above the one that just reaches the tip
-_FASTEST = 1e3  # largest excess of these speeds, over the speed that just reaches the tip
+_FASTEST = 1e3  # largest excess of these speeds, relative to the one that just reaches the tip
 
 
 @overload
@@ -37,26 +37,26 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     ``LOSES_CONTACT``   the blow lifts the body off the ground, or the body is in the air; or it
                         is too fast for the ground, as in `classify`; or, on a slope, it rolls
                         until it flies
-    ``JAMS``            the contact slides, and no motion of a rigid body goes on, or two do
+    ``JAMS``            the contact slides, and no rigid-body motion continues it, or two do
                         (Painlevé)
     ``RESTS``           it is in equilibrium and stays
     ``ROCKS``           it rolls until it turns back
-    ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, rolls on
+    ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, keeps rolling
     ``EDGE``            undecided within rounding
     ==================  ==========================================================================
 
-    There are no steps: the blow is the collision law of `Scene.initial_state`, and rolling after
-    it is decided by the proofs of `classify`. On a slope the rolling motion is followed by the
-    power series of `certify` to the first of these events: ``ROCKS`` is the first instant without
-    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis at right angles to
-    the ground (of a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which
-    is a flight where the body turns too fast for its weight by then (c < 0 < N).
+    No steps are taken: the blow obeys the collision law of `Scene.initial_state`, and the rolling
+    after it is decided by the proofs of `classify`. On a slope the power series of `certify` follow
+    the rolling motion to the first of these events: ``ROCKS`` is the first instant without
+    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis perpendicular to the
+    ground (for a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which is
+    a flight if the body turns too fast for its weight by then (c < 0 < N).
 
     Parameters
     ----------
     scene : Scene
     impulse : Impulse, optional
-        Blow that replaces the scene's own; with arrays, many of them.
+        Blow that replaces the scene's own; many blows if it has arrays.
 
     Returns
     -------
@@ -95,40 +95,40 @@ def required_friction(
 def required_friction(
     scene: Scene | Mapping[str, Any], *, to: Literal["roll", "rest"] = "roll", workers: Any = 1
 ) -> float | FloatArray:
-    """Return the least coefficient of friction with which the ground holds the rolling for ever.
+    """Return the least coefficient of friction with which the body can roll forever.
 
     It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
-    ``|Gnt|/Gtt`` if that is more: then its slip stops before the compression ends, and does not
-    begin again (the collision law of `Scene.initial_state`). The rolling that follows requires the
+    ``|Gnt|/Gtt`` if that is larger: then its slip stops before the compression ends, and does not
+    start again (the collision law of `Scene.initial_state`). The rolling that follows requires the
     largest ``|F|/N``: on level ground that of `certify`, over the whole motion; on a slope that of
     a circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
-    along the angle, by a scan and golden section). The scene's own friction has no effect.
+    over the angle, by a scan and golden section). The scene's own friction has no effect.
 
     Parameters
     ----------
     scene : Scene or mapping
-        A mapping has the names of Scene's arguments, and numbers or arrays that broadcast, as of
+        A mapping has the names of Scene's arguments, with numbers or arrays that broadcast, as for
         `simulate_many`.
     to : {"roll", "rest"}
         "rest": the friction with which the body, whatever its start, can lie still on its slope:
-        tan(slope), or infinite where it is steeper than ``|a^2 - b^2|/(2 a b)``, the largest lead
-        of the contact over the height of the centre.
+        tan(slope), or infinite if that is more than ``|a^2 - b^2|/(2 a b)``, the largest lead of
+        the contact over the height of the centre.
     workers : int or executor
-        As of `flow`, for the scenes of a mapping.
+        As for `flow`, for the scenes of a mapping.
 
     Returns
     -------
     float or ndarray
-        For a mapping with arrays an array of their common shape, with the bits of single scenes.
+        For a mapping with arrays an array of their common shape, bit for bit as for single scenes.
         Infinite if no finite coefficient is enough: the blow lifts the body, or it is in the air;
-        it slides by its velocities; N vanishes; or it is not a circle and runs down a slope for
-        ever. Infinite friction may hold some of these: see `certify`. 0 if any positive coefficient
-        is enough: without friction a moving contact slides.
+        its velocities make it slide; N vanishes; or it is not a circle and runs down a slope
+        forever. Infinite friction may hold some of these: see `certify`. 0 if any positive
+        coefficient is enough: without friction a moving contact slides.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong; of an array the number is named with its place.
+        If an argument is wrong; in an array the number is named with its index.
 
     Examples
     --------
@@ -150,19 +150,20 @@ def _frictions(to_rest: bool, _: int, columns: Columns, threads: int) -> FloatAr
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
-    """Return the press at a distance from the centre after which the body rolls as asked.
+    """Return the press at a distance from the centre after which the body rolls as requested.
 
     Parameters
     ----------
     scene : Scene
         Its own impulse is replaced.
     distance : float
-        Horizontal distance of the press from the centre [m], as of `Impulse.press`.
+        Horizontal distance of the press from the centre [m], as in `Impulse.press`.
     omega : float, optional
-        Angular velocity just after the blow [rad/s], met within rounding. Default: the least press
-        after which the body rolls over on level ground, the least double for which `outcome` proves
-        it. It is searched at 2049 speeds, up to 1001 times the one that just reaches the tip, since
-        a harder press may need less friction (of a nearly round body), and refined by bisection.
+        Angular velocity just after the blow [rad/s], met to within rounding. Default: the least
+        press after which the body rolls over on level ground: the least double for which `outcome`
+        proves it. The search tries 2049 speeds, up to 1001 times the one that just reaches the tip,
+        since a harder press may need less friction (on a nearly round body), and ends with a
+        bisection.
 
     Returns
     -------
@@ -172,9 +173,10 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     Raises
     ------
     ValueError
-        If no press at that distance can do it. The message has the reason: it misses the body, has
-        no lever, would have to pull, or slips; the ground cannot hold the body so fast; the body is
-        in the air, rolls over without a blow, or, without omega, is on a slope or is a circle.
+        If no press at that distance can do it. The message states the reason: it misses the body,
+        has no lever, would have to pull, or slips; the ground cannot hold the body at that speed;
+        the body is in the air, rolls over without a blow, or, without omega, is on a slope or is a
+        circle.
     """
     bare = require_scene(scene).replace(impulse=None)
     distance = number("distance", distance)
@@ -230,7 +232,7 @@ def _require_lever(F: float, distance: float) -> None:
 
 
 def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
-    """Return the least press after which the body rolls over, found by a scan and bisection."""
+    """Return the least press after which the body rolls over, by a scan and bisection."""
     if scene.slope != 0:
         raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
     if outcome(scene) is Outcome.ROLLS_OVER:
@@ -261,7 +263,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
 
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
-    """Return an error: why a press just strong enough to reach the tip does not roll it over."""
+    """Return an error that explains why a press just reaching the tip does not roll it over."""
     after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
     start = after.initial_state
     why = f"{start.reason}{_needed_friction(after)}"

@@ -1,4 +1,4 @@
-"""Certificates: proofs that rolling is valid for a whole motion, or of where it ends."""
+"""Certificates: proofs that rolling is valid for a whole motion, or where it ends."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .._ask.records import FieldsOnly, find_late, trusted
 from .._ask.scene import Scene, require_scene
 from .._core import Validity
 
-_VALIDITIES = tuple(Validity)  # members, at the places of their codes
+_VALIDITIES = tuple(Validity)  # members, indexed by their codes
 
 
 @dataclass(frozen=True, repr=False)
@@ -24,22 +24,22 @@ class Certificate(FieldsOnly, Listed):
     validity : Validity
         VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll).
     smallest_normal_force : float or None
-        Least normal force [N] over the whole motion, both directions of time. On a slope it is -inf
-        except for a circle, a body at rest and one that rocks: other bodies turn faster without
-        bound downhill.
+        Least normal force [N] over the whole motion, in both directions of time. On a slope it is
+        -inf except for a circle, a body at rest and one that rocks: other bodies turn ever faster
+        downhill.
     smallest_normal_force_angle : float or None
-        Its angle theta in [0, pi/2]; by symmetry it occurs at every +-theta + k pi that the motion
-        reaches. On a slope the angle itself, unwrapped; None for an infinite force.
+        The angle theta in [0, pi/2] of that force; by symmetry it occurs at every +-theta + k pi
+        that the motion reaches. On a slope, the unwrapped angle; None for an infinite force.
     largest_friction_needed : float or None
-        Largest ``|F/N|`` over the whole motion (infinite where N <= 0); on a slope infinite where
-        the least normal force is -inf.
+        Largest ``|F/N|`` over the whole motion (infinite where N <= 0); on a slope infinite if the
+        least normal force is -inf.
     largest_friction_needed_angle : float or None
-        Its angle, as above.
+        The angle at which it is needed, as above.
     ends_at : float or None
-        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. The
-        angle of the start for a moving body without friction, whose contact slides at once.
+        The angle theta (unwrapped) at which rolling ends, forwards in time; None if VALID. For a
+        moving body without friction, whose contact slides at once, the angle of the start.
     reason : str
-        What is proved in words, with the friction that it supposes and that the blow needs.
+        What is proved, in words, with the friction that it assumes and that the blow needs.
     """
 
     _units: ClassVar[dict[str, str]] = {
@@ -62,17 +62,17 @@ class Certificate(FieldsOnly, Listed):
 def certify(scene: Scene) -> Certificate:
     """Prove, without integrating, whether rolling is valid for the motion that starts from a scene.
 
-    On level ground N and F of rolling are rational functions of the height h of the centre. The
-    signs of a quintic (N > 0) and of a polynomial of degree 10 (``|F| <= friction N``) on the
-    heights that the motion reaches are decided by Bernstein coefficients with subdivision; every
+    On level ground N and F of rolling are rational functions of the height h of the centre.
+    Bernstein coefficients with subdivision decide the signs of a quintic (N > 0) and of a
+    polynomial of degree 10 (``|F| <= friction N``) on the heights that the motion reaches; every
     coefficient carries the margin by which rounding may have moved it. The extremes are taken at
     critical points, not at samples.
 
-    On a slope the forces are linear in the energy of the motion at every angle, so that the law of
-    the contact holds for an interval of energies there. The motion and its N and F are followed by
-    power series at rounding level, and their first root decides, by Bernstein coefficients again.
-    Of many half turns only those are examined that decide for all between them. A margin within
-    rounding of 0 is EDGE. Rolling that holds for 1e15 half turns is VALID.
+    On a slope the forces are linear in the energy of the motion at every angle, so that the contact
+    law holds there for an interval of energies. Power series follow the motion with its N and F to
+    within rounding; their first root decides, again by Bernstein coefficients. Of many half turns
+    only those that decide all others are examined. A margin within rounding of 0 is EDGE.
+    Rolling that holds for 1e15 half turns is VALID.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Outcome of rolling, for one body or a million, and the thresholds between outcomes."""
+"""The outcome of rolling, for one body or a million, and the thresholds between outcomes."""
 
 from __future__ import annotations
 
@@ -23,40 +23,40 @@ class Thresholds(FieldsOnly, Listed):
     """Speeds, angles and coefficients at which the motion on level ground changes its kind.
 
     Speeds are ``|omega|`` when passing the flat position [rad/s]; angles are theta in [0, pi/2]
-    [rad], None if the speed or coefficient before it is infinite (it never happens).
-    `lift_off_speed` and `jam_speeds` are computed when first asked for, in some milliseconds, or
-    in up to a tenth of a second for a body that may jam.
+    [rad], None if the corresponding speed or coefficient is infinite (it never happens).
+    `lift_off_speed` and `jam_speeds` are computed on first access, in a few milliseconds, or up to
+    a tenth of a second for a body that may jam.
 
     Attributes
     ----------
     roll_over_speed : float
-        Above it the body turns over; below it rocks.
+        Above it the body rolls over; below it, it rocks.
     contact_loss_speed, contact_loss_angle : float
-        From this speed on rolling would need the ground to pull (N < 0), first at this angle.
+        Above this speed rolling would need the ground to pull (N < 0), first at this angle.
     slip_speed, slip_angle : float
         The least speed at which rolling needs more than the given friction, first at this angle:
         the start of the first of `slip_windows`. Larger speeds may hold again.
     slip_windows : tuple of (float, float)
-        Ranges of speed, ascending, in which rolling needs more than the given friction somewhere on
-        its way: one or two, the last one up to inf; none for a circle with friction. Between two
-        of them the body rolls for ever: too fast to stop where it would slip from rest, and too
-        slow to slip in motion. The ends are found by a scan over the angles; the proof of `certify`
-        then excludes that rolling fails at an angle that the scan has missed.
+        Ranges of speed, ascending, in which rolling needs more than the given friction somewhere
+        along its path: one or two, the last one up to inf; none for a circle with friction. Between
+        two of them the body rolls forever: too fast to stop where it would slip from rest, and too
+        slow to slip in motion. The ends are determined by a scan over the angles; the proof of
+        `certify` then rules out that rolling fails at an angle that the scan missed.
     lift_off_speed : float
-        The least speed at which a body of the given friction leaves the ground: it slips first,
-        and then N reaches 0 before it passes the tip. At all larger speeds it leaves, too, except
+        The least speed at which a body with the given friction leaves the ground: it slips first,
+        and then N reaches 0 before it passes the tip. It also leaves at all larger speeds, except
         in `jam_speeds`.
     jam_speeds : tuple of (float, float)
         Ranges of speed, ascending, in which the slide jams before it leaves the ground or passes
         the tip; inf ends an unbounded range. Empty up to `painleve_friction` and for infinite
-        friction; above, they are found by a scan in steps of 2 % up to 50 times the largest of the
-        other speeds (narrower ranges may be missed). Their ends are refined by bisection; they are
-        known to some 1e-5 where slides run into the point at which pressure and response vanish
+        friction; above, they are located by a scan in steps of 2 % up to 50 times the largest of
+        the other speeds (narrower ranges may be missed). Their ends are refined by bisection, to
+        only about 1e-5 where slides run into the point at which pressure and response vanish
         together.
     friction_to_roll_over : float
-        Largest ``|F/N|`` of rolling at the roll-over speed (infinite where N vanishes before).
+        Largest ``|F/N|`` of rolling at the roll-over speed (infinite if N vanishes before the tip).
     painleve_friction, painleve_angle : float
-        Least friction coefficient for which sliding can jam, and where.
+        Least friction coefficient for which sliding can jam, and the angle at which it can.
     rocking_rate : float
         Angular frequency of small rocking [rad/s].
     tip_rate : float
@@ -133,26 +133,26 @@ def classify(
     ==================  ==========================================================================
     ``RESTS``           nothing: it is in equilibrium and stays
     ``ROCKS``           it turns back
-    ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls on for ever
+    ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls forever
     ``SLIPS``           it would need more friction than given (a moving body without friction
-                        slips at once); infinite friction: the ground would have to pull (N < 0),
-                        and the body slides, not pressed
+                        slips at once); for infinite friction: the ground would have to pull
+                        (N < 0), and the body slides without pressure
     ``LOSES_CONTACT``   the start itself is too fast for the ground, and the body leaves it at once;
                         a body that rolls slips first
-    ``JAMS``            a slip begins inside the Painleve region. It never does: what ends rolling
-                        can always go on as sliding. The code is kept for completeness.
+    ``JAMS``            a slip starts inside the Painleve region. This never happens: rolling that
+                        ends can always continue as sliding. Kept for completeness.
     ``EDGE``            undecided within rounding, as on the separatrix
     ==================  ==========================================================================
 
-    So a body that starts beyond the angles at which it would slip rolls over first and slips later;
-    `certify` covers the whole motion. The answers are the proved signs of the polynomials of N and
-    of ``friction N - |F|`` on the heights that the motion meets (Bernstein coefficients with
-    subdivision, every coefficient with its margin for rounding).
+    Thus a body that starts beyond the angles at which it would slip rolls over first and slips
+    later; `certify` covers the whole motion. The answers follow from proved signs of the
+    polynomials of N and ``friction N - |F|`` on the heights that the motion reaches (Bernstein
+    coefficients with subdivision, every coefficient with its margin for rounding).
 
     Parameters
     ----------
     a, b, omega, theta, gravity, gyration2, workers
-        As of `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
+        As for `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
         [m/s^2], k^2 [m^2] and workers.
     friction : float or array_like
         Coefficient of friction; inf allowed.
@@ -160,13 +160,13 @@ def classify(
     Returns
     -------
     Outcome or ndarray of int8
-        The outcome, if all arguments are scalars; else `Outcome` codes of the broadcast shape.
+        The outcome, if all arguments are scalars; else `Outcome` codes in the broadcast shape.
 
     Raises
     ------
     ValueError
-        If a number is out of its range (of an array it is named with its place in the common
-        shape, ``a[3]``) or shapes do not broadcast.
+        If a number is out of its range (in an array it is named with its index in the common shape,
+        ``a[3]``) or shapes do not broadcast.
     """
     codes = evaluate(
         shared(workers, _core.classify_array), a=a, b=b, omega=omega, theta=theta,
@@ -189,10 +189,10 @@ def thresholds(
     Parameters
     ----------
     a, b, gravity, gyration2 : float
-        As of `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
+        As for `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
     friction : float
-        Coefficient of friction for the speeds that slip, lift off or jam; if infinite, the slip
-        speed is the contact loss speed.
+        Coefficient of friction for the slip, lift-off and jam speeds; if infinite, the slip speed
+        is the contact loss speed.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from .. import _core
 from .._ask.check import file_name
 from .._motion.export.new_files import write_new
 
-_ARCHIVE = "examples.zip"  # beside the core, written by notebooks/pack.py in every build
+_ARCHIVE = "examples.zip"  # next to the core, written by notebooks/pack.py in every build
 
 
 def examples(folder: str | PathLike[str]) -> list[Path]:
@@ -22,7 +22,7 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     Parameters
     ----------
     folder : path
-        Made if it does not exist. Files that are there already and equal those to be written stay.
+        Created if it does not exist. Existing files equal to those to be written are kept.
 
     Returns
     -------
@@ -32,12 +32,12 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     Raises
     ------
     ValueError
-        If the folder has another file of one of the names, such as a notebook that has been run,
-        or a link; nothing is written then.
+        If the folder has a different file with one of the names, such as a notebook that has been
+        run, or a link; nothing is written then.
     TypeError
-        If `folder` is no path.
+        If `folder` is not a path.
     OSError
-        If a file cannot be written. Each file is there whole or not at all.
+        If a file cannot be written. Each file appears whole or not at all.
     """
     place = Path(file_name("folder", folder))
     with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:

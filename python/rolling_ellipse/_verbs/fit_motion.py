@@ -26,25 +26,25 @@ if TYPE_CHECKING:
     from .._pictures.fit import FitChart
 
 _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
-_ROUNDS = 3  # in which sigma and the fit are estimated in turns
-_FOREIGN = 1e3  # ratio of free fall to gravity of a film that lasts too long or short to be tried
-_LOWER = 0.01  # fall of the cost from a minimum to a rival that is a better one
+_ROUNDS = 3  # rounds that estimate sigma and the fit in turn
+_FOREIGN = 1e3  # ratio of free fall to gravity at which the clock is too far off to fit
+_LOWER = 0.01  # smallest decrease of the cost that makes a rival a better minimum
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
-    """Parameters that fit a film of a motion best, and how well the film tells them.
+    """Parameters that fit a film of a motion best, and how well the film determines them.
 
     Attributes
     ----------
     scene : Scene
         The scene with the fitted parameters.
     errors : dict
-        Standard error of each parameter; infinite where the film cannot tell it.
+        Standard error of each parameter; infinite if the film does not determine it.
     covariance : ndarray, shape (k, k)
         Covariance of the parameters in the order of `errors`, from the linearised residuals.
     chi2 : float
-        Sum of the squares of residuals over sigma. It judges nothing where sigma is estimated.
+        Sum of the squares of residuals over sigma. It is no test of fit if sigma is estimated.
     residuals : ndarray, shape (n, 3)
         Measured minus fitted x, z [m] and theta [rad], NaN where nothing was measured.
     sigma : ndarray, shape (3,)
@@ -53,7 +53,8 @@ class Fit:
         The fitted motion at the times of the film.
     message : str
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
-        film cannot tell; whether the scene does not fit the film, and the reading that fits.
+        film does not determine; and if the scene does not fit the film, a statement of that, with
+        any reading of the film that fits.
     """
 
     scene: Scene
@@ -103,25 +104,26 @@ def fit_motion(
     sigma: Any = None,
     loss: str = "linear",
 ) -> Fit:
-    """Fit parameters of a scene to a film: places and angles of the body at times.
+    """Fit parameters of a scene to a film: positions and angles of the body at given times.
 
-    Angles are in radians, clockwise where x points to the right, and those of the semi-axis a
-    against the ground; z is the height of the centre over the ground, and t the time since the
-    start of the scene.
+    Angles are in radians, between the semi-axis a and the ground, clockwise if x points to the
+    right; z is the height of the centre above the ground, and t the time since the start of the
+    scene.
 
-    Nonlinear least squares [1]_ by SciPy, from the scene itself and from straight lines and
+    Nonlinear least squares [1]_ by SciPy starts from the scene itself and from straight lines and
     parabolas through the first frames, each with several coefficients, for longer and longer parts
-    of the film; then from places around the best solutions, since chi2 has many minima. Each
-    parameter is moved by three errors, and further, with the others fitted anew: an error grows to
-    the change over the root of the rise of chi2 where that is more, as beyond a threshold of
-    friction or where another scene fits as well. What the film cannot tell keeps its guess.
+    of the film; then from points around the best solutions, since chi2 has many minima. Each
+    parameter is moved by three errors, and further, with the others refitted: an error grows to the
+    change over the root of the rise of chi2 if that is larger, as beyond a threshold of friction or
+    if another scene fits as well. A parameter that the film does not determine keeps its guess.
 
-    The residuals r of neighbouring frames are compared: where they are noise, the sum of r r' over
-    that of (r^2 + r'^2)/2, times the root of the number of pairs, is a normal number. Above 3.5 in
-    a track of eight pairs or more, or where chi2 of given deviations is five deviations above its
-    mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the largest
-    of those ratios of sums, which is an estimate only, and usual readings of other trackers are
-    tried. A film whose free fall is not that of the scene is not fitted where other units fit.
+    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
+    that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above
+    3.5 in a track of eight pairs or more, or if chi2 for given deviations is five deviations above
+    its mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the
+    largest of those ratios of sums, which is only an estimate, and the conventions of other
+    trackers are tried. A film whose free fall is not that of the scene is not fitted if other units
+    fit.
 
     Parameters
     ----------
@@ -136,10 +138,10 @@ def fit_motion(
         The unknown parameters, named as for `Trajectory.sensitivity`.
     sigma : float or mapping, optional
         Standard deviation of all data, or by the names x, z and theta, from 1e-15 to 1e15 times
-        max(a, b) or one radian. Those of other tracks are estimated from the residuals, in turns
+        max(a, b) or one radian. Those of other tracks are estimated from the residuals, in turn
         with the fit.
     loss : {"linear", "soft_l1", "huber", "cauchy", "arctan"}
-        As of `scipy.optimize.least_squares`; all but "linear" are for films with outliers.
+        As for `scipy.optimize.least_squares`; all but "linear" are for films with outliers.
 
     Returns
     -------
@@ -149,7 +151,7 @@ def fit_motion(
     ------
     ValueError
         If names are unknown or repeated, arrays do not fit together, sigma is out of range, there
-        are no more data than unknowns, or no scene of the search moves until the last time.
+        are not more data than unknowns, or no motion of the search reaches the last time.
     ImportError
         If SciPy is not installed.
 
@@ -190,7 +192,7 @@ def fit_motion(
 
 
 def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit:
-    """Return a minimum of chi2 with its errors and what its residuals say."""
+    """Return a minimum of chi2 with its errors and the verdict of its residuals."""
     unknowns, film = search.unknowns, search.film
     rivals = [search.solve(one.x, within=one.within) for one in minima]
     for _ in range(_ROUNDS):
@@ -220,7 +222,7 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
 def _not_fitted(
     film: Film, unknowns: Unknowns, sigma: FloatArray, fall: float | None, words: str
 ) -> Fit:
-    """Return the scene as it is, with a sentence on the units of the film."""
+    """Return the scene unchanged, with a sentence on the units of the film."""
     motion = unknowns.motion(unknowns.own, film.t)
     if motion is None:
         raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")

@@ -32,52 +32,52 @@ def flow(
     slope: Any = 0.0,
     workers: Any = 1,
 ) -> tuple[Any, Any, Any]:
-    """Return the state of rolling at any time, exactly, without a check that rolling is valid.
+    """Return the exact state of rolling at any time, without checking that rolling is valid.
 
     All arguments broadcast by NumPy's rules. The cost of one time does not depend on its distance
-    from the start. The period, by the trapezoidal rule in a coordinate in which the integrand has
-    no peaks, is subtracted as a double-double; the energy integral is inverted by Gauss-Legendre
-    quadrature and Newton's method. There are no steps.
+    from the start. The period, computed by the trapezoidal rule in a coordinate in which the
+    integrand has no peaks, is subtracted as a double-double; the energy integral is inverted by
+    Gauss-Legendre quadrature and Newton's method, without steps.
 
     Parameters
     ----------
     t : float or array_like
-        Time since the start [s], any sign; more than 1e15 half turns or swings are refused.
+        Time since the start [s], any sign; more than 1e15 half turns or swings are rejected.
     a, b : float or array_like
         Semi-axes [m].
     theta, omega : float or array_like
-        Angle [rad] and angular velocity [rad/s] at the start; less than 1e-100 rad/s in size
-        counts as rest.
+        Angle [rad] and angular velocity [rad/s] at the start; a magnitude below 1e-100 rad/s counts
+        as rest.
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
         (a^2 + b^2)/4.
     slope : float or array_like
-        Angle of the ground [rad], downwards in x, at most 1.5 in size. On a slope power series
-        follow a swing; a run downhill and a climb are a quadrature of the energy integral over one
-        half turn. Times of one motion beside each other share them.
+        Angle of the ground [rad], descending towards +x, within ±1.5. On a slope, power series
+        follow a swing; a run downhill or a climb is a quadrature of the energy integral over one
+        half turn. Adjacent times of one motion share them.
     workers : int or executor
         Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
-        or an executor, as of `simulate_many`, for many millions of elements. The bits are the same
-        for all.
+        or an executor, as for `simulate_many`, for many millions of elements. The results are the
+        same bit for bit.
 
     Returns
     -------
     theta, omega, x : float or ndarray
-        Angle [rad], angular velocity [rad/s], path of the centre since the start [m]; floats if all
-        arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
-        ``|h'|`` within 8 ulp of h) stays. The last bits may depend on the number of times: many
-        times of one motion are evaluated by Taylor series about points of it. Their x then has a
-        rounding error of 2e-16 max(a, b), also where the body has returned to its start and x is
-        small. Many motions at one time each are computed side by side in the vectors of the
-        processor (SSE2, AVX2 or AVX-512), with the bits that each has alone.
+        Angle [rad], angular velocity [rad/s], displacement of the centre [m]; floats if all
+        arguments are scalars, else arrays of the broadcast shape. A body in equilibrium (omega = 0
+        and ``|h'|`` within 8 ulp of h) stays. The last bits may depend on the number of times: many
+        times of one motion are evaluated by Taylor series about points on it. Their x then has a
+        rounding error of 2e-16 max(a, b), even where the body has returned to its start and x is
+        small. Many motions at one time each are computed side by side in the processor's vector
+        registers (SSE2, AVX2 or AVX-512), bit for bit as each alone.
 
     Raises
     ------
     ValueError
-        If a number is out of its range (of an array it is named with its place in the common
-        shape, ``a[3]``) or shapes do not broadcast.
+        If a number is out of its range (in an array it is named with its index in the common shape,
+        ``a[3]``) or shapes do not broadcast.
     """
     # Plain floats, as in most calls, need no conversion.
     if (
@@ -88,12 +88,12 @@ def flow(
         and workers == 1
     ):
         return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2, slope)
-    threads_of(workers)  # refuses what is neither a number nor an executor
+    threads_of(workers)  # rejects what is neither a number nor an executor
     on_slope = {} if type(slope) is float and slope == 0 else {"slope": slope}
     one = (a, b, theta, omega, gravity)
     known = all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType)
     if known and not on_slope:
-        with suppress(TypeError):  # an int beyond doubles is refused by name below
+        with suppress(TypeError):  # an int beyond doubles is rejected by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2, 0.0)  # type: ignore[arg-type]
             times, of_one = array("t", t), partial(_times, (*one, gyration2))
@@ -120,7 +120,7 @@ def arguments_of(scene: Scene) -> dict[str, Any]:
 
 
 def period(scene: Scene) -> float:
-    """Return the time of a full swing, or of one full turn, of the rolling motion [s].
+    """Return the duration of a full swing, or of one full turn, of the rolling motion [s].
 
     It is infinite for a body at rest. On level ground it is the energy integral by the trapezoidal
     rule, as in `flow`, with an error of a few units in the last place. On a slope, where only a
@@ -129,7 +129,7 @@ def period(scene: Scene) -> float:
     Parameters
     ----------
     scene : Scene
-        Must start rolling (after its impulse), on a slope between two turning points.
+        Must start rolling (after its impulse); on a slope, between two turning points.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
     """Return the right-hand side of the equation of rolling without slip, for any integrator.
 
     ``solve_ivp(rolling_equation(scene), (0.0, 6.0), [start.theta, start.omega])`` is the motion
-    from ``start = scene.initial_state``. It is not checked that the ground can hold it.
+    from ``start = scene.initial_state``. Whether the ground can hold it is not checked.
 
     Parameters
     ----------
@@ -154,9 +154,9 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
     -------
     callable
         ``rhs(t, y)``: the rates of y = (theta, omega) [rad, rad/s], or of (theta, omega, x) with
-        the centre x [m], as an array of the shape of y, (2,) or (3,); columns of shape (2, n) or
+        the centre x [m], as an array in the shape of y, (2,) or (3,); columns of shape (2, n) or
         (3, n) are n states. omega' is physics (18), x' = h omega is (9). It raises ValueError for
-        y of another shape.
+        any other shape of y.
     """
     core, axes = require_scene(scene).core, {"a": scene.a, "b": scene.b}
 

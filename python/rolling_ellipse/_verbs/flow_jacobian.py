@@ -30,13 +30,13 @@ def flow_jacobian(
     """Return the derivatives of `flow` with respect to some of its arguments.
 
     They are differences of sixth order; each element takes the best of twelve steps, as in
-    `Trajectory.sensitivity`. Steps shrink with the time, which magnifies changes. All arguments
+    `Trajectory.sensitivity`. Steps shrink with time, since changes grow with it. All arguments
     broadcast.
 
     Parameters
     ----------
     t, a, b, theta, omega, gravity, gyration2, slope, workers
-        As of `flow`. Without `gyration2` the body stays a uniform disc as `a` and `b` change.
+        As for `flow`. Without `gyration2` the body stays a uniform disc as `a` and `b` change.
     wrt : str or iterable of str
         Names of arguments, k of them: "t", "a", "b", "theta", "omega", "gravity", "slope",
         "gyration2".
@@ -49,15 +49,15 @@ def flow_jacobian(
     Raises
     ------
     ValueError
-        As of `flow`; or if a name is unknown or repeated, or no steps agree to a thousandth, as
-        where a body has almost stopped on its tip.
+        As for `flow`; or if a name is unknown or repeated, or no steps agree to a thousandth, as
+        when a body has almost stopped on its tip.
     """
     given = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
     given |= {"slope": slope} if gyration2 is None else {"slope": slope, "gyration2": gyration2}
     names = distinct("wrt", wrt, tuple(given))
     known = {name: array(name, value) for name, value in given.items()}
     shape = common_shape(known, slice(None))
-    flow(**given)  # refuses by name what is out of range
+    flow(**given)  # rejects out-of-range numbers by name
     length = np.maximum(known["a"], known["b"])
     spin = np.sqrt(known["gravity"] / length)
     units = np.stack([np.broadcast_to(unit, shape) for unit in (1.0, spin, length)])

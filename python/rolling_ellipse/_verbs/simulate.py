@@ -45,26 +45,26 @@ def simulate(
     Parameters
     ----------
     scene : Scene
-        Its state is that at t = 0; an impulse acts there first.
+        Its state is that at t = 0, before an impulse acts.
     t : float or array_like, shape (n,)
-        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. A tuple
-        (0, end), the span of other programs, is refused: it would be two samples, as the list
-        [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double cannot
-        resolve its phase.
+        End time (then 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s]. A
+        tuple (0, end), a time span in other programs, is rejected: it would mean two samples, as
+        the list [0, end] does. Rolling for more than 1e15 half turns or swings is rejected: a
+        double cannot resolve its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
-        "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
-        true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
-        rest, on segments joined by ``events``. No segment is integrated by steps: slides are power
-        series in time [9]_ that end at proved first roots. "auto" is "rolling" where the
-        certificate proves it, and "contact" elsewhere; with a method given it is "rolling".
+        "rolling" is rolling without slip; the certificate (see `certify`) states how long it is
+        valid. "contact" is the whole motion: the body rolls, slides, flies, hits the ground and
+        comes to rest, on segments joined by ``events``. No segment is integrated by steps: slides
+        are power series in time [9]_ that end at proved first roots. "auto" is "rolling" if the
+        certificate proves it, else "contact"; if a method is given it is "rolling".
         "multipliers" is rolling in the report's five coordinates with four constraints and their
         Lagrange multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau"
         with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time, without steps; neither tolerances nor the
         span matter. On a slope power series in time follow one swing, which repeats itself; a run
-        downhill and a climb are a quadrature of the energy integral over one half turn, and many
-        half turns are one sum, a difference of Hurwitz zeta functions [8]_. The other methods
+        downhill or a climb is a quadrature of the energy integral over one half turn, and many half
+        turns are one sum, a difference of Hurwitz zeta functions [8]_. The other methods
         integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of
         order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
         Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
@@ -72,59 +72,59 @@ def simulate(
         Radau IIA of order 5 [4]_. "auto" is "exact".
     rtol, atol : float
         Allowed local error of the pairs in each component of the state (theta and omega, or the
-        five coordinates and their rates): atol + rtol times its size. They do not matter where
+        five coordinates and their rates): atol + rtol times its magnitude. They have no effect if
         ``motion.method`` is "exact": its errors are roundings.
     step : float, optional
-        Size of steps [s]: required by "rk4", "gauss" and "radau"; with it "dop853" and "dopri5"
-        take fixed steps without error control. The last step may be shorter.
+        Step size [s]: required by "rk4", "gauss" and "radau"; if given, "dop853" and "dopri5" take
+        fixed steps without error control. The last step may be shorter.
     stages : {4, 3, 2}, optional
-        Of "gauss".
+        Number of stages of "gauss".
     stabilization : {"projection", "none", "baumgarte", "projection+energy", "ggl"}
-        Of the constraints of "multipliers": "none" is the index-1 system, whose constraints
-        drift; "baumgarte" feeds the drift back [5]_; "projection" moves each state, also between
-        steps, to the nearest one, in the kinetic metric, that meets the constraints [6]_, and
-        "projection+energy" to one with the energy of the start; "ggl" is the index-2 system of
-        Gear, Gupta and Leimkuhler [7]_.
+        Treatment of the constraints of "multipliers": "none" is the index-1 system, whose
+        constraints drift; "baumgarte" feeds the drift back [5]_; "projection" moves each state,
+        including those between steps, to the nearest one, in the kinetic metric, that meets the
+        constraints [6]_, and "projection+energy" to one with the energy of the start; "ggl" is the
+        index-2 system of Gear, Gupta and Leimkuhler [7]_.
     baumgarte : (float, float)
-        Gains (alpha, beta) [1/s] of ``f'' + 2 alpha f' + beta**2 f = 0``, for the velocity
-        constraint f1 of ``f1' + 2 alpha f1 = 0``.
+        Gains (alpha, beta) [1/s] in ``f'' + 2 alpha f' + beta**2 f = 0``, for the velocity
+        constraint f1 in ``f1' + 2 alpha f1 = 0``.
     max_steps : int
-        Most steps taken before the integration ends with the status MAX_STEPS.
+        Largest number of steps, after which the integration ends with the status MAX_STEPS.
     max_events : int
-        Most events of "contact" before it ends with the status MAX_EVENTS.
+        Largest number of events of "contact", after which it ends with the status MAX_EVENTS.
     rest_speed : float, optional
         Rebound speed [m/s] below which "contact" sums the infinitely many bounces that are left.
         The relative error is of the order of the square of its ratio to sqrt(g min(a, b)), which
         is a millionth by default and a hundredth at most. Bounces that last too long for that are
-        not summed: where the body is hardly pressed to its ground, or restitution is near 1.
+        not summed: if the body is hardly pressed to its ground, or restitution is near 1.
     raise_on_failure : bool
-        Whether an integration that stops before the last time raises; otherwise the motion up to
-        then is returned.
+        Whether an integration that stops before the last time raises; if not, the motion up to then
+        is returned.
 
     Returns
     -------
     Trajectory
-        ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
-        beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
-        ValidityWarning is issued; or JAMMED, where a slide reaches a state in which no motion of a
-        rigid body goes on, or starts in one from which two go on (Painleve): the arrays end there.
+        Its ``status`` is COMPLETED; or VALIDITY_LOST, if the span of "rolling" or "multipliers"
+        goes beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
+        ValidityWarning is issued; or JAMMED, if a slide reaches a state from which no rigid-body
+        motion continues, or starts in one from which two continue (Painleve): the arrays end there.
         Infinite friction is not the limit of large coefficients here: a slip that would jam is
         removed by an impulse at t = 0 (see `Scene`). A start without slip that may roll or fly (on
-        a slope, turning too fast for its weight, wedged by friction) goes on rolling. ``reason``
-        says both. A sample at an event has the state after it. Samples between steps have the
+        a slope, turning too fast for its weight, wedged by friction) keeps rolling. ``reason``
+        states both. A sample at an event has the state after it. Samples between steps have the
         accuracy of the method. A StabilityWarning is issued for an integrated motion that has lost,
         at steps or between them: a hundredth of its energy (or ten times rtol, if that is more),
-        measured by the largest kinetic plus ``|potential|`` energy, with x from the start; a
+        relative to the largest kinetic plus ``|potential|`` energy, with x from the start; a
         thousandth of the long semi-axis in its constraints; or a tenth of it in the constraints of
-        a single step, whose projection then moves the body elsewhere. It is also issued for gains
-        of Baumgarte that are unstable at the given step.
+        a single step, whose projection then moves the body elsewhere. It is also issued for
+        Baumgarte gains that are unstable at the given step.
 
     Raises
     ------
     ValueError
         If times are negative, not increasing or not finite, a name is unknown, an argument is out
-        of range or has no effect on the method, or the scene of a model "rolling" or "multipliers"
-        does not start rolling.
+        of range or has no effect on the method, or the scene of the model "rolling" or
+        "multipliers" does not start rolling.
     IntegrationError
         If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
         STEP_TOO_LARGE); its ``trajectory`` is the motion up to then.
@@ -158,7 +158,7 @@ def simulate(
 
 
 def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
-    """Warn if the validity was lost; raise, if asked to, for an integration that stopped early."""
+    """Warn if validity was lost; raise, if requested, for an integration that stopped early."""
     if trajectory.status is Status.VALIDITY_LOST:
         warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
     elif not trajectory.success and raise_on_failure:
@@ -166,7 +166,7 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 
 
 def sample_times(t: Any) -> FloatArray:
-    """Return the argument `t` as sample times; an end time gives 1001 even ones."""
+    """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones."""
     times = array("t", t)
     if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
         end = shown(t[1])

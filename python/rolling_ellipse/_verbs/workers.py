@@ -1,9 +1,9 @@
-"""Workers: threads of the core, or an executor, possibly of other machines.
+"""Workers: threads of the core, or an executor, possibly on other machines.
 
-An executor has `submit`, as those of concurrent.futures, dask's Client and mpi4py.futures have, or
-is a pool that has `map`. A task is a function of this package or its core with arguments; the
-number of threads, 1, is added as the last one. It is sent as bytes, for which every transport to
-other processes has a way.
+An executor has `submit`, like those of concurrent.futures, dask's Client and mpi4py.futures, or is
+a pool with `map`. A task is a function of this package or its core with arguments; the number of
+threads, 1, is added as the last one. It is sent as bytes, which every transport to other processes
+supports.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ Columns = list[FloatArray]
 Task = tuple[Any, ...]  # a function and its arguments, without the number of threads
 _Key = TypeVar("_Key")
 
-_IN_FLIGHT = 128  # largest number of tasks that are submitted and not yet yielded
-_HELD = 96 * 2**20  # most bytes of results held for yielding in order, unless one result has more
-_ELEMENTS = 2**16  # elements of a task; a multiple of the core's parts, for the same bits
+_IN_FLIGHT = 128  # largest number of tasks submitted and not yet yielded
+_HELD = 96 * 2**20  # limit on bytes of results waiting for earlier ones, unless one is larger
+_ELEMENTS = 2**16  # elements per task: a multiple of the core's parts, so that all bits agree
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,8 @@ def in_order(
 ) -> Iterator[tuple[_Key, Any]]:
     """Yield key and result of each task, in order; `Lost` if its worker died or was missing.
 
-    Tasks are taken as results are asked for, as many as have results of `_HELD` bytes in all if
-    each has `size()` bytes. An interrupt cancels tasks that have not begun; finished results are
+    Tasks are taken as results are requested; at `size()` bytes each, their pending results stay
+    within `_HELD` bytes. An interrupt cancels tasks that have not started; finished results are
     yielded before it is raised again.
     """
     sent = ((key, pickle.dumps(task)) for key, task in tasks)
@@ -83,10 +83,10 @@ def in_order(
 
 
 def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
-    """Return `function` as one of (number of elements, columns) that workers compute.
+    """Return `function` as a function of (number of elements, columns) that workers compute.
 
-    `function` also takes a number of threads. The bits are the same for any workers; an exception
-    of a task is raised.
+    `function` also takes a number of threads. Results do not depend on the workers, bit for bit; an
+    exception of a task is raised.
     """
     threads = threads_of(workers)
     if threads is not None:
@@ -115,14 +115,14 @@ def _can(executor: Any, what: str) -> bool:
 
 
 def _is_pool(workers: Any) -> bool:
-    """Whether `workers` is a pool, with `map` and a way to close it; some sequences have `map`."""
+    """Whether `workers` is a pool: it has `map`, as some sequences do, and it can be closed."""
     return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
 
 
 def _next(
     sent: Iterator[tuple[_Key, bytes]], waiting: int, size: Callable[[], int]
 ) -> tuple[_Key, bytes] | None:
-    """Return the next key and task; None if there is none, or too many wait."""
+    """Return the next key and task; None if there is none, or too many are waiting."""
     most = min(_IN_FLIGHT, _HELD // max(1, size()))
     return None if waiting and waiting >= most else next(sent, None)
 
@@ -130,7 +130,7 @@ def _next(
 def _mapped(
     pool: Any, sent: Iterator[tuple[_Key, bytes]], size: Callable[[], int]
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield key and result of each task by a pool's `map`; if one fails, its whole `map` does."""
+    """Yield key and result of each task by a pool's `map`; one failure fails the whole `map`."""
     while True:
         part: list[tuple[_Key, bytes]] = []
         while taken := _next(sent, len(part), size):

@@ -1,9 +1,9 @@
 """Known answers for other simulators, integrators and gradients.
 
 We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Eighteen
-problems of an ellipse on the ground have exact answers, found by two independent programs, each
-with its condition number. SI units and radians; ``x`` lies along the ground (downhill where it
-slopes), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are
+problems of an ellipse on the ground have exact answers, computed by two independent programs, and
+condition numbers. SI units and radians; ``x`` lies along the ground (downhill on a
+slope), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are
 in the order x, z, theta, x_dot, z_dot, omega.
 
 >>> from rolling_ellipse import benchmark

@@ -1,10 +1,9 @@
 """Whether a simulator answers the question of a problem.
 
-The answer has to follow from its numbers: values at the end, or at all times, to 0.01 L or 0.01
-rad; events of the right kinds, in order, each at its time to 2 % of sqrt(L/g), or to a thousandth
-of the largest condition number up to it where that is more, 10 % at most. Its states have to be
-those of the motion: no further away than by inputs that are off by 10 %, and in our conventions
-(`_mistakes`).
+The answer must follow from its output: values at the end, or at all times, to 0.01 L or 0.01 rad;
+events of the right kinds, in order, each on time to 2 % of sqrt(L/g), or to a thousandth of the
+largest condition number up to it if that is larger, at most 10 %. Its states must be those of the
+motion: no farther off than if the inputs were off by 10 %, and in our conventions (`_mistakes`).
 """
 
 from __future__ import annotations
@@ -22,18 +21,19 @@ from ._mistakes import mistakes
 from ._problem import STATE, Problem, states_of
 from ._results import Rows
 
-_CLOSE = 0.01  # largest error of a value of the answer, over its scale
-_SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest error of the time of an event, over sqrt(L/g)
-_PER_CONDITION = 1e-3  # share of a sensitive event, over its condition number
-_NEAR = 0.1  # largest error over condition of states that are those of the motion
-_APART = 3.0  # least factor between the distances from the nearest law and from the next one
+_CLOSE = 0.01  # largest error of a value of the answer, relative to its scale
+_SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest error of the time of an event, in units of sqrt(L/g)
+_PER_CONDITION = 1e-3  # allowed share for a sensitive event, per unit of its condition number
+_NEAR = 0.1  # largest error over condition number for states of the right motion
+_APART = 3.0  # minimum ratio of the distances from the second nearest law and the nearest
 _Event = tuple[str, float]
 
 
 class Answer(NamedTuple):
-    """Whether the answer is right, and why or why not, with the differences of the events.
+    """Whether the answer is right, why or why not, and the differences of the events.
 
-    `errors` are those of the compared rows over scales, shape (n, 6), against the nearest law.
+    `errors` are those of the compared rows in units of their scales, shape (n, 6), by the nearest
+    law.
     """
 
     right: bool
@@ -43,9 +43,10 @@ class Answer(NamedTuple):
 
 
 def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
-    """Return the answer by usable rows.
+    """Return the answer given by usable rows.
 
-    `rows` are those of the problem that are compared, `places` those of the result at their times.
+    `rows` are the indices of the problem's compared rows, `places` those of the result's rows at
+    the same times.
     """
     states, law, wrong = _nearest_law(one, rows, mine.states[places])
     events: dict[str, dict[str, Any]] = {}
@@ -70,7 +71,7 @@ def _passes(one: Problem, mine: Rows) -> list[str]:
 
 
 def _values(one: Problem, mine: Rows) -> list[str]:
-    """Compare the values that the last row, or every row, has to have."""
+    """Compare the values required of the last row, or of every row."""
     (which, known), *_ = one.answer.items()
     t, states = (mine.t[-1:], mine.states[-1:]) if which == "last" else (mine.t, mine.states)
     wrong = []
@@ -87,7 +88,7 @@ def _values(one: Problem, mine: Rows) -> list[str]:
 def _nearest_law(
     one: Problem, rows: Any, states: FloatArray
 ) -> tuple[FloatArray, list[str], list[str]]:
-    """Return the states by the nearest law, its name with its factor, and why it is none."""
+    """Return the states by the nearest law, its name with its factor, and why it may not count."""
     if not one.laws or not rows.size:
         return one.states[rows], [], []
     motions = {"stronge": one.states, **one.laws}
@@ -104,9 +105,9 @@ def _nearest_law(
 
 
 def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
-    """Compare given events with the known ones, or those that one rule reads off both motions.
+    """Compare given events with the known ones, or those read off both motions by one rule.
 
-    The error of the rule drops out. Of bounces that settle, the first and the end are compared.
+    The error of the rule cancels. For bounces that settle, the first ones and the end are compared.
     """
     if mine.events is None:
         exact = states_of(one.trajectory.sol(mine.t))
@@ -120,7 +121,7 @@ def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
 
 
 def _settling(one: Problem, bounces: Sequence[_Event]) -> list[str]:
-    """Say what is wrong with bounces and their end, which may be listed as STICK."""
+    """Return what is wrong with bounces and their end, which may be listed as STICK."""
     others = [kind for kind, _ in bounces if kind not in ("IMPACT", "STICK")]
     sticks, end = [t for kind, t in bounces if kind == "STICK"], float(one.answer["end"])
     if others or len(sticks) > 1:
@@ -134,7 +135,7 @@ def _differences(
 ) -> tuple[list[str], dict[str, Any]]:
     """Return what is wrong with events, and counts and errors of times by kind.
 
-    Where the problem has no event, the rule may read one off both motions: its time is not asked.
+    If the problem has no event, the rule may read one off both motions: its time is not compared.
     """
     kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in known)
     off: dict[str, float] = {}
@@ -155,7 +156,7 @@ def _differences(
 
 
 def _allowed(one: Problem, t: float) -> float:
-    """Return the largest error of an event at a time [s], by the condition numbers up to it."""
+    """Return the allowed error of an event at a time [s], from the condition numbers up to it."""
     before = [event.condition for event in one.events if event.t <= t]
     share = max(_SHARE, _PER_CONDITION * max(before, default=0.0))
     return float(min(share, _LARGEST_SHARE) / one.scales[5])

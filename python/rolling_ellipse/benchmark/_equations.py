@@ -1,4 +1,4 @@
-"""Problems as equations: one arc after the other with events, or rolling with its constraints."""
+"""Problems as equations: arc by arc with events, or rolling with its constraints."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ._problem import Problem
 
 ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
-_QUIET = 1e-3  # time without events after SLIP and LIFT_OFF, over sqrt(L/g)
-_LEAST_REBOUND = 1e-7  # over sqrt(g L); slower ones are lower than an ulp of z
+_QUIET = 1e-3  # event-free time after SLIP and LIFT_OFF, in units of sqrt(L/g)
+_LEAST_REBOUND = 1e-7  # in units of sqrt(g L); slower rebounds are lower than an ulp of z
 #: Index, and rows: 0-2 are f2, f3, f4; 3-6 f1 and their rates; 7-10 the rates of these four.
 FORMS = {
     "index3": (3, (3, 0, 1, 2)), "index2": (2, (3, 4, 5, 6)), "index1": (1, (7, 8, 9, 10)),
@@ -38,9 +38,9 @@ class Dae(FieldsOnly):
         f3 = r - a b/sqrt((b sin psi)^2 + (a cos psi)^2),    f4 = psi - psi_C(theta).
 
     M v' = weight + G^T lambda with M = diag(m, m, I, 0, 0), where G v are f1 and the rates of f2,
-    f3, f4. "index3" holds f1, f2, f3, f4; "index2" holds G v, and "index1" its rate; "ggl" holds
-    G v, f2, f3, f4 with q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J.
-    Comput. Appl. Math. 12 (1985) 77). f1 holds velocities: alone it would have index 2, not 3.
+    f3, f4. "index3" has f1, f2, f3, f4; "index2" has G v, and "index1" its rate; "ggl" has G v, f2,
+    f3, f4 with q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput.
+    Appl. Math. 12 (1985) 77). f1 constrains velocities: alone it would have index 2, not 3.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Dae(FieldsOnly):
 
     @property
     def algebraic(self) -> Any:
-        """Mask of entries without derivatives in F; psi_dot and r_dot move no mass."""
+        """Mask of entries whose derivatives are not in F; psi_dot and r_dot move no mass."""
         return np.arange(10 + len(self.rows)) >= (10 if self.form == "index1" else 8)
 
     @property
@@ -73,7 +73,7 @@ class Dae(FieldsOnly):
 
     @property
     def yp0(self) -> FloatArray:
-        """Derivative of y there, shape (n,); 0 for multipliers, whose derivatives are not in F."""
+        """Derivative of y at the start, shape (n,); 0 for multipliers, whose rates are not in F."""
         at = self.problem.trajectory.sol(np.zeros(1))
         v_dot = [at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot]
         return np.hstack([at.q_dot[0], *v_dot, np.zeros(len(self.rows))])
@@ -90,10 +90,10 @@ class Dae(FieldsOnly):
         return array("y", y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
-        """Return F, shape (n,) or (m, n): q' and M v' less their right sides, the constraints."""
+        """Return F, shape (n,) or (m, n): q' and M v' minus right sides, and the constraints."""
         if np.ndim(y) == 1:
             return self.residual(t, np.array([y]), np.array([yp]))[0]
-        # The layout and the number of states are the same to each operation below
+        # No operation below depends on the layout or the number of states
         y, yp = (np.array(np.transpose(one), order="C") for one in (y, yp))
         scene = self.problem.scene
         a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
@@ -133,7 +133,7 @@ class Ode:
     """One arc of a motion, ready for `scipy.integrate.solve_ivp` and its like.
 
     States are x, z, theta, x_dot, z_dot, omega; the equations are those of a rigid body with
-    Coulomb friction, written without the solver of the package.
+    Coulomb friction, written independently of the package's solver.
 
     >>> arc = problem.ode()
     >>> while True:
@@ -152,13 +152,13 @@ class Ode:
     t0 : float
         Start of the arc [s].
     y0 : ndarray, shape (6,)
-        State there.
+        State at t0.
     kind : str
-        Event with which it begins, "" for the first arc.
+        Event with which it starts, "" for the first arc.
     side : int
         Sign of the slip, 0 without slip.
     quiet : float
-        Time from the start during which events are kept positive [s]; see `events`.
+        Time from the start during which event functions are kept positive [s]; see `events`.
     xp : module
         NumPy or another array module such as ``jax.numpy``, with which `rhs` is computed.
     """
@@ -182,9 +182,9 @@ class Ode:
     def events(self) -> list[Callable[[float, Any], Any]]:
         """Functions of t and y that fall through zero where the arc ends.
 
-        They have `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a rebound they begin
-        at zero, with which a solver would take a bounce within its first step for none: they are
-        kept at 1 for 0.001 sqrt(L/g), after a rebound for a tenth of its time to the top.
+        They have `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a rebound they start
+        at zero, so that a solver would miss a bounce within its first step: they are kept at 1 for
+        0.001 sqrt(L/g), or after a rebound for a tenth of its time to the top.
         """
         arcs: dict[str, dict[str, Callable[[Any], Any]]] = {
             ROLLING: {"SLIP": self._grip},
@@ -200,12 +200,12 @@ class Ode:
             vars(value).update(kind=kind, terminal=True, direction=-1)
             return value
 
-        if self.side == 0 and self.mode == SLIDING:  # without friction slip has no side
+        if self.side == 0 and self.mode == SLIDING:  # frictionless slip does not stick
             del ends["STICK"]
         return [event(kind, function) for kind, function in ends.items()]
 
     def jump(self, t: float, y: Any, index: int) -> Ode:
-        """Return the arc that begins with event number `index` of this one."""
+        """Return the arc that starts with event number `index` of this one."""
         x, _, theta, x_dot, z_dot, omega = map(float, y)
         kind, scene = str(vars(self.events[index])["kind"]), self.problem.scene
         h, o, _ = map(float, self._geometry(y))
@@ -232,7 +232,7 @@ class Ode:
         return replace(arc, kind="REVERSE") if reverses else arc
 
     def exact(self, t: Any) -> FloatArray:
-        """Return the exact states at times, as `Problem.exact`."""
+        """Return the exact states at times, like `Problem.exact`."""
         return self.problem.exact(t)
 
     @property
@@ -241,7 +241,7 @@ class Ode:
         return np.array([event.t for event in self.problem.events])
 
     def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
-        """Return the arc of a body on the ground; slip starts against the friction needed."""
+        """Return the arc of a body on the ground; a slip starts opposite to the friction needed."""
         quiet = self._pause if kind == "SLIP" else 0.0
         here = replace(self, mode=ROLLING, t0=t, y0=y, kind=kind, side=0, quiet=quiet)
         if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
@@ -254,7 +254,7 @@ class Ode:
 
     @property
     def _pause(self) -> float:
-        """Time without events after SLIP and LIFT_OFF [s]."""
+        """Event-free time after SLIP and LIFT_OFF [s]."""
         return _QUIET / float(self.problem.scales[5])
 
     @property
@@ -266,12 +266,12 @@ class Ode:
         """Return the support function h, its derivative, and the radius of curvature."""
         a, b = self.problem.scene.a, self.problem.scene.b
         sin, cos = self.xp.sin(y[2]), self.xp.cos(y[2])
-        up, along = a * sin, b * cos  # products: a power of a number differs from that of an array
+        up, along = a * sin, b * cos  # products: powers of scalars and arrays differ
         h = self.xp.sqrt(up * up + along * along)
         return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / (h * h * h)
 
     def _weight(self, y: Any) -> Any:
-        """Return the acceleration of the free contact into the ground."""
+        """Return the contact's acceleration into the ground in the absence of contact forces."""
         h, _, radius = self._geometry(y)
         return self._gravity[1] + (radius - h) * y[5] * y[5]
 
@@ -299,7 +299,7 @@ class Ode:
 
 
 def first_arc(problem: Problem, xp: Any) -> Ode:
-    """Return the arc with which a problem begins."""
+    """Return the first arc of a problem."""
     start = problem.exact(0.0)
     arc = Ode(problem, FLIGHT, 0.0, start, xp=xp)
     if problem.scene.initial_state.mode is Mode.FLIGHT:

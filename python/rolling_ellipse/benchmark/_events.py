@@ -1,13 +1,13 @@
 """Events read off the states of a motion by one rule, for simulators that report none.
 
-With L = max(a, b), a row flies where the gap is above L/500, slips where it does not fly and the
-slip is above sqrt(g L)/100 in size, and rolls otherwise. Rows of one kind form a run; a push of the
+With L = max(a, b), a row flies if the gap is above L/500, slips if it does not fly and the slip's
+magnitude is above sqrt(g L)/100, and rolls otherwise. Rows of one kind form a run; a push of the
 centre by more than sqrt(g L)/10 between two rows, while the gap turns from closing to opening,
-divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10, and rolling ones twice
-as long between opposite slips, belong to the run before. Two runs are joined by an IMPACT where the
-first one flies: at the time at which the free flight from its last row touches the ground. All
+divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10, and rolling ones up to
+twice as long between opposite slips, belong to the run before. Two runs are joined by an IMPACT if
+the first one flies: at the time at which the free flight from its last row touches the ground. All
 other events are where the gap or the slip passes its limit, linear between two rows: LIFT_OFF if
-the second run flies, STICK if it rolls, SLIP if the first one rolls, REVERSE, at the slip 0, if
+the second run flies, STICK if it rolls, SLIP if the first one rolls, and REVERSE, at zero slip, if
 both slip.
 """
 
@@ -24,7 +24,7 @@ from ..geometry import support, support_slope
 from ._problem import Problem
 
 _LEAST_GAP, _LEAST_SLIP, _LEAST_PUSH, _SHORTEST = 0.002, 0.01, 0.1, 0.1
-_ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 slip
+_ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 mean slip
 
 
 def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[str, float]]:
@@ -38,7 +38,7 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
     shortest = _SHORTEST * math.sqrt(length / scene.gravity)
     events: list[tuple[str, float]] = []
     before = kinds[0]
-    rebounds = False  # whether the body flies on after an impact and a run too short to count
+    rebounds = False  # whether the body keeps flying after an impact and a run too short to count
     for start, end in pairwise(starts):
         kind = kinds[start]
         lasts = t[end] - t[start] if end < len(t) else math.inf
@@ -71,7 +71,7 @@ def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> 
 
 
 def _passing(t: FloatArray, values: FloatArray, level: float, start: int) -> float:
-    """Return the last time at which values pass a level before or at a row."""
+    """Return the last time, at or before a row, at which values pass a level."""
     sides = np.sign(values[: start + 1] - level)
     changes = np.nonzero(sides[1:] != sides[:-1])[0]
     if not changes.size:
@@ -89,7 +89,7 @@ def gap_and_slip(problem: Problem, states: FloatArray) -> tuple[FloatArray, Floa
 
 
 def _touch(problem: Problem, t: float, state: FloatArray) -> float:
-    """Return the time at which a free flight from a state close to the ground touches it."""
+    """Return the time at which the free flight from a state close to the ground touches it."""
     scene = problem.scene
     since = np.linspace(0.0, _SHORTEST * math.sqrt(problem.scales[0] / scene.gravity), 2001)
     height = state[1] + (state[4] - scene.gravity * math.cos(scene.slope) * since / 2) * since

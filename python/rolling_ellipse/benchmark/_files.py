@@ -1,4 +1,4 @@
-"""Files for programs in any language: problems to be read, and results that they write."""
+"""Files for programs in any language: problems to read, and results that they write."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def export(folder: Any) -> list[Path]:
     Parameters
     ----------
     folder : path
-        Made if it does not exist. A table of results that is there already stays as it is, and so
-        do files that equal those to be written.
+        Created if it does not exist. An existing table of results is kept, as are files equal to
+        those to be written.
 
     Returns
     -------
@@ -36,16 +36,17 @@ def export(folder: Any) -> list[Path]:
     Raises
     ------
     ValueError
-        If the folder has another file of one of the names, or a link; nothing is written then.
+        If the folder has a different file with one of the names, or a link; nothing is written
+        then.
     OSError
-        If a file cannot be written. Each file is there whole or not at all.
+        If a file cannot be written. Each file appears whole or not at all.
     """
     place = Path(file_name("folder", folder))
     files = {"README.txt": FOLDER.with_name("export.txt").read_bytes()}
     for one in problems():
         files[f"{one.id}.json"] = (FOLDER / f"{one.id}.json").read_bytes()
         for suffix, text in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
-            with suppress(ValueError):  # coefficients of restitution that MJCF has not
+            with suppress(ValueError):  # coefficients of restitution that MJCF lacks
                 files[one.id + suffix] = text().encode()
         if not (place / f"{one.id}.csv").is_file():
             files[f"{one.id}.csv"] = _empty_table(one).encode()
@@ -60,14 +61,14 @@ def _empty_table(one: Problem) -> str:
 
 
 class _Row(NamedTuple):
-    """The entries of a row by column; its problem and its place, for messages."""
+    """The entries of a row by column, with its problem and location for messages."""
 
     problem: str
     place: str
     entries: dict[str, str]
 
     def number(self, name: str) -> float:
-        """Return a number; an empty entry is one of a force only, and NaN."""
+        """Return a number; only forces may be empty, which means NaN."""
         text = self.entries.get(name, "")
         if not text and name in COLUMNS[7:]:
             return math.nan
@@ -83,13 +84,12 @@ class _Row(NamedTuple):
 
 
 def read_folder(results: Any) -> dict[str, Result]:
-    """Return the results in a folder; a table without a state waits for its result.
+    """Return the results in a folder; a table without a state has no result yet.
 
     Raises
     ------
     ValueError
-        If there is no such folder, a table has the name of no scored problem, or is not as it must
-        be.
+        If there is no such folder, or a table is malformed or not named after a scored problem.
     """
     folder = Path(file_name("results", results))
     if not folder.is_dir():
@@ -113,14 +113,14 @@ def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
     Rows without a time or without a state are left out. Two rows at one time are the sides of a
-    jump: the second is kept. Columns beyond those known are left out, too. An empty file has no
-    rows. Events are in `<id>.events.csv` with the columns kind, t, where it is there and not empty.
+    jump: the second is kept. Unknown columns are left out, too. An empty file has no rows. Events
+    are in `<id>.events.csv` with the columns kind, t, if it exists and is not empty.
 
     Raises
     ------
     ValueError
-        If a file is no table of UTF-8 text, a column is missing, or an entry is no number; the
-        message names problem, column and row.
+        If a file is not a table of UTF-8 text, a column is missing, or an entry is not a number;
+        the message names problem, column and row.
     """
     kept: list[list[float]] = []
     for row in _rows(problem, path, COLUMNS[:7]) or []:
@@ -140,7 +140,7 @@ def read(problem: Problem, path: Path) -> Result:
 def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
     """Return the rows of a table that are not blank; None for a file without any.
 
-    A pipe is refused, which would be waited for. Of two columns with one name the first counts.
+    A pipe, which would block, is rejected. Of two columns with the same name the first counts.
     """
     if not path.is_file():
         raise ValueError(f"results must be files, got {path.name!r}, which is none")

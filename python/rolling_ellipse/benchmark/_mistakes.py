@@ -1,7 +1,7 @@
-"""Mistakes of convention and of output that a simulator's states show, in words.
+"""Mistakes of convention and of output that a simulator's states reveal, in words.
 
-A mistake is named where undoing it leaves a twentieth of the error, or less. Errors are those over
-scale and condition number: so a simulator's own errors stay small beside its mistakes.
+A mistake is named if undoing it leaves a twentieth of the error, or less. Errors are relative to
+scale and condition number: thus a simulator's own errors stay small compared with its mistakes.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from ..geometry import support
 from ._problem import STATE, Problem
 from ._results import Rows
 
-_LEFT = 0.05  # largest share of an error that is left once its mistake is undone
-_LEAST = 0.02  # least error of a variable with a mistake
-_LEAST_SHIFT = 1e-3  # least error of rows of other times, which may be those of the next row
+_LEFT = 0.05  # largest share of an error left once its mistake is undone
+_LEAST = 0.02  # smallest error of a mistaken variable
+_LEAST_SHIFT = 1e-3  # smallest error of rows shifted in time, perhaps by only one row
 _FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped
 _SHIFTS = {1: "one", 2: "two", 3: "three"}
 _DEGREE = math.pi / 180
@@ -31,7 +31,7 @@ _ANGLES: tuple[tuple[float, list[str]], ...] = (
 
 
 class _Known(NamedTuple):
-    """Right states at given times, the units of their errors, and the places of these times in the
+    """Right states at given times, the units of their errors, and the indices of these times in the
     rows of a result."""
 
     states: FloatArray
@@ -40,9 +40,10 @@ class _Known(NamedTuple):
 
 
 def mistakes(one: Problem, mine: Rows, rows: Any, places: Any) -> list[str]:
-    """Return the mistakes, against the motion by the law of restitution that shows one.
+    """Return the mistakes, relative to the motion by the law of restitution that shows one.
 
-    `places` are those of given times in the rows of the result, `rows` those of the problem.
+    `places` are the indices of given times in the rows of the result, `rows` in those of the
+    problem.
     """
     if len(mine.t) < 2 or not rows.size:
         return []
@@ -81,20 +82,20 @@ def _named(one: Problem, mine: Rows, known: _Known) -> Iterator[str]:
 
 
 def _other_times(mine: Rows, known: _Known) -> str:
-    """Say that rows are those of their neighbours, or counted from the end."""
+    """Return a remark if rows hold the states of their neighbours, or run backwards in time."""
     for by in (sign * shift for shift in _SHIFTS for sign in (1, -1)):
         if _fits_in(known.places + by, mine.states, mine, known):
             towards = "later" if by > 0 else "earlier"
             return f"rows look shifted by {_SHIFTS[abs(by)]}, to {towards} times"
     from_the_end = len(mine.t) - 1 - known.places
-    turned = mine.states * [1, 1, 1, -1, -1, -1]  # velocities, whose signs change with time
+    turned = mine.states * [1, 1, 1, -1, -1, -1]  # velocities change sign with time
     both = (mine.states, turned)
     is_reversed = any(_fits_in(from_the_end, states, mine, known) for states in both)
     return "rows look reversed in time" if is_reversed else ""
 
 
 def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool:
-    """Return whether states in other places, where there are some, are nearer by far."""
+    """Return whether the states at other indices, where they exist, are much closer."""
     there = (places >= 0) & (places < len(states))
     right, units = known.states[there], known.units[there]
     now = _largest((mine.states[known.places[there]] - right) / units)
@@ -103,7 +104,7 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
 
 
 def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
-    """Say as what the values of a variable look; one that is zero looks the same in any unit.
+    """Return what the values of a variable look like; zeros look the same in any unit.
 
     `height` is that of the centre of a body on the ground.
     """

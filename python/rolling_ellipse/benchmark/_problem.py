@@ -24,7 +24,7 @@ TAGS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
 FOLDER = Path(__file__).with_name("problems")
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
-OUTPUT_RATE = 100  # states a second that a simulator is asked for
+OUTPUT_RATE = 100  # states per second requested from a simulator
 
 
 def states_of(motion: Any) -> FloatArray:
@@ -67,22 +67,22 @@ class Problem(FieldsOnly):
         Abilities that a simulator needs: "flight", "non-round", "restitution", "slope", "spin",
         "stiction".
     scored : bool
-        False for a problem that is only shown.
+        False for a problem for display only.
     scene : Scene
         Body, ground and start.
     t_end, horizon : float
-        End, and time before which states are scored [s]: from the horizon on an error of 0.1 % of
-        the inputs is an error of the state as large as the motion.
+        End, and time before which states are scored [s]: from the horizon on, a 0.1 % error of the
+        inputs causes an error of the state as large as the motion.
     answer : dict
-        What is asked for: whether the body passes over its tip (``"over"``); values of the last
-        state (``"last"``) or of all (``"always"``); kinds of events in order (``"events"``), of
-        bounces that end the first ones and the time of their end (``"end"``); or the laws of impact
-        that it may follow (``"law"``).
+        What the question asks: whether the body passes over its tip (``"over"``); values of the
+        last state (``"last"``) or of all (``"always"``); kinds of events in order (``"events"``);
+        for bounces that come to an end, the first ones and the time of that end (``"end"``); or the
+        laws of impact that it may follow (``"law"``).
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
         Given times [s]; their condition numbers (change of the state, in its scales, per relative
-        change of all inputs but mass and inertia), and the forces on the body [N].
+        change of all inputs except mass and inertia), and the forces on the body [N].
     states : ndarray, shape (n, 6)
         States at the given times.
     events : tuple of KnownEvent
@@ -113,7 +113,7 @@ class Problem(FieldsOnly):
 
     @property
     def output_times(self) -> FloatArray:
-        """Times at which a simulator is asked for states [s]: every 0.01 s to the end."""
+        """Times at which states are requested from a simulator [s]: every 0.01 s to the end."""
         return np.arange(round(self.t_end * OUTPUT_RATE) + 1) / OUTPUT_RATE
 
     @cached_property
@@ -147,17 +147,17 @@ class Problem(FieldsOnly):
         return first_arc(self, xp)
 
     def dae(self, index: int | str = 1) -> Dae:
-        """Return a motion that rolls all the time as differential-algebraic equations.
+        """Return a motion that always rolls as differential-algebraic equations.
 
         Parameters
         ----------
         index : {1, 2, 3, "ggl"}
-            Index, or the stabilised form of index 2; or the name of a form, as of `Dae`.
+            Index, or the stabilised form of index 2; or the name of a form, as in `Dae`.
 
         Raises
         ------
         ValueError
-            If the motion does not roll all the time, or there is no such form.
+            If the motion does not always roll, or there is no such form.
         """
         if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
             raise ValueError(f"problem must roll all the time, got {self.id!r}")
@@ -171,7 +171,7 @@ class Problem(FieldsOnly):
 class Gradient:
     """The known derivative of a state with respect to one argument of the scene.
 
-    The other arguments stay as they are typed: on the ground, z, x_dot and z_dot follow rolling.
+    The other arguments stay as given: on the ground, z, x_dot and z_dot follow from rolling.
 
     Attributes
     ----------
@@ -189,7 +189,7 @@ class Gradient:
     value: FloatArray
 
     def error(self, value: Any) -> float:
-        """Return the error of a derivative over the known one, both by the scales of states.
+        """Return the error of a derivative relative to the known one, both in the scales of states.
 
         Parameters
         ----------
@@ -242,12 +242,12 @@ def problem(id: str | Problem) -> Problem:
     Parameters
     ----------
     id : str or Problem
-        A problem is returned as it is.
+        A problem is returned unchanged.
 
     Raises
     ------
     ValueError
-        If there is no such problem; the message lists all, and the nearest first.
+        If there is no such problem; the message lists all, the nearest first.
     """
     return id if isinstance(id, Problem) else _made(choice("id", id, tuple(_read())))
 
@@ -258,8 +258,8 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
     Parameters
     ----------
     tags : str or iterable of str, optional
-        Abilities of a simulator, also as one text with commas; problems that need others are left
-        out. Default: all.
+        Abilities of a simulator, or one text with commas; problems that need others are left out.
+        Default: all.
 
     Raises
     ------
@@ -275,7 +275,7 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
 def scored_ones(
     problems: str | Problem | Iterable[str | Problem] | None, name: str = "problems"
 ) -> list[Problem]:
-    """Return scored problems, given as one or several ids or problems; by default all."""
+    """Return scored problems, given as one or more ids or problems; by default all."""
     names = tuple(name for name, data in _read().items() if data["scored"])
     if problems is None:
         problems = names

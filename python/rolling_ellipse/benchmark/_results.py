@@ -23,17 +23,17 @@ class Result:
     Attributes
     ----------
     states : array_like, shape (n, 6)
-        x, z, theta, x_dot, z_dot, omega; theta counts turns: it is not wrapped. A row with a number
-        that is not finite fails the problem.
+        x, z, theta, x_dot, z_dot, omega; theta counts turns (unwrapped). A row with a number that
+        is not finite fails the problem.
     t : array_like, shape (n,), optional
-        Increasing times [s]; default: the times asked for. Only rows from 0 to the end count.
+        Increasing times [s]; default: the requested times. Only rows from 0 to the end count.
     events : iterable of (kind, t), optional
-        Events with finite times, kinds as names of `EventKind`. Without them events are read off
-        the states.
+        Events with finite times, kinds as names of `EventKind`. If missing, events are read off the
+        states.
     normal_force, friction_force : array_like, shape (n,), optional
         Forces of the ground on the body [N]; NaN where there is none.
     note : str
-        A word on the result, for tables.
+        A remark on the result, for tables.
     """
 
     states: Any
@@ -48,8 +48,8 @@ class Result:
 class Rows:
     """The rows of a result that are finite and within the time of the problem.
 
-    Forces that are not given are NaN. In words: which given times are missing, and the first number
-    that is not finite.
+    Forces that are not given are NaN. Two texts state which given times are missing, and the first
+    number that is not finite.
     """
 
     t: FloatArray
@@ -68,8 +68,8 @@ def checked(problem: Problem, mine: Any, times: FloatArray) -> Rows:
     Raises
     ------
     TypeError, ValueError
-        If its arrays are no numbers, have wrong shapes, times do not increase, or an event has no
-        such kind or no finite time. The message names the problem and the argument.
+        If its arrays are not numbers or have wrong shapes, times do not increase, or an event is of
+        an unknown kind or has no finite time. The message names the problem and the argument.
     """
     result = mine if isinstance(mine, Result) else Result(mine)
     states = _states(problem, result.states)
@@ -117,7 +117,7 @@ def _times(problem: Problem, given: Any, default: FloatArray, count: int) -> Flo
 
 
 def _column(problem: Problem, name: str, values: Any, count: int) -> FloatArray:
-    """Return numbers, one for each row; NaN without any."""
+    """Return numbers, one for each row; NaN if none are given."""
     column = np.full(count, np.nan) if values is None else array(f"{name} of {problem.id}", values)
     if column.shape != (count,):
         raise ValueError(
@@ -128,7 +128,7 @@ def _column(problem: Problem, name: str, values: Any, count: int) -> FloatArray:
 
 
 def _not_finite(t: FloatArray, within: Any, columns: dict[str, FloatArray]) -> str:
-    """Say where the first number is that is not finite, and how many rows have one."""
+    """Return where the first number that is not finite is, and how many rows have one."""
     bad = {name: within & ~np.isfinite(values) for name, values in columns.items()}
     rows = np.nonzero(np.any(list(bad.values()), axis=0))[0]
     if not rows.size:

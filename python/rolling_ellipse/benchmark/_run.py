@@ -1,4 +1,4 @@
-"""Scoring of a simulator that is called, and of results that are there."""
+"""Scoring of a simulator that is called, and of existing results."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def run(
     mine : callable
         ``mine(problem, times, setting)`` returns states of shape (n, 6) at the times, or a
         `Result`. It raises NotImplementedError for a problem that it does not support. The setting
-        is what `ladder` has: a step, a tolerance, or None for a default of its own.
+        comes from `ladder`: a step, a tolerance, or None for the simulator's default.
     problems : id, Problem or iterable of them, optional
-        Default: all that are scored.
+        Default: all scored ones.
     tags : str or iterable of str, optional
-        Abilities of the simulator, also as one text with commas; problems that need others are "not
+        Abilities of the simulator, or one text with commas; problems that need others are "not
         supported".
     ladder : iterable of float
-        Settings, such as steps [s], from coarse to fine. Default: one, which is None.
+        Settings, such as steps [s], from coarse to fine. Default: only None.
     tolerance : float
         Largest error over condition number that passes.
 
@@ -49,10 +49,9 @@ def run(
     Raises
     ------
     ValueError
-        If a problem or a tag is unknown, or a result is not as it must be; the message names the
-        problem.
+        If a problem or a tag is unknown, or a result is malformed; the message names the problem.
     TypeError
-        If `mine` takes other arguments, or a result is no numbers.
+        If `mine` takes other arguments, or a result is not numbers.
 
     Examples
     --------
@@ -86,7 +85,7 @@ def require_simulator(name: str, mine: Any) -> None:
         try:
             signature(mine).bind(None, None, None)
             return
-        except ValueError:  # of a function without a signature
+        except ValueError:  # the function has no signature
             return
         except TypeError:
             given = f"{getattr(mine, '__name__', 'it')}{signature(mine)}"
@@ -100,21 +99,21 @@ def score(
     tags: str | Iterable[str] | None = None,
     tolerance: float = TOLERANCE,
 ) -> Scores:
-    """Score results that are there already.
+    """Score existing results.
 
     Parameters
     ----------
     results : mapping or path
-        Results by the ids of their problems, or the folder of their files ``<id>.csv``. A problem
-        without a result is "not supported".
+        Results by problem id, or the folder of their files ``<id>.csv``. A problem without a result
+        is "not supported".
     problems, tags, tolerance
         As in `run`.
 
     Raises
     ------
     ValueError
-        If there is no such folder, a result or a table has the name of no problem that is scored,
-        or a result is not as it must be.
+        If there is no such folder, a result or a table is not named after a scored problem, or a
+        result is malformed.
     """
     given_results = results if isinstance(results, Mapping) else read_folder(results)
     names = tuple(one.id for one in scored_ones(None))

@@ -1,4 +1,4 @@
-"""Scores of a simulator: of each problem its answer, errors and lost energy; and their table."""
+"""Scores of a simulator: the answer, errors and lost energy for each problem; and their table."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ._results import Rows
 if TYPE_CHECKING:
     from .._pictures.benchmark import ScoresChart
 
-TOLERANCE = 1e-3  # error over condition: as if the inputs were known to a per mille
+TOLERANCE = 1e-3  # error over condition: as if the inputs were known to 0.1 %
 _HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
 RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
 
@@ -54,13 +54,13 @@ class Score:
         ``"missed"`` and ``"invented"`` count events by kind; ``"times"`` has the largest error of
         time by kind [s].
     energy_gained, energy_lost : float
-        Largest excess and lack of energy against the exact motion, over m g L.
+        Largest excess and deficit of energy relative to the exact motion, divided by m g L.
     penetration, hop, slip : float
-        Deepest overlap with the ground; largest distance from it while the exact body touches it;
-        both over L. Largest slip while the exact body rolls, over sqrt(g L).
+        Deepest overlap with the ground, and largest distance from it while the exact body touches
+        it, both divided by L; largest slip while the exact body rolls, divided by sqrt(g L).
     cone_excess, normal_force_error, friction_force_error : float
-        Of forces in the result, over m g: largest excess of abs(F) over friction times N and of
-        -N over 0, in all rows (with infinite friction that of -N); largest errors at the given
+        For forces in the result, divided by m g: largest excess of abs(F) over friction times N and
+        of -N over 0, in all rows (for infinite friction only of -N); largest errors at the given
         times before the horizon. NaN without forces.
     tolerance : float
         Largest `over_condition` that passes.
@@ -90,7 +90,7 @@ class Score:
 
     @property
     def digits(self) -> float:
-        """Decimal digits that agree, 16 at most."""
+        """Number of decimal digits that agree, at most 16."""
         return float(np.minimum(16.0, -math.log10(self.error))) if self.error else 16.0
 
     def _row(self) -> tuple[str, ...]:
@@ -108,15 +108,15 @@ class Scores(tuple[Score, ...]):
 
     @property
     def wrong(self) -> list[str]:
-        """Ids of problems with a wrong answer or without any, at the last setting of each."""
+        """Ids of problems with a wrong answer or none, at the last setting of each."""
         last = {score.problem: score for score in self}
         return [name for name, score in last.items() if score.answer in (WRONG, FAILED)]
 
     def order(self, problem: str | Problem) -> tuple[float, str]:
         """Return the fitted order of the error of a problem, and whether smaller settings help.
 
-        The order is the slope of log error over log setting, NaN for less than two settings. In
-        words: "yes", "plateau at <error>" or "worse".
+        The order is the slope of log error over log setting, NaN for fewer than two settings. The
+        second is "yes", "plateau at <error>" or "worse".
 
         Raises
         ------
@@ -158,10 +158,11 @@ class Scores(tuple[Score, ...]):
         return f"{said}. {exact}, in {worst.problem}.{ladder}"
 
     def plot(self, path: Any = None, *, ax: Any = None, figsize: Any = None) -> ScoresChart:
-        """Draw error over condition number, a row for each problem, and return the artists.
+        """Draw error over condition number, one row per problem, and return the artists.
 
-        Marks of several settings are joined, pale to dark. The column on the right has the digits
-        of the last one, or its answer. Errors below 1e-17 and above 1000 are drawn there.
+        Marks of several settings are joined, from pale to dark. The column on the right has the
+        digits of the last one, or its answer. Errors below 1e-17 and above 1000 are drawn at these
+        limits.
 
         Parameters
         ----------
@@ -182,7 +183,7 @@ class Scores(tuple[Score, ...]):
         ]
 
     def to_dataframe(self) -> Any:
-        """Return the scores as a pandas DataFrame, a row each."""
+        """Return the scores as a pandas DataFrame, one row each."""
         return required("pandas", "to_dataframe").json_normalize(self.records(), sep="_")
 
     def __repr__(self) -> str:
@@ -216,7 +217,7 @@ def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) ->
 
 
 def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, float]:
-    """Return energies gained and lost, penetration, hop and slip of rows, and exact samples."""
+    """Return energies gained and lost, penetration, hop and slip of rows against exact samples."""
     scene, length = one.scene, float(one.scales[0])
     mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
     unit = scene.mass * scene.gravity * length
@@ -234,7 +235,7 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
 
 
 def _forces(one: Problem, mine: Rows, rows: Any, places: Any) -> dict[str, float]:
-    """Return the excess over the cone of friction and the errors of N and F, over m g."""
+    """Return the excess over the friction cone and the errors of N and F, divided by m g."""
     outside, weight = -mine.normal_force, one.scene.mass * one.scene.gravity
     if math.isfinite(one.scene.friction):
         limit = one.scene.friction * mine.normal_force

@@ -2,8 +2,8 @@
 
 Arrays hold the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, rad], in the
 order of its section 2; its constraint matrix has (x, r, psi, theta, z) and its state space
-(x, z, r, theta, psi); both are reordered here. Functions of printed equations have their numbers as
-names, functions of right ones have words. SI units, theta clockwise positive.
+(x, z, r, theta, psi); both are reordered here. Functions for printed equations are named by number,
+those for right ones by words. SI units, theta positive clockwise.
 
 Common arguments: ``q``, ``q_dot``, ``q_ddot`` array_like of shape (..., 5), whose leading axes
 broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. Everything raises

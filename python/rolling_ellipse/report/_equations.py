@@ -1,7 +1,7 @@
 """The report's equations as printed, named by number, and the right ones, named by words.
 
 Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
-residual less the right one is the effect of the misprint.
+residual minus the right one is the effect of the misprint.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _at(
 
 
 def _last(*columns: Any) -> FloatArray:
-    """Return columns that broadcast, along a new last axis."""
+    """Broadcast columns and return them along a new last axis."""
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
@@ -51,7 +51,7 @@ def _last(*columns: Any) -> FloatArray:
 
 
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return psi [rad] as eq 5 prints it, an arctan; right and continuous: `contact_angle`."""
+    """Return psi [rad] as eq 5 prints it, an arctan; `contact_angle` is right and continuous."""
     body = Scene(a, b)
     return np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
 
@@ -63,7 +63,7 @@ def case_sign(theta: Any) -> FloatArray:
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return x_C - x_G [m] as eqs 5 to 7 and cases 1, 2 print it; right: `support_slope`."""
+    """Return x_C - x_G [m] as eqs 5 to 7 and cases 1, 2 print it; `support_slope` is right."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
     r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
@@ -74,7 +74,8 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     """Return f1 of eq 10 [m/s], the velocity of the geometric contact point along the ground.
 
     ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" the sign of `case_sign`.
-    Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
+    The right f1 is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of
+    `constraints`.
     """
     theta, _, r, sine, cosine = state(q, q_dot=q_dot)
     rates = coordinates("q_dot", q_dot)
@@ -84,13 +85,13 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
 
 
 def f2(q: Any) -> FloatArray:
-    """Return f2 = z - r cos(psi - theta) of eq 10 [m], printed right for a continuous psi."""
+    """Return f2 = z - r cos(psi - theta) of eq 10 [m], printed correctly for a continuous psi."""
     _, _, r, _, cosine = state(q)
     return coordinates("q", q)[..., 1] - r * cosine
 
 
 def f3(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return f3 of eq 10 [m], the error of r at the angle psi; eq 10 prints it right."""
+    """Return f3 of eq 10 [m], the error of r at the angle psi, which is printed correctly."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
     return r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
@@ -148,7 +149,7 @@ def _multipliers(values: Any) -> FloatArray:
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return f1 [m/s] and the rates of f2, f3 and f4 as eq 38 prints them, (..., 4).
 
-    It prints the last two right.
+    The last two are printed correctly.
     """
     _, _, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
@@ -247,8 +248,8 @@ def complete_f(
 ) -> FloatArray:
     """Return F of eq 40 with every term, as eq 37 gives it with lambda1, lambda2 and lambda4.
 
-    These have the signs of eq 39, so that the difference from `eq_40` is the lost terms. It is not
-    the right F.
+    These have the signs of eq 39, so that the difference from `eq_40` is the lost terms. This is
+    not the right F.
     """
     body, (theta, _, r, sine, cosine), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
@@ -262,8 +263,8 @@ def eq_41(
 ) -> FloatArray:
     """Return the residual of eq 41, with F1 of `eq_42` or, if `complete`, 2 (...)^(3/2) F.
 
-    Complete, it is eq 36 times -1 with the multipliers put in. It divides by zero where eq 39 does,
-    and is infinite there.
+    If complete, it is eq 36 times -1 with the multipliers inserted. It divides by zero where eq 39
+    does, and is infinite there.
     """
     body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
     psi, arguments = place[1], {"a": a, "b": b, "mass": mass, "gravity": gravity}
@@ -275,11 +276,11 @@ def eq_41(
 
 
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return F1 of eq 42: the first terms of eq 41, less a factor times the terms of F.
+    """Return F1 of eq 42: the first terms of eq 41, minus a factor times the terms of F.
 
-    The opening bracket before b^6 is missing in print; the brackets are read as around all terms of
-    F, which eq 42 has completely (`complete_f`). The factor has lost its power 3/2 and the square
-    of sin psi.
+    The opening bracket before b^6 is missing in print; the brackets are taken to enclose all terms
+    of F, which are complete in eq 42 (`complete_f`). The factor has lost its power 3/2 and the
+    square of sin psi.
     """
     body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
     psi = place[1]
@@ -298,7 +299,7 @@ def _head(body: Scene, place: tuple[FloatArray, ...], ddot: FloatArray) -> Float
 
 
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
-    """Return theta_dot just after the blow [rad/s] as eq 48 prints it; right: `struck_speed`."""
+    """Return theta_dot just after the blow [rad/s] as eq 48 prints it; `struck_speed` is right."""
     body = Scene(a, b, mass=mass)
     impulse, d = _blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
@@ -311,7 +312,7 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 
 
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
-    """Return the numbers of a blow, if the core takes them."""
+    """Return the numbers of a blow, if the core accepts them."""
     blow = number("impulse", impulse), number("d", d)
     let_the_core_refuse("jz", np.asarray(blow[0]), "impulse")
     let_the_core_refuse("dx", np.asarray(blow[1]), "d")
@@ -319,7 +320,7 @@ def _blow(impulse: Any, d: Any) -> tuple[float, float]:
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return r [m] as appendix B prints it in its r_x; right: `geometry.contact_distance`."""
+    """Return r [m] as appendix B prints it in its r_x; `geometry.contact_distance` is right."""
     body = Scene(a, b)
     t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 has psi here
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
@@ -327,7 +328,7 @@ def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
 
 
 def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return r_x, the x of the contact [m], as appendix B prints it; right: `contact_x`."""
+    """Return r_x, the x of the contact [m], as appendix B prints it; `contact_x` is right."""
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)

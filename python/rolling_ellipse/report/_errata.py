@@ -29,14 +29,14 @@ _BODY = _AXES | {"mass": 10.0, "gravity": 9.81}
 
 
 class Comparison(NamedTuple):
-    """The two numbers of an erratum: its quantity as the report prints it, and right."""
+    """The two numbers of an erratum: its quantity as printed, and the right one."""
 
     printed: float
     right: float
 
     @property
     def gap(self) -> float:
-        """The effect of the misprint: printed less right."""
+        """The effect of the misprint: printed minus right."""
         return self.printed - self.right
 
 
@@ -47,11 +47,11 @@ class Erratum:
     Attributes
     ----------
     where, printed, finding : str
-        The place, the printed text, and its error.
+        The location, the printed text, and its error.
     quantity : str
         The compared quantity, with its unit.
     evaluate : callable
-        Returns a Comparison: the quantity as printed and right, on an exact motion.
+        Returns a Comparison: the printed and the right quantity, on an exact motion.
     """
 
     where: str
@@ -79,9 +79,9 @@ def _compared(
     printed: Callable[..., Any], right: Callable[..., Any], entry: Any = (), theta: float = 0.7,
     **other: float,
 ) -> Comparison:  # fmt: skip
-    """Compare an entry of what two functions return; they get the arguments that they take.
+    """Compare an entry of the results of two functions, called with the arguments that they take.
 
-    A function of any arguments gets those of the equations of motion.
+    A function that takes any arguments gets those of the equations of motion.
     """
     known = _rolling(theta, **other)
     values = []
@@ -91,7 +91,7 @@ def _compared(
     return Comparison(*values)
 
 
-_both = partial(partial, _compared)  # a comparison to be made later; a lambda has no pickle
+_both = partial(partial, _compared)  # a deferred comparison; a lambda cannot be pickled
 
 
 def _rate(row: int, q: Any, q_dot: Any, a: float, b: float, printed: Any = ("tan",)) -> Any:
@@ -143,7 +143,7 @@ def _eq_37(**state: Any) -> Any:
 
 
 def _first_terms(**state: Any) -> Any:
-    """Return the part of eq 41 that the first terms of eq 42 are [N/m^8]."""
+    """Return the part of eq 41 to which the first terms of eq 42 correspond [N/m^8]."""
     q, a, b = (state[name] for name in ("q", "a", "b"))
     one, two, _, _ = equations.eq_39(**state)
     lean = q[3] - q[2]
@@ -151,7 +151,7 @@ def _first_terms(**state: Any) -> Any:
 
 
 def _reach(q: Any, a: float, b: float) -> Any:
-    """Return |r_OC| [m]: C is on the ground, as O is."""
+    """Return |r_OC| [m]: both C and O are on the ground."""
     return abs(equations.contact_x(q, a=a, b=b))
 
 
@@ -168,7 +168,7 @@ def _no_part(q: Any) -> float:
 
 
 def _even_turning() -> Comparison:
-    """Compare f2 and f3 with the rates by the matrix as printed, where theta = t."""
+    """Compare f2 and f3 with their rates by the matrix as printed, for theta = t."""
     q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **_AXES)
     held = np.stack([equations.f2(q), equations.f3(q, **_AXES)])
     rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **_AXES), q_dot)
@@ -187,7 +187,7 @@ def _roll_over() -> Comparison:
     return Comparison(1.0, thresholds(**_AXES).roll_over_speed)
 
 
-#: The comparison of each row of errata.json, by its place in the report.
+#: The comparison of each row of errata.json, by its location in the report.
 _COMPARISONS: dict[str, Callable[[], Comparison]] = {
     "section 2.2, before eq 6": _both(contact_distance, _reach),
     "section 2.2, cases 1 and 2": _both(equations.case_lead, support_slope, theta=4.0),
@@ -227,12 +227,12 @@ _ERRATA = tuple(
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors of the report in its order; `evaluate()` of each gives its two numbers."""
+    """Return the errors of the report in its order; `evaluate()` gives the two numbers of each."""
     return _ERRATA
 
 
 def errata_table() -> str:
-    """Return the errata with their numbers, computed now, as a table in Markdown."""
+    """Return the errata with freshly computed numbers, as a table in Markdown."""
     lines = [
         "| where | printed | finding | compared | printed | right |",
         "|---|---|---|---|---:|---:|",
@@ -240,6 +240,6 @@ def errata_table() -> str:
     for erratum in _ERRATA:
         cells = erratum.where, erratum.printed, erratum.finding, erratum.quantity
         printed, right = erratum.evaluate()
-        right = right if abs(right) > 1e-12 else 0.0  # a rounding error of 0
+        right = right if abs(right) > 1e-12 else 0.0  # 0 to within rounding
         lines.append(f"| {' | '.join(cells)} | {printed:.4g} | {right:.4g} |")
     return "\n".join(lines)

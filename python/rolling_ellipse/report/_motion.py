@@ -23,8 +23,8 @@ from ._rows import Names, Pair, along, masses, pull, rows
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
-_STEP = 1e-30  # size of a complex step: no truncation error in doubles, and nothing cancels
-_TINY = 1e-300  # least allowed error, for a component of 0 where atol = 0
+_STEP = 1e-30  # complex step: no truncation error in doubles, and nothing cancels
+_TINY = 1e-300  # smallest allowed error, for a zero component if atol = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Start:
     q_change, q_dot_change : ndarray, shape (5,)
         Difference from the given state; 0 unless it was projected.
     violations : tuple of str
-        Constraints that the given state violates, each with its size.
+        Constraints that the given state violates, each with its violation.
     """
 
     q: FloatArray
@@ -55,13 +55,13 @@ class PrintedMotion:
     Attributes
     ----------
     t : ndarray, shape (n,)
-        The times that were reached [s].
+        The times reached [s].
     q, q_dot, q_ddot : ndarray, shape (n, 5)
         x, z, theta, psi, r [m, rad], their rates and accelerations.
     multipliers : ndarray, shape (n, 4)
         Multipliers of the rows in use, in the report's scaling.
     gap : ndarray, shape (n,)
-        Height of the lowest point of the body over the ground [m].
+        Height of the lowest point of the body above the ground [m].
     energy : ndarray, shape (n,)
         Kinetic and potential energy [J].
     body : Scene
@@ -102,9 +102,9 @@ class PrintedMotion:
     def back_substitution(self) -> FloatArray:
         """Return the residuals of the equations that were solved, printed rows included, (n, 9).
 
-        They are the five equations of motion [N, N m] and the four constraints on the rates: the
-        report's own test (Figure 11). Small values show that the equations were solved, not that
-        they are right.
+        They are those of the five equations of motion [N, N m] and the four constraints on the
+        rates: the report's own test (Figure 11). Small values show that the equations were solved,
+        not that they are right.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         motion = masses(body) * self.q_ddot - _weight(body) - pull(matrix, self.multipliers)
@@ -140,7 +140,7 @@ def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # some sample is singular: each is solved alone
+        if q.ndim > 1:  # some sample is singular: each is solved separately
             found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
             return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
@@ -179,9 +179,9 @@ def follow(
 def _integrated(
     slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, how: Settings
 ) -> tuple[FloatArray, str]:
-    """Return the solution of y' = slope(y) at the times that were reached, and why no others were.
+    """Return the solution of y' = slope(y) at the times reached, and why it did not get further.
 
-    Steps are of one size where `how` has a `step`; else their size follows from the local error
+    Steps are of one size if `how` has a `step`; else their size follows from the local error
     (HNW II.4). The coefficients are the core's.
     """
     tableau = _TABLEAUS[how.method]
@@ -193,14 +193,14 @@ def _integrated(
     def sizes(values: FloatArray, scale: FloatArray) -> FloatArray:
         return values / (how.atol + how.rtol * np.abs(scale) + _TINY)
 
-    # the first step: 1/100 of the time in which y changes by its size
+    # the first step: 1/100 of the time in which y changes by its own magnitude
     size, speed = (float(np.linalg.norm(sizes(values, y))) for values in (y, slopes[0]))
     h = how.step or (min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end)
     for _ in range(how.max_steps):
         if len(samples) == t.size:
             break
         left = end - now
-        h = left if h > left - 10 * math.ulp(end) else h  # roundings of `now` are no step
+        h = left if h > left - 10 * math.ulp(end) else h  # a step must exceed the rounding of `now`
         if not h >= 10 * math.ulp(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
         for i in range(1, stages + 1):

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, choice, coordinates, finite, require_together
 from .._ask.scene import Scene
 
-Names = tuple[str, ...]  # of rows as printed
+Names = tuple[str, ...]  # names of rows as printed
 Pair = tuple[FloatArray, FloatArray]
 
 #: Parts of the matrix that may be as printed: rows of f1, f2, f3 (eq 32), the sign of a44 (appendix
@@ -32,7 +32,7 @@ def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
 
 
 def polar_cube(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
-    """Return (a b/r)^3 [m^3], as of `polar`; a power of 3/2 differs for numbers and arrays."""
+    """Return (a b/r)^3 [m^3], like `polar`; the power 3/2 of scalars and arrays may differ."""
     square = polar(psi, a, b)
     return square * np.sqrt(square)
 
@@ -43,7 +43,7 @@ def along(matrix: npt.NDArray[Any], q_dot: FloatArray) -> npt.NDArray[Any]:
 
 
 def pull(matrix: npt.NDArray[Any], multipliers: FloatArray) -> npt.NDArray[Any]:
-    """Return the transposed matrix times the multipliers, (..., 5), as `along`."""
+    """Return the transposed matrix times the multipliers, (..., 5), like `along`."""
     return np.sum(matrix * multipliers[..., :, None], axis=-2)
 
 
@@ -85,7 +85,7 @@ def direction(q: FloatArray, a: float, b: float, printed: Names) -> FloatArray:
 
 
 def misprints(printed: Any) -> Names:
-    """Return `printed` as a tuple of names out of MISPRINTS, or raise ValueError."""
+    """Return `printed` as a tuple of names from MISPRINTS, or raise ValueError."""
     names = printed if isinstance(printed, (tuple, list)) else (printed,)
     return tuple(choice("printed", name, MISPRINTS) for name in names)
 

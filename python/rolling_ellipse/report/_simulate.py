@@ -1,6 +1,6 @@
-"""The simulation of section 4 of the report, by the right equations or by the printed ones.
+"""The simulation of section 4 of the report, with the right equations or the printed ones.
 
-Its start may violate constraints; the nearest consistent state replaces it, if that is asked for.
+Its start may violate constraints; on request the nearest consistent state replaces it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Consistent = Literal["refuse", "project", "as_given"]
 
 _EXPLICIT: tuple[Method, ...] = ("dopri5", "rk4")
 _EPS = float(np.finfo(float).eps)
-_ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: as large as one of `kinematics`
+_ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: that of `kinematics`
 _NAMES = (  # name and unit of a constraint, and the row that may be as printed
     ("f2", "m", ""), ("f3", "m", ""), ("f4", "rad", ""), ("f1", "m/s", "f1"),
     ("rate of f2", "m/s", "df2"), ("rate of f3", "m/s", "df3"), ("rate of f4", "rad/s", "a44"),
@@ -71,7 +71,7 @@ def simulate(
     q, q_dot : array_like, shape (5,)
         x, z, theta, psi, r [m, rad] and their rates at t = 0.
     t : float or array_like, shape (n,)
-        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
+        End time (then 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s].
     a, b : float
         Semi-axes [m].
     mass, gravity : float
@@ -80,32 +80,32 @@ def simulate(
         The corrected ones are the model "multipliers"; the printed ones are integrated in index-1
         form, without stabilisation.
     consistent : {"refuse", "project", "as_given"}
-        The treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations
-        the rows in use must allow the rates. "project" takes the nearest consistent state in the
+        Treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations the
+        rows in use must allow the rates. "project" takes the nearest consistent state in the
         metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
         runs it after an InconsistentStartWarning, and no time of its motion is valid.
     printed : sequence of str, optional
         For the printed equations only: the rows as printed, see `constraint_matrix`; default is
         the report's code, `CODE`. With () all rows are right.
     method : str, optional
-        "dopri5" (default) or "rk4" for the printed equations; for the corrected ones what
-        `rolling_ellipse.simulate` has for its model "multipliers", default "dop853" ("radau" with
-        the stabilization "ggl").
+        "dopri5" (default) or "rk4" for the printed equations; for the corrected ones the methods of
+        `rolling_ellipse.simulate` for its model "multipliers", default "dop853" ("radau" with the
+        stabilization "ggl").
     stabilization, baumgarte : str, optional; (float, float)
-        Of the corrected equations only, as in `rolling_ellipse.simulate`.
+        For the corrected equations only, as in `rolling_ellipse.simulate`.
     rtol, atol, step, max_steps
-        As in `rolling_ellipse.simulate`: error control, or with `step` fixed steps.
+        As in `rolling_ellipse.simulate`: error control, or fixed steps if `step` is given.
 
     Returns
     -------
     Trajectory or PrintedMotion
-        ``start`` of the latter says what a projection changed.
+        ``start`` of the latter shows what a projection changed.
 
     Raises
     ------
     ValueError
         If the start is inconsistent and to be refused (naming each violated constraint and its
-        size), or an argument is out of range or of no use.
+        size), or an argument is out of range or has no effect.
     IntegrationError
         If the integration of the corrected equations stops before the last time.
     """
@@ -138,7 +138,7 @@ def simulate(
     off = bool(start.violations) and consistent == "as_given"  # any other start is the scene's
     given = (start.q, start.q_dot) if off else None
     trajectory = Trajectory.computed(scene, settings, times, given)
-    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the start's warning has said it
+    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the start's warning has stated it
         report_status(trajectory, raise_on_failure=True, stacklevel=3)
     return trajectory
 
@@ -169,14 +169,14 @@ def _vector(name: str, value: Any) -> FloatArray:
 
 
 def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> tuple[str, ...]:
-    """Return the violated ones of f2, f3, f4, f1 and the rates of f2 to f4: name, size, unit.
+    """Return which of f2, f3, f4, f1 and the rates of f2 to f4 are violated: name, size, unit.
 
-    A residual may be as large as 16 ulp of each coordinate make it, and 16 ulp of its terms more:
-    the errors of `kinematics` and of the evaluation.
+    A residual may be as large as 16 ulp of each coordinate make it, plus 16 ulp of its terms: the
+    errors of `kinematics` and of the evaluation.
     """
     state = np.concatenate([q, q_dot])
     off = _ULPS * np.spacing(np.abs(state))
-    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # an error of psi - theta acts as one of psi
+    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # an error of psi - theta acts like one of psi
     moved = state + np.concatenate([np.zeros((1, 10)), np.diag(off), np.diag(-off)])
     residuals, terms = _residuals(moved[:, :5], moved[:, 5:], body, printed)
     allowed = np.sum(np.abs(residuals[1:] - residuals[0]), axis=0) + _ULPS * _EPS * terms[0]
@@ -188,7 +188,7 @@ def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -
 
 
 def _residuals(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
-    """Return the residuals of `_NAMES`, and for each the sum of the sizes of its terms, (n, 7)."""
+    """Return the residuals of `_NAMES`, and for each the sum of its terms' magnitudes, (n, 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     _, z, theta, psi, r = np.abs(q).T
     matrix = rows(q, body.a, body.b, printed)
@@ -201,8 +201,8 @@ def _residuals(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) ->
 def _project(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
     """Return the nearest consistent state in the metric of the kinetic energy.
 
-    psi and r have no mass and follow from theta; x is free. The position makes m dz^2 + I dtheta^2
-    least on z = h(theta). The rates are the nearest ones in the only direction that the rows allow.
+    psi and r have no mass and follow from theta; x is free. The position minimises m dz^2 +
+    I dtheta^2 on z = h(theta). The rates are the nearest in the only direction that the rows allow.
     """
     theta = _nearest_angle(float(q[1]), float(q[2]), body)
     there, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
@@ -214,7 +214,7 @@ def _project(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> P
 
 
 def _nearest_angle(z: float, theta: float, body: Scene) -> float:
-    """Return the angle of least (z - h)^2 + k^2 (angle - theta)^2: the best of a grid, then Newton.
+    """Return the angle of least (z - h)^2 + k^2 (angle - theta)^2: best of a grid, then Newton.
 
     h has the period pi, so this angle is within a quarter turn of theta.
     """

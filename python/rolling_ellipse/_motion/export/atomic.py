@@ -26,13 +26,13 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     killed. Any exception removes the new file. Its name has the suffix of `path`, by which writers
     choose a format, and is otherwise plain, so that other programs accept it. A link stays a link,
     and an old file keeps its permissions. Devices and pipes cannot be replaced: for them `path`
-    itself is yielded. An OSError names `path`, as one of `open` would.
+    itself is yielded. An OSError names `path`, as one raised by `open` would.
     """
     name = os.fspath(path)
     try:
         target, old = _target(name)
         new = _beside(target) if old is None or stat.S_ISREG(old.st_mode) else None
-    except OSError as error:  # it may name another file than `path`
+    except OSError as error:  # it may name a file other than `path`
         raise OSError(error.errno, error.strerror, name) from None
     if new is None:
         yield Path(name)
@@ -61,7 +61,7 @@ def remove_unfinished(folder: Path) -> None:
 
 @contextmanager
 def _locked(path: Path) -> Iterator[bool]:
-    """Hold the lock of a file, until the process ends at the latest; yield whether it was free.
+    """Hold a file's lock, until the process ends at the latest; yield whether it was free.
 
     Windows needs no lock: open files cannot be removed there.
     """
@@ -83,7 +83,7 @@ def _locked(path: Path) -> Iterator[bool]:
 def _target(name: str) -> tuple[Path, os.stat_result | None]:
     """Return the file behind all links, and its status (None if it does not exist).
 
-    A file that cannot be opened for writing is refused; it is not emptied.
+    An error is raised if the file cannot be opened for writing; the check does not empty it.
     """
     folder, last = os.path.split(name)
     if last in ("", os.curdir, os.pardir):
@@ -99,7 +99,7 @@ def _target(name: str) -> tuple[Path, os.stat_result | None]:
 
 
 def _beside(target: Path) -> Path:
-    """Create an empty file in the folder of `target`: files move only within a file system."""
+    """Create an empty file in the folder of `target`: renaming works only within a file system."""
     plain = re.fullmatch(r"\.[A-Za-z0-9_]{1,16}", target.suffix)
     new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))

@@ -40,13 +40,13 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
 
     Its name ends with .npz or has no suffix. The file appears whole or not at all: if anything goes
-    wrong, an old file stays.
+    wrong, an old file is kept.
 
     Raises
     ------
     ValueError
         If the name has another ending, or the trajectory was changed in a way that `load` would
-        refuse.
+        reject.
     OSError
         If the file cannot be written.
     """
@@ -69,7 +69,7 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     ------
     ValueError
         If the file is damaged, foreign or of another schema version; the message names the file
-        and the trouble.
+        and the problem.
     OSError
         If the file is missing or cannot be read.
     """
@@ -84,7 +84,7 @@ def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
 
 
 def _about(trajectory: Trajectory) -> dict[str, Any]:
-    """Return everything except the arrays as values of JSON."""
+    """Return everything except the arrays as JSON values."""
     return {
         "schema": _SCHEMA,
         "scene": asdict(trajectory.scene),
@@ -106,7 +106,7 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     """Return the trajectory of a file's JSON text and arrays, if `save` would write the same.
 
-    So nothing is converted, filled in or left out, even where the classes would accept that.
+    Thus nothing is converted, filled in or left out, even where the classes would accept that.
     """
     about = strict.parsed("about", text)
     strict.require_names("about", about, _ABOUT)
@@ -140,7 +140,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
 
 
 def event_values(event: Event) -> list[Any]:
-    """Return an event as values of JSON."""
+    """Return an event as JSON values."""
     before, after = (
         [*_state(state), int(state.mode)] for state in (event.state_before, event.state_after)
     )
@@ -148,7 +148,7 @@ def event_values(event: Event) -> list[Any]:
 
 
 def event_row(values: Any) -> list[float]:
-    """Return the row of numbers, for `events`, of an event that `event_values` has written."""
+    """Return an event written by `event_values` as a row of numbers for `events`."""
     t, kind, (*before, mode_before), (*after, mode_after) = values
     for value in (t, *before, *after):
         if not (isinstance(value, float) and math.isfinite(value)):
@@ -160,7 +160,7 @@ def event_row(values: Any) -> list[float]:
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
-    """Raise ValueError if parts of a trajectory contradict, or its scene cannot be solved."""
+    """Raise ValueError if a trajectory contradicts itself, or its scene cannot be solved."""
     settings, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     for name in ("model", "method"):
         wanted, value = getattr(settings, name), getattr(trajectory, name)
@@ -175,7 +175,7 @@ def _require_consistent(trajectory: Trajectory) -> None:
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(settings.core, span)
-    # The core refuses what it cannot solve.
+    # The core rejects what it cannot solve.
     _core.simulate(trajectory.scene.core, settings.core, np.zeros(1), trajectory.start)
 
 

@@ -1,4 +1,4 @@
-"""Files for a folder of a user: written over nothing, and through no link."""
+"""Files for a user's folder: they overwrite nothing and follow no link."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from .atomic import replacing
 
 
 def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
-    """Write files, by their paths in a folder, and return those that were not there already.
+    """Write files, given by their paths in a folder; return those that did not exist before.
 
     Raises
     ------
     ValueError
-        If the folder has another file, or a link, in the place of one; nothing is written then.
+        If a different file, or a link, already has one of the paths; nothing is written then.
     OSError
-        If a file cannot be written. Each file is there whole or not at all.
+        If a file cannot be written. Each file appears whole or not at all.
     """
     kept = {name for name, content in files.items() if _is_there(folder / name, content)}
     if others := [name for name in sorted(files) if name not in kept and _is_taken(folder, name)]:
@@ -33,7 +33,7 @@ def _is_there(path: Path, content: bytes) -> bool:
 
 
 def _is_taken(folder: Path, name: str) -> bool:
-    """Return whether the path of a new file is something else, or a link leads away from it."""
+    """Return whether the path of a new file is taken, or passes through a link."""
     path = folder / name
     between = [part for part in path.parents if part != folder and part.is_relative_to(folder)]
     return path.is_symlink() or path.exists() or any(part.is_symlink() for part in between)

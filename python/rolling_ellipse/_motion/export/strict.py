@@ -1,6 +1,6 @@
-"""Strict reading of files that may be damaged or foreign, and JSON with a record a line.
+"""Strict reading of files that may be damaged or foreign, and JSON with one record per line.
 
-Files must have every required name once, and no other name.
+Files must hold every required name once, and no other name.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ def restored(
     """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
     Only a file with the right first bytes (and the end of an archive) is read: another file may
-    have any size, and a pipe would be waited for. Whatever `restore` raises becomes a
-    ValueError with the file, the trouble and the cure, if any.
+    be of any size, and a pipe would block. Whatever `restore` raises becomes a ValueError that
+    names the file, the problem and the cure, if any.
     """
     name = file_name("path", path)
     if stat.S_ISFIFO(os.stat(name).st_mode):
@@ -67,7 +67,7 @@ def restored(
 
 
 def parsed(name: str, text: str) -> Any:
-    """Return the value of a JSON text: infinite numbers, but no NaN, and each name once."""
+    """Return the value of a JSON text; infinity is allowed, but neither NaN nor a repeated name."""
 
     def constant(literal: str) -> float:
         if literal == "NaN":
@@ -85,7 +85,7 @@ def parsed(name: str, text: str) -> Any:
 
 
 def in_lines(value: Any, depth: int) -> str:
-    """Return JSON with a line for each value down to a depth, such as that of a list's records."""
+    """Return JSON with one line per value down to a depth, such as that of a list's records."""
     text = json.dumps(value, indent=1, allow_nan=False)
     deeper, closing = " " * (depth + 1), " " * depth
     return re.sub(rf"\n({deeper} *|{closing}(?=[\]}}]))", " ", text) + "\n"
@@ -131,7 +131,7 @@ def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[
 
 
 def _array(name: str, content: bytes) -> npt.NDArray[Any]:
-    """Return the array in the bytes of a .npy file; its header must fit their number."""
+    """Return the array in the bytes of a .npy file; their number must match its header."""
     file = io.BytesIO(content)
     if (version := np.lib.format.read_magic(file)) != _VERSION:
         raise ValueError(f"{name} must be of version {_VERSION}, got {version}")

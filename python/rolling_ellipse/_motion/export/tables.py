@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def to_dataframe(trajectory: Trajectory) -> DataFrame:
-    """Return a pandas DataFrame indexed by t, its columns named as the attributes.
+    """Return a pandas DataFrame indexed by t, its columns named like the attributes.
 
     The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
     has the units by column (``"units"``), the numbers of the scene, model, method and status.
@@ -41,7 +41,7 @@ def to_dataframe(trajectory: Trajectory) -> DataFrame:
 
 
 def to_xarray(trajectory: Trajectory) -> Dataset:
-    """Return an xarray Dataset over t, its variables named as the attributes.
+    """Return an xarray Dataset over t, its variables named like the attributes.
 
     ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
     Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,

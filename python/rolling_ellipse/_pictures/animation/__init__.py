@@ -1,4 +1,4 @@
-"""Trajectories as a moving picture in true time, for files, windows and notebooks."""
+"""Trajectories as a film in true time, for files, windows and notebooks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["RollingAnimation", "animate"]
 
 WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures do not fit into memory
 LAYOUTS, PANELS = ("over", "side by side"), ("phase", "forces", "energy")
-WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks with windows
+WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks that open windows
 
 
 @picture
@@ -47,17 +47,17 @@ def animate(
 ) -> RollingAnimation:
     """Make a moving picture in true time: frame i shows t = i · speed / fps and lasts 1 / fps.
 
-    The body is always where the motion has it at the time on the clock. A film that would last more
-    than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts of
-    the motion in real time: start, end and middle, the first and the last event between them;
+    The body is always where the motion puts it at the time on the clock. A film that would last
+    more than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts
+    of the motion in real time: start, end and middle, and the first and last event between them;
     captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
-    turn in a frame, and seem to roll backwards, is shown in slow motion, and the clock says so.
+    turn per frame, and seem to roll backwards, is shown in slow motion, as the clock then states.
 
-    Several motions are shown in strips over one another or side by side: one clock, one scale, and
-    the same stretch of ground, so that one sees which is ahead. The camera stands still where all
-    fit into about three turns; else it goes along with their middle. Motions that part by more than
-    fits are followed each in its own strip, and the captions say where they are. A motion that
-    ends before the others stays where it ended, and its caption says so.
+    Several motions are shown in strips, stacked or side by side, with one clock, one scale and the
+    same stretch of ground, so that it is clear which is ahead. The camera stands still if all
+    motions fit into about three turns; else it follows their middle. Motions too far apart for that
+    are each followed in their own strip, and the captions state where they are. A motion that ends
+    before the others stays where it ended, and its caption says so.
 
     Parameters
     ----------
@@ -65,27 +65,26 @@ def animate(
         One motion, or several to compare.
     path : path, optional
         File to write: .gif, .mp4 or .webm (need ffmpeg: the extra rolling_ellipse[video]) or .html,
-        a page with a player that needs no network. Without it nothing is written: a notebook shows
-        that player by itself, and where matplotlib has windows, `plt.show()` shows the film.
+        a page with a player that needs no network. Without a path nothing is written: a notebook
+        displays that player, and where matplotlib has windows, `plt.show()` shows the film.
     labels : sequence of str, optional
-        Names of the motions; without them, several are named by what differs among them:
-        method, model, fields of the scene, else 1, 2, 3.
+        Names of the motions; by default, several are named by what differs among them: method,
+        model, fields of the scene, else 1, 2, 3.
     t_end : float, optional
-        Last time shown [s]; without it, the latest end.
+        Last time shown [s]; default: the latest end.
     fps : float, optional
-        Frames per second, 0.001 to 1000. Without it 60 for videos and .html, and 50 for .gif and
-        without a path: a GIF counts in 1/100 s, there 100 / fps must be whole and at least 2.
-        The player shows every time that the screen asks for; there a frame is what its keys step
-        by.
+        Frames per second, 0.001 to 1000; default: 60 for videos and .html, 50 for .gif and without
+        a path. A GIF counts in 1/100 s: there 100 / fps must be whole and at least 2. The player
+        draws at the screen's rate; there a frame is the step of its keys.
     speed : float, optional
-        Seconds of motion in a second of film, which then shows all of it; 0.1 is slow motion.
+        Seconds of motion per second of film, which then shows all of it; 0.1 is slow motion.
     max_frames : int, optional
-        Largest number of frames, at most a million; a film of more is refused.
+        Largest number of frames, at most a million; a longer film is rejected.
     width : int
-        Width of the picture [pixels], 16 to 16384; the height follows from what there is to see.
-        The player takes the width it is given.
+        Width of the picture [pixels], 16 to 16384; the height follows from the content. The player
+        fills the width available.
     dpi : float
-        Dots per inch, 10 to 2400: at the same width, more of them make text and lines larger.
+        Dots per inch, 10 to 2400: at the same width, a larger value makes text and lines larger.
     figure : matplotlib Figure or SubFigure, optional
         Where to draw; `width` and `dpi` are then the figure's own.
     ax : matplotlib Axes, optional
@@ -95,31 +94,32 @@ def animate(
     blow : bool
         Draw the impulse of the scene for the first 1.2 s. The player always does.
     layout : {"over", "side by side"}
-        How the strips of several motions stand.
+        How the strips of several motions are arranged.
     panel : {"phase", "forces", "energy"}, optional
-        Draw these curves below, with a mark that runs along. A player has no panel.
+        Draw these curves below, with a moving mark. A player has no panel.
     progress : bool, optional
-        Show how far the writing has come (with tqdm where it is installed); without it, on a
-        terminal, of films of more than 400 frames, which take seconds.
+        Show the progress of writing (with tqdm where it is installed); default: on a terminal, for
+        films of more than 400 frames, which take seconds.
 
     Returns
     -------
     RollingAnimation
-        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`; `frame(t, path)` is
-        a picture of it. Its figure keeps it alive.
+        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`; `frame(t, path)`
+        writes one picture of it. Its figure keeps it alive.
 
     Raises
     ------
     ValueError
-        If an argument is out of range, there is nothing to show or not a label for each, the
-        film has more frames than `max_frames` or a million, `path` has another suffix, a GIF cannot
-        keep the time, or at this `speed` frames would show rolling backwards.
+        If an argument is out of range, there is nothing to show, the motions and their labels
+        differ in number, the film has more frames than `max_frames` or a million, `path` has
+        another suffix, a GIF cannot keep the time, or at this `speed` the body would seem to roll
+        backwards.
     TypeError
-        If something to show is no Trajectory, or an argument of another wrong kind.
+        If something to show is not a Trajectory, or another argument has the wrong type.
     FileNotFoundError
-        If there is no such folder, or a video is asked for and there is no ffmpeg.
+        If there is no such folder, or no ffmpeg for a video.
     OSError
-        If the file cannot be written; what was there then stays.
+        If the file cannot be written; an old file is kept.
     """
     width, dpi = round(within("width", width, *WIDTHS)), within("dpi", dpi, *DPI)
     if figure is not None:
@@ -163,7 +163,7 @@ def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
 
 
 def _has_windows() -> bool:
-    """True if pyplot's figures are windows; else a notebook would show them beside the player."""
+    """Whether pyplot's figures are windows; else a notebook would show them next to the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

@@ -1,4 +1,4 @@
-"""The moving picture that `animate` makes."""
+"""The film that `animate` makes."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .strip import ROW, Strip, cameras, in_rows
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
-TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
-PANEL = 0.36  # height of a panel below the strips, over the width
+TICKS, FIGURES = 0.03, 0.16  # heights: ruler, over the width; its figures [inch]
+PANEL = 0.36  # height of a panel below the strips, as a share of the width
 _drawing_late = Alone()
 _with_settings = Alone()  # lock of rcParams, which matplotlib's own writers change
 
 
 class RollingAnimation(FuncAnimation):
-    """The moving picture that `animate` makes; a notebook shows it by itself.
+    """The film that `animate` makes; a notebook displays it.
 
     Attributes
     ----------
     t : ndarray, shape (n,)
-        Time that each frame shows [s], as its clock has it.
+        Time that each frame shows [s], as on its clock.
     fps, speed : float
-        Frames a second, and seconds of motion in a second of film.
+        Frames per second, and seconds of motion per second of film.
     strips : tuple of Strip
         One for each motion, from top to bottom: its `ax`, `motion` (whose sample i is what frame
         i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
@@ -58,8 +58,8 @@ class RollingAnimation(FuncAnimation):
     clock : Text
         The time.
     figure : Figure or SubFigure
-        Where it is drawn; it keeps the animation alive. A film that `animate` has written as .html
-        is drawn when this or another artist is first used.
+        Where it is drawn; it keeps the animation alive. A film that `animate` wrote as .html is
+        drawn when this or another artist is first used.
     """
 
     #: The player as a page and as a fragment of HTML; bound by `_player.film`.
@@ -84,7 +84,7 @@ class RollingAnimation(FuncAnimation):
             inches = place.bbox.width / place.figure.dpi
         beside = beside and len(motions) > 1
         head = CAPTION / inches if any(labels) or len(pace.parts) > 1 else 0.0
-        if beside:  # rows of the clock, of the label and of remarks
+        if beside:  # rows for the clock, the label and remarks
             rows = 1 + max(in_rows(label).count("\n") + 1 for label in labels)
             head += ROW * rows / inches
         self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches, beside)
@@ -92,13 +92,13 @@ class RollingAnimation(FuncAnimation):
         if drawn:
             _ = self.strips  # draws the first frame
 
-    if not TYPE_CHECKING:  # a __getattr__ would let type checkers accept every name
+    if not TYPE_CHECKING:  # with a __getattr__ type checkers would accept every name
 
         def __getattr__(self, name: str) -> Any:
             """Draw a film that was only written, when one of its artists is first used.
 
             A page needs no figure. The reference cycles of a figure take long to collect, and a
-            Ctrl-C during that time is lost in the callback of a weak reference.
+            Ctrl-C meanwhile is lost in the callback of a weak reference.
             """
             with _drawing_late():
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
@@ -118,7 +118,7 @@ class RollingAnimation(FuncAnimation):
             place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
         self._root: Any = place.get_figure(root=True)
-        share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of all strips
+        share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of height
         if isinstance(place, Axes):
             place.set_aspect("equal", adjustable="datalim")
             axes = [place]
@@ -148,7 +148,7 @@ class RollingAnimation(FuncAnimation):
         """Do not warn, as matplotlib does, that the animation was never shown."""
 
     def _add_panel(self, place: Any, height: float) -> list[Line2D]:
-        """Draw curves of the motions below the strips; return what marks the time on them."""
+        """Draw curves of the motions below the strips; return the lines that mark the time."""
         inches = np.array([place.bbox.width, place.bbox.height]) / place.figure.dpi
         left, bottom = (0.7, 0.5) / inches
         ax = place.add_axes((left, bottom, 0.97 - left, height - bottom - 0.3 / inches[1]))
@@ -167,9 +167,9 @@ class RollingAnimation(FuncAnimation):
         return [ax.axvline(0.0, color=palette_of(ax).ink, lw=1.5)]
 
     def _fit_captions(self) -> None:
-        """Make captions small enough to leave room for the clock, but no smaller than a third.
+        """Shrink captions to leave room for the clock, to a third at most.
 
-        Of strips side by side, the clock is over the captions.
+        For strips side by side, the clock is above the captions.
         """
         self.clock.set_text(self._clock(float(self.t[-1])))
         room = 0.92 * self.strips[0].ax.bbox.width
@@ -180,7 +180,7 @@ class RollingAnimation(FuncAnimation):
             strip.caption.set_fontsize(size)
 
     def draw(self, i: int) -> list[Artist]:
-        """Put every artist where frame i has it, and return the moving ones."""
+        """Move every artist to its position in frame i, and return the moving ones."""
         if not 0 <= whole("i", i) < self.t.size:
             raise ValueError(f"i must be a frame, from 0 to {self.t.size - 1}, got {shown(i)}")
         self.clock.set_text(self._clock(float(self.t[i])))
@@ -213,10 +213,10 @@ class RollingAnimation(FuncAnimation):
         progress: bool | None = None,
         **options: Any,
     ) -> None:
-        """Write the file of the suffix: .gif, .mp4 or .webm (need ffmpeg), .html (a player).
+        """Write a file by its suffix: .gif, .mp4 or .webm (need ffmpeg), .html (a player).
 
-        A file that is there is replaced only by a whole film. `progress` is as in `animate`.
-        `writer` and `options` are matplotlib's, for those who want another writer.
+        An existing file is replaced only by a complete film. `progress` is as in `animate`.
+        `writer` and `options` are matplotlib's, for use of another writer.
         """
         path, count = file_name("filename", filename), self.t.size
         if progress is None:  # 400 frames take two seconds
@@ -249,7 +249,7 @@ class RollingAnimation(FuncAnimation):
         return int(self._root.bbox.width), int(self._root.bbox.height)
 
     def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
-        """Yield the pixels of frames, in one buffer: what stands still is drawn once."""
+        """Yield the pixels of frames in one buffer: static parts are drawn once."""
         root, still = self._root, BytesIO()
         seen = [artist for artist in self.draw(frames[0]) if artist.get_visible()]
         for artist in seen:
@@ -274,8 +274,8 @@ class RollingAnimation(FuncAnimation):
     def _repr_html_(self) -> str:
         """Return the player, or the form that matplotlib's `rcParams["animation.html"]` names.
 
-        A film that is too long for a player becomes a sentence with the reason, one with a panel
-        matplotlib's player of pictures.
+        A film that is too long for a player becomes a sentence with the reason; a film with a panel
+        is shown by matplotlib's player of pictures.
         """
         wanted = rcParams["animation.html"]
         if wanted == "none" and not self.panel:

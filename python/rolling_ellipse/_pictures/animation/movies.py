@@ -1,6 +1,6 @@
-"""The files of animations: which there are, their pace, and how pixels are written to them.
+"""The files of animations: their formats, their pace, and how pixels are written to them.
 
-The pace of a film is its frames a second, seconds of motion a second, and the time of each frame.
+The pace of a film is its frames per second, seconds of motion per second, and each frame's time.
 """
 
 from __future__ import annotations
@@ -29,27 +29,27 @@ from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
 
 Pixels = NDArray[np.uint8]  # a picture, (height, width, 4)
-ENCODERS = {  # of ffmpeg, with the options that make small files of good quality
+ENCODERS = {  # ffmpeg's encoders, with options for small files of good quality
     ".mp4": ("h264",),
     ".webm": ("libvpx-vp9", "-crf", "34", "-b:v", "0", "-deadline", "realtime", "-cpu-used", "6"),
 }
 SUFFIXES = (".gif", *ENCODERS, ".html")
 MOST_FRAMES = 1_000_000
 FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)
-GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last 2/100 s at least
-# Longest films [s] of a chosen speed. All frames of a GIF are in memory at once.
+GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last at least 2/100 s
+# Longest films [s] if the speed is free. All frames of a GIF are in memory at once.
 LONGEST_GIF, LONGEST_VIDEO = 30.0, 60.0
-PARTS = 5  # most parts of a longer one
-BACKWARDS = math.pi / 2  # turn in a frame [rad] beyond which an ellipse seems to roll backwards
+PARTS = 5  # largest number of parts of a longer one
+BACKWARDS = math.pi / 2  # turn per frame [rad] beyond which an ellipse seems to roll backwards
 
 
 def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels) -> None:
     """Write a GIF with exact delays and one palette for all `colours`: small files."""
     delay = gif_delay(fps)
     assert delay is not None
-    # maximum coverage keeps the colours of thin lines, and a mean of what is near those of areas
+    # maximum coverage keeps the colours of thin lines, and averages those near an area's colour
     palette = Image.fromarray(colours).convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE, 1)
-    first, *rest = (  # all are kept with a palette: RGB takes three times the memory
+    first, *rest = (  # all are held as palette images: RGB takes three times the memory
         Image.fromarray(pixels).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE)
         for pixels in frames
     )
@@ -59,17 +59,17 @@ def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels)
 def write_video(
     path: Path, frames: Iterable[Pixels], fps: float, size: tuple[int, int], name: str
 ) -> None:
-    """Write a video of pictures of a size (width, height) by ffmpeg; errors have its `name`."""
+    """Write a video of pictures of a size (width, height) with ffmpeg; errors show its `name`."""
     command = [
         ffmpeg(), "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba",
         "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.17g}", "-i", "-",
-        "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p",  # all players know it
+        "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p",  # all players support it
         "-c:v", *ENCODERS[path.suffix.lower()], str(path),
     ]  # fmt: skip
     with TemporaryFile() as said, Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said) as writer:
         assert writer.stdin is not None
         try:
-            with suppress(BrokenPipeError):  # ffmpeg has ended, and said why
+            with suppress(BrokenPipeError):  # ffmpeg has ended and stated why
                 for pixels in frames:
                     writer.stdin.write(pixels.data)
         except BaseException:
@@ -86,9 +86,9 @@ def write_video(
 
 
 def gif_delay(fps: float) -> int | None:
-    """Return the delay between frames of a GIF [1/100 s]; None if that is no whole number.
+    """Return the delay between frames of a GIF [1/100 s]; None if that is not a whole number.
 
-    The least delay is 2, because viewers slow 1 down. The file has two bytes for it.
+    The least delay is 2: viewers slow down shorter ones. The file stores it in two bytes.
     """
     delay = round(100 / fps)
     return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
@@ -97,7 +97,7 @@ def gif_delay(fps: float) -> int | None:
 def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -> str:
     """Return the suffix of a file, which names its format.
 
-    It raises the errors of `animate` about the file before anything is written.
+    The errors of `animate` about the file are raised here, before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()
@@ -127,7 +127,7 @@ def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -
 
 
 def ffmpeg() -> str:
-    """Return the path of ffmpeg: the program of imageio_ffmpeg, or else of the system."""
+    """Return the path of ffmpeg: imageio_ffmpeg's program, or else the system's."""
     if importlib.util.find_spec("imageio_ffmpeg") is not None:
         with suppress(RuntimeError):  # imageio_ffmpeg has no program for this machine
             return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
@@ -140,11 +140,11 @@ def ffmpeg() -> str:
 
 @dataclass(frozen=True)
 class Pace:
-    """Frames a second, seconds of motion a second of film, and the time each frame shows [s].
+    """Frames per second, seconds of motion per second of film, and the time each frame shows [s].
 
-    Clocks show `decimals` of it. `parts` are the stretches of time that the film shows one after
-    the other [s], `first` is for each frame the first one of its part. At speeds above `fastest`
-    frames would show the body rolling backwards.
+    Clocks show that time to `decimals` places. `parts` are the stretches of time that the film
+    shows in turn [s], `first` is, for each frame, the first frame of its part. At speeds above
+    `fastest` the body would seem to roll backwards.
     """
 
     fps: float
@@ -162,7 +162,7 @@ def pace(
 ) -> Pace:  # fmt: skip
     """Return the frames that show motions up to a `last` time [s], as `animate` documents.
 
-    Without a path the frames a second are those of a GIF, since every format can have them.
+    Without a path the frames per second are those of a GIF, since every format supports them.
     """
     video = path is not None and not file_name("path", path).lower().endswith(".gif")
     fps = (VIDEO_FPS if video else GIF_FPS) if fps is None else within("fps", fps, *FPS)
@@ -198,14 +198,14 @@ def pace(
 
 
 def _spin(motion: Trajectory, last: float, fps: float) -> float:
-    """Return the largest angular velocity, as a mean over four frames or more [rad/s]."""
+    """Return the largest mean angular velocity over four frames or more [rad/s]."""
     count = int(min(max(last * fps / 4, 1), 1024))
     at = motion.sol(even_times(0.0, min(last, float(motion.t[-1])), count + 1))
     return float(np.max(np.abs(np.diff(at.theta)) / np.maximum(np.diff(at.t), 1e-300)))
 
 
 def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[float]:
-    """Return where parts of a `span` start: beginning, end, an early and a late event, middle."""
+    """Return the start times of parts of length `span`: start, end, two events, and middle."""
     events = sorted(each.t - span / 4 for motion in motions for each in motion.events)
     events = [start for start in events if span <= start <= last - 2 * span]
     starts: list[float] = []
@@ -216,7 +216,7 @@ def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[floa
 
 
 def _decimals(step: float) -> int:
-    """Return the decimals that show every multiple of a step [s] exactly, or its two digits."""
+    """Return how many decimals show multiples of a step [s] exactly, or else two digits of it."""
     own = max(0, 1 - math.floor(math.log10(step)))
     sizes = ((digits, step * 10**digits) for digits in range(own + 3))
     return next((k for k, n in sizes if math.isclose(n, max(1, round(n)), rel_tol=1e-9)), own)

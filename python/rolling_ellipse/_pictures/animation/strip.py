@@ -25,8 +25,8 @@ from .. import ground as drawing
 from ..palette import palette_of
 
 BEHIND, AHEAD = 5.0, 4.0  # ground shown on either side of a followed motion [body sizes]
-ROW = 0.18  # height of a further row of a caption [inch]
-FADES = 1.2  # a blow is seen for so long [s of film]
+ROW = 0.18  # height of each further row of a caption [inch]
+FADES = 1.2  # how long a blow is visible [s of film]
 
 
 View = tuple[float, float, float, float]
@@ -37,19 +37,19 @@ _Ends = tuple[float, float]
 class Cameras:
     """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down.
 
-    The strips are `columns` side by side, or (1) over one another.
+    The strips are side by side in `columns`, or stacked if that is 1.
     """
 
     columns: int
-    views: tuple[FloatArray, ...]  # of each strip: one view a frame, (n, 4)
-    heights: tuple[float, ...]  # of each strip: its share of the picture's height
+    views: tuple[FloatArray, ...]  # for each strip: one view per frame, (n, 4)
+    heights: tuple[float, ...]  # for each strip: its share of the picture's height
     shape: float  # height of the picture over its width
-    windows: tuple[View, ...]  # views relative to the followed place
+    windows: tuple[View, ...]  # views relative to the followed point
     follows: str  # "nothing", the "middle" of all motions, or "own": each strip its own motion
 
 
 def in_rows(label: str) -> str:
-    """Return a label with its facts in rows, for a strip beside others, which is narrow."""
+    """Return a label with its facts in rows, for the narrow strips side by side."""
     return re.sub(r", (?![^(]*\))", "\n", label)
 
 
@@ -59,9 +59,9 @@ def cameras(
     """Return the views of motions sampled at the same frames.
 
     The camera stands still if all motions fit into about three turns (side by side, fewer). Else it
-    follows the middle between the first and the last body. If these part by more than fits, every
-    strip follows its own body. Over the width of the picture are its height, `shape` (None to
-    choose it), and the free heights `head` and `foot` at the top and bottom of each strip.
+    follows the middle between the first and the last body. If these are too far apart, every strip
+    follows its own body. The picture's height, `shape` (None to choose it), and the free heights
+    `head` and `foot` at the top and bottom of each strip are relative to the picture's width.
     """
     sizes = [max(motion.scene.a, motion.scene.b) for motion in motions]
     size = max(sizes)
@@ -82,7 +82,7 @@ def cameras(
             for target in targets:
                 target[:, 0] = (places.min(axis=0) + places.max(axis=0)) / 2
         left, right = -BEHIND * size - room, AHEAD * size + room
-        depths = [  # bottom and top in all frames, from the ground below the centre
+        depths = [  # bottom and top in all frames, relative to the ground below the centre
             (-0.35 * own, float(np.max(motion.z + np.minimum(motion.z, own))) + 0.3 * own)
             for motion, own in zip(motions, sizes, strict=True)
         ]
@@ -100,7 +100,7 @@ def cameras(
 
 
 def _below(motion: Trajectory) -> FloatArray:
-    """Return the places on the ground below the centre, as the picture has them, (n, 2)."""
+    """Return the points on the ground below the centre, in the axes of the picture, (n, 2)."""
     along = np.column_stack([motion.x, np.zeros_like(motion.x)])
     return np.array(drawing.tilted(motion.scene).transform(along))
 
@@ -108,14 +108,14 @@ def _below(motion: Trajectory) -> FloatArray:
 def _framed(
     ends: _Ends, depths: list[_Ends], shape: float | None, head: float, foot: float, narrow: bool
 ) -> tuple[tuple[View, ...], tuple[float, ...], float]:
-    """Return windows of one scale that fill a column of strips, their heights and its shape."""
+    """Return windows of one scale that fill a column of strips, their heights, and its shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
-    tallest += texts * narrow  # whose texts are in rows
+    tallest += texts * narrow  # narrow strips have texts in rows
     shape = shape or min(max(needed / length + texts, flattest), tallest)
     wide = max(length, needed / max(shape - texts, shape / 4))
-    foot = min(foot, shape / (2 * strips))  # half of a low strip is left to the body
+    foot = min(foot, shape / (2 * strips))  # the body keeps half of a low strip
     air, sky = (wide - length) / 2, wide * (shape / strips - foot) - needed / strips
     depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
     left, right = ends[0] - air, ends[1] + air
@@ -126,16 +126,16 @@ def _framed(
 class Strip:
     """The body of one motion on its ground, frame by frame.
 
-    It is strip k of a `film`, a RollingAnimation. Frame i shows sample i of the motion (one that
-    ends earlier than the film stays at its last sample); traces begin with its part of the film.
+    It is strip k of a `film`, a RollingAnimation. Frame i shows sample i of the motion (a motion
+    that ends earlier stays at its last sample); traces start with the current part of the film.
 
     The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
     theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
-    ground axes: x along the ground, z normal to it [m]. `contact` marks the place where the body
-    touches. While the body slides, `slip` is there too and points to the direction of sliding. In
-    flight neither is seen, but the `shadow` below the body. `ruler` has the ticks of the ground and
+    ground axes: x along the ground, z normal to it [m]. `contact` marks where the body touches.
+    While the body slides, `slip` is visible too and points in the direction of sliding. In flight
+    only the `shadow` below the body is visible instead. `ruler` has the ticks of the ground and
     their figures, `caption` the name of the motion and remarks on this frame. `arrows` are N, F
-    (the weight is as long as the longer semi-axis) and the blow, as far as the film has them.
+    (the weight is as long as the longer semi-axis) and the blow, if the film shows them.
     """
 
     def __init__(self, ax: Axes, film: Any, k: int) -> None:
@@ -184,10 +184,10 @@ class Strip:
         tip, touching, centre = drawing.tip(motion), contact_points(motion), (motion.x, motion.z)
         skids = contact_points(motion, sliding=True)
         self._traces = {self.skid_trace: skids, self.tip_trace: tip, self.centre_trace: centre}
-        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # in one frame
+        self._marks = {self.tip: tip, self.contact: touching, self.slip: skids}  # at a single frame
 
     def draw(self, i: int) -> list[Artist]:
-        """Put every artist where frame i has it, and return the moving ones."""
+        """Move every artist to its position in frame i, and return the moving ones."""
         motion, scene = self.motion, self.motion.scene
         x, z, theta = float(motion.x[i]), float(motion.z[i]), float(motion.theta[i])
         cosine, sine = math.cos(theta), math.sin(theta)
@@ -219,7 +219,7 @@ class Strip:
         return [*changing, *moving, self.body, self.arrows, *self.names]
 
     def _point(self, i: int) -> None:
-        """Let the arrows show the forces of the ground, and the blow while it fades."""
+        """Make the arrows show the forces of the ground, and the blow while it fades."""
         motion, scene, blow = self.motion, self.motion.scene, self.motion.scene.impulse
         size, texts = max(scene.a, scene.b), ["", "", ""]
         feet, arrows = np.zeros((3, 2)), np.zeros((3, 2))
@@ -238,7 +238,7 @@ class Strip:
         self.arrows.set_offsets(seen(feet))
         self.arrows.set_UVC(*seen(arrows).T)
         self.arrows.set_alpha([1, 1, fresh])
-        places = seen(feet + [[1], [1], [0]] * arrows)  # tips of the forces, foot of the blow
+        places = seen(feet + [[1], [1], [0]] * arrows)  # tips of forces, foot of the blow
         for name, text, place, alpha in zip(self.names, texts, places, (1, 1, fresh), strict=True):
             name.set(text=text, position=place, alpha=alpha)
 

@@ -1,4 +1,4 @@
-"""Many motions: scenes as tables, chunk by chunk, by any workers, kept in memory or in a folder."""
+"""Many motions: scenes in tables, computed in chunks by any workers, kept in memory or a folder."""
 
 from .answers import MotionArrays as MotionArrays
 from .ends import Ends as Ends

@@ -1,7 +1,7 @@
-"""Results of many scenes: tables of numbers, as the core and files have them, and what they hold.
+"""Results of many scenes: tables of numbers, from the core or files, and what they hold.
 
-Tables of files, which may be damaged, are checked before they are split into answers or arrays. An
-answer is a trajectory, or the exception of its scene. Arrays have the axes of the scenes.
+Tables from files, which may be damaged, are checked before they are split into answers or arrays.
+An answer is a trajectory, or the exception of its scene. Arrays have the axes of the scenes.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 Tables = dict[str, npt.NDArray[Any]]
 Answer: TypeAlias = Trajectory | Exception
 
-REFUSED = -1  # code of the ending of a scene that the core refused
-MODELS, METHODS = _core.MODELS, _core.METHODS  # names, at the places of their codes
+REFUSED = -1  # ending code of a scene that the core rejected
+MODELS, METHODS = _core.MODELS, _core.METHODS  # names, indexed by their codes
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
 _WIDTH = {name: len(names) for name, names in _COLUMNS.items()}
-_FIRST_COUNT = _COLUMNS["codes"].index("samples")  # counts begin at this column
+_FIRST_COUNT = _COLUMNS["codes"].index("samples")  # counts start at this column
 TABLES = ("codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot")
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
@@ -53,8 +53,8 @@ _STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers"
 _TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
-_LOST = max(STATUSES) + 1  # the ending of a scene whose worker was lost
-# In the order of the codes, from REFUSED on
+_LOST = max(STATUSES) + 1  # ending code of a scene whose worker was lost
+# In code order, starting with REFUSED
 _ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
 _UNITS = SCENE_UNITS | _core.FIELDS["Impulse"]
 
@@ -69,12 +69,12 @@ class Request:
 
     @property
     def samples(self) -> int:
-        """Number of samples of a scene."""
+        """Number of samples per scene."""
         return self.times.size
 
     @property
     def size(self) -> int:
-        """Bytes of the samples of a scene."""
+        """Size of a scene's samples in bytes."""
         return self.samples * SAMPLE_BYTES[self.settings.model]
 
     def task(self, chunk: Chunk) -> Task:
@@ -85,12 +85,12 @@ def solve(
     function: Callable[..., Tables], table: FloatArray, settings: Settings, times: FloatArray,
     threads: int,
 ) -> Tables:  # fmt: skip
-    """Return what a function of the core gives; settings of the core cannot be sent in a task."""
+    """Call a core function; the core's settings are made here, since a task cannot carry them."""
     return function(table, settings.core, times, threads)
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
-    """Return the columns of the table `name`, by the names of the columns."""
+    """Return the columns of the table `name`, by column name."""
     return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
 
 
@@ -105,7 +105,7 @@ def answers(
     """Return a trajectory or an exception for each scene.
 
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
-    again when events are first asked for, as after pickling.
+    again when its events are first accessed, as after pickling.
     """
     times, text = frozen(np.array(request.times)), BytesIO(tables["text"].tobytes())
     span, taken = float(times[-1]), dict.fromkeys(MODELS, 0)
@@ -168,7 +168,7 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
     for name, shape in shapes.items():
         dtype = np.int8 if name in ("text", "mode") else np.float64
         require_array(name, tables[name], dtype, shape)
-    numbers = tables["numbers"]  # not all finite: `valid_until` may be infinite
+    numbers = tables["numbers"]  # `valid_until` may be infinite
     require_array("numbers", numbers, np.float64, (n, _WIDTH["numbers"]), finite=False)
     if np.isnan(numbers).any():
         raise ValueError("numbers must not contain NaN")
@@ -187,7 +187,7 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
 
 
 class MotionArrays(dict[str, FloatArray]):
-    """Quantities of many motions by name: arrays of the shape of the scenes, then of the times.
+    """Quantities of many motions by name: arrays over the scenes' shape, then the times.
 
     They are NaN where a scene has no motion, and after an early end.
 
@@ -196,12 +196,12 @@ class MotionArrays(dict[str, FloatArray]):
     t : ndarray, shape (n,)
         Times [s].
     axes : tuple of str
-        Names of the axes of the scenes: of the argument that alone varies along it (``omega0`` for
-        the start omega, and so on), else ``scene``, or ``scene_0``, ``scene_1``.
+        Names of the scenes' axes: the argument, if only one varies along the axis (``omega0`` for
+        the initial omega, and so on), else ``scene``, or ``scene_0``, ``scene_1``.
     status : ndarray of str
-        Names of `Status`, or REFUSED, or LOST with its worker, in the shape of the scenes.
+        Names of `Status`, or REFUSED, or LOST (with a worker), in the scenes' shape.
     errors : dict
-        The exceptions in the list of `simulate_many`, by the index of the scene, a tuple.
+        The exceptions that the list of `simulate_many` holds, by the scene's index, a tuple.
     """
 
     t: FloatArray
@@ -222,7 +222,7 @@ class MotionArrays(dict[str, FloatArray]):
     def to_xarray(self) -> Dataset:
         """Return an xarray Dataset over the axes of the scenes and t, with ``status``.
 
-        Arguments of the scenes that vary are coordinates, the others are in ``attrs``.
+        Scene arguments that vary are coordinates, the others are in ``attrs``.
 
         Raises
         ------
@@ -247,7 +247,7 @@ def counts_of(status: npt.NDArray[np.str_]) -> str:
 def endings_of(
     codes: npt.NDArray[Any], failed: Mapping[int, Exception], shape: tuple[int, ...]
 ) -> dict[str, Any]:
-    """Return status and errors of motions of a shape by the codes of all and the exceptions."""
+    """Return status and errors of motions in a shape, from all codes and the exceptions."""
     errors = {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
     return {"status": _ENDINGS[codes - REFUSED].reshape(shape), "errors": errors}
 
@@ -257,7 +257,7 @@ def dataset_of(
 ) -> Dataset:
     """Return the status and quantities of motions as a Dataset, with the scenes as coordinates.
 
-    Columns of further arguments are treated as those of the scenes.
+    Columns of further arguments are treated like those of the scenes.
     """
     dataset: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
     for name, array in values.items():
@@ -291,9 +291,9 @@ def gathered(
     names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Any]],
     axes: tuple[str, ...], shape: tuple[int, ...] | None,
 ) -> MotionArrays:  # fmt: skip
-    """Return quantities of tables of scenes, each with its answers or the loss of its worker.
+    """Return quantities from tables of scenes, each with its answers or the loss of its worker.
 
-    A shape of None is that of a list.
+    A shape of None means that of a list.
     """
     rows, endings = [np.empty((0, WIDTH))], [np.empty(0, int)]
     blocks = [np.empty((len(names), 0, request.times.size))]
@@ -326,7 +326,7 @@ def gathered(
 def _fill(
     values: dict[str, FloatArray], request: Request, table: FloatArray, tables: Tables
 ) -> Iterator[tuple[int, Exception]]:
-    """Fill in the samples of each scene, and yield the exceptions with their places."""
+    """Fill in the samples of each scene, and yield the exceptions with their indices."""
     code = columns("codes", tables)
     reached = np.arange(request.times.size) < code["samples"][:, None]
     q, q_dot = tables["q"], tables["q_dot"]
@@ -352,7 +352,7 @@ def _fill(
 
 
 def _fill_rolling(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
-    """Fill in what `Trajectory` finds at the contact of bodies that only roll."""
+    """Fill in what `Trajectory` derives at the contact of bodies that only roll."""
     code, (theta, omega, _) = columns("codes", tables), tables["rolling"]
     samples = np.where(_of_model("rolling", code), code["samples"], 0)
     places, begin = np.flatnonzero(samples), 0

@@ -1,11 +1,11 @@
 """The scenes of `simulate_many` in chunks: from an iterable, or from arrays that broadcast.
 
-Scenes are the rows of a table, for workers and files: the numbers of a Scene in the order of the
-core, then those of its impulse. NaN stands for numbers that were not given.
+Scenes are the rows of a table, for workers and files: the values of a Scene in the core's order,
+then those of its impulse. NaN stands for values that were not given.
 
-The size of a chunk depends only on the numbers of scenes before it and of samples per scene. The
+The size of a chunk depends only on the number of scenes before it and of samples per scene. The
 first chunks are small, so that a few slow scenes occupy many workers. Since sizes do not depend on
-the workers, a folder that was begun by some can be finished by others.
+the workers, a folder that some have started can be finished by others.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ _OPTIONAL = tuple(OPTIONAL & set(NAMES))
 
 _numbers, _blow = attrgetter(*NAMES), attrgetter(*BLOW)
 _NO_BLOW = (math.nan,) * len(BLOW)
-_FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk
-_SHARE = 32  # scenes before a chunk that make it larger than the first by one scene
-_SAMPLES = 2**18  # largest number of samples of a chunk of several scenes
+_FIRST, _MOST = 16, 2048  # number of scenes in the first and the largest chunk
+_SHARE = 32  # a chunk grows by one scene per this many scenes before it
+_SAMPLES = 2**18  # largest number of samples in a chunk of several scenes
 _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Scenes that are computed together, from the index `begin` among all up to `end`."""
+    """Scenes that are computed together: those from index `begin` up to `end`."""
 
     index: int
     begin: int
@@ -67,7 +67,7 @@ def sizes(samples: int) -> Iterator[tuple[int, int]]:
 
 
 class SceneList:
-    """Scenes of an iterable, taken as they are needed."""
+    """Scenes of an iterable, taken as needed."""
 
     def __init__(self, scenes: Iterable[Any]) -> None:
         self._each = iter(scenes)
@@ -86,9 +86,9 @@ class SceneList:
 
 
 class SceneGrid:
-    """Scenes of the arguments in a mapping, numbers and arrays that broadcast, in C order.
+    """Scenes from the arguments in a mapping, numbers and arrays that broadcast, in C order.
 
-    All scenes are checked at once; an error names the argument and its index. `beside` are other
+    All scenes are checked at once; an error names the argument and its index. `beside` holds other
     arrays that broadcast with them.
     """
 
@@ -125,7 +125,7 @@ class SceneGrid:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the axes: of the only argument that varies along it alone, or "scene"."""
+        """Names of the axes: the one argument that varies along just that axis, or "scene"."""
         many = len(self.shape) > 1
         owners: list[list[str]] = [[] for _ in self.shape]
         for name, values in (self._arrays | self._beside).items():
@@ -145,25 +145,25 @@ class SceneGrid:
             yield Chunk(index, begin, self.table(begin, size))
 
     def table(self, begin: int = 0, size: int | None = None) -> FloatArray:
-        """Return the scenes from an index on as a table, with a row of numbers for each."""
+        """Return the scenes from an index on as a table with one row of numbers each."""
         end = self.total if size is None else min(begin + size, self.total)
         table = np.empty((end - begin, WIDTH))
         for column, name in enumerate((*NAMES, *BLOW)):
             values: Any = self._arrays.get(name, _DEFAULTS.get(name))
             if np.size(values) == 1:
-                table[:, column] = values  # NaN for None
+                table[:, column] = values  # None becomes NaN
             else:
                 table[:, column] = np.broadcast_to(values, self.shape).flat[begin:end]
         return table
 
     def _require_arguments(self) -> None:
-        """Refuse wrong arguments of no scenes: each alone, and those of the body together."""
+        """Reject wrong arguments if there are no scenes: each by itself, the body's together."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))
         body = {name: given[name] for name in NAMES if name in given and name not in STATE_UNITS}
         scaled = {"a", "b"} <= {*body} and ("mass" in body or "mass" not in self._arrays)
-        if "inertia" in body and not scaled:  # its range is not known
+        if "inertia" in body and not scaled:  # its range is unknown
             inertia = body.pop("inertia")
             require(_entry("inertia"), "positive", inertia, inertia > 0)
         size = next((body[name] for name in ("a", "b") if name in body), 1.0)
@@ -206,12 +206,12 @@ def asked(scenes: Any, **beside: FloatArray) -> SceneList | SceneGrid:
 
 
 def name_of(argument: str) -> str:
-    """Return the name of an argument beside quantities of motions: the start gets a 0."""
+    """Return an argument's name for use beside quantities of motions: initial values get a 0."""
     return f"{argument}0" if argument in STATE_UNITS else argument
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
-    """Return scenes as a table, with a row of numbers for each."""
+    """Return scenes as a table with one row of numbers each."""
     rows = [
         (*_numbers(each), *(_NO_BLOW if each.impulse is None else _blow(each.impulse)))
         for each in scenes
@@ -220,7 +220,7 @@ def table_of(scenes: Sequence[Scene]) -> FloatArray:
 
 
 def scenes_of(table: FloatArray) -> list[Scene]:
-    """Return the scenes in the rows of a table that the core has found valid."""
+    """Return the scenes in the rows of a table that the core has validated."""
     return [_scene(row) for row in table.tolist()]
 
 

@@ -1,4 +1,4 @@
-"""Only the ends of many motions."""
+"""The ends of many motions, without their samples."""
 
 from __future__ import annotations
 
@@ -35,27 +35,27 @@ _NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ends(FieldsOnly):
-    """The ends of many motions: arrays of the shape of the scenes.
+    """The ends of many motions: arrays in the shape of the scenes.
 
     Attributes
     ----------
     theta, omega, x, z, x_dot, z_dot : ndarray
-        States [rad, rad/s, m, m, m/s, m/s]; NaN where a motion has ended before its time.
+        States [rad, rad/s, m, m, m/s, m/s]; NaN where a motion ended before its time.
     mode, first : ndarray of int8
         Codes of `Mode` at the end, and of the `EventKind` of the first event; -1: none.
     events : ndarray of int32
-        Numbers of events, ``len(motion.events)`` of `simulate`; 0 for rolling that is proved. Of a
+        Numbers of events, ``len(motion.events)`` of `simulate`; 0 for motion proved to roll. For a
         body that settles in ever smaller bounces these are the impacts down to the first rebound
-        slower than `rest_speed`, and one event at the end of all bounces that are left, which are
-        infinitely many: a smaller `rest_speed` counts more of them.
+        slower than `rest_speed`, and one event at the end of the infinitely many bounces left: a
+        smaller `rest_speed` counts more of them.
     status : ndarray of str
         Names of `Status`, or REFUSED.
     errors : dict
-        The exceptions that `simulate` would raise, by the index of the scene, a tuple.
+        The exceptions that `simulate` would raise, by the scene's index, a tuple.
     axes : tuple of str
-        Names of the axes, as of `MotionArrays`; "t" where the times vary alone.
+        Names of the axes, as in `MotionArrays`; "t" where only the times vary.
     t : ndarray
-        Times asked for [s].
+        Requested times [s].
     """
 
     theta: FloatArray
@@ -74,9 +74,9 @@ class Ends(FieldsOnly):
     _scenes: SceneGrid | FloatArray
 
     def to_xarray(self) -> Dataset:
-        """Return an xarray Dataset of the arrays; its quantities draw themselves, ``x.plot()``.
+        """Return an xarray Dataset of the arrays, whose quantities have a method ``plot()``.
 
-        Arguments of the scenes and times that vary are coordinates, the others are in ``attrs``.
+        Scene arguments and times that vary are coordinates, the others are in ``attrs``.
 
         Raises
         ------
@@ -89,7 +89,7 @@ class Ends(FieldsOnly):
         return dataset_of(self, self.axes, values, scenes, t=self.t)
 
     def to_dataframe(self) -> DataFrame:
-        """Return `to_xarray` as a pandas DataFrame: a row for each scene."""
+        """Return `to_xarray` as a pandas DataFrame: one row per scene."""
         found = self.to_xarray()
         return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
 
@@ -121,30 +121,30 @@ def ends(
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
 ) -> Ends:
-    """Return only the ends of many motions, with the bits of `simulate`.
+    """Return only the ends of many motions, bit for bit those of `simulate`.
 
-    The states are starts: in a mapping of scenes, as theta, omega, x, z, x_dot and z_dot, they
-    continue the motions.
+    The states can be used as starts: in a mapping of scenes, as theta, omega, x, z, x_dot and
+    z_dot, they continue the motions.
 
     Parameters
     ----------
     scenes : iterable of Scene, or mapping
-        As of `simulate_many`.
+        As for `simulate_many`.
     t : float or array_like
         Times of the ends [s]: one for each scene of an iterable, or an array that broadcasts with
         those of a mapping.
     workers, progress
-        As of `simulate_many`.
+        As for `simulate_many`.
     max_events : int
-        Most events of a motion before it ends with the status MAX_EVENTS, as of `simulate`.
+        Largest number of events, after which a motion ends with the status MAX_EVENTS.
     rest_speed : float, optional
-        As of `simulate` [m/s].
+        As for `simulate` [m/s].
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong. A time is finite: most motions never come to an end, and have no
-        last state.
+        If an argument is wrong. Times must be finite: most motions never end, and have no last
+        state.
     WorkerError
         If a worker was lost.
     """

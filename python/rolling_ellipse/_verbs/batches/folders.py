@@ -1,4 +1,4 @@
-"""A folder of motions: the request of all, and a file for each chunk of scenes.
+"""A folder of motions: their common request, and a file for each chunk of scenes.
 
 ``request.npz`` holds the settings, the times and the version. ``00000007-1f…-a3….npz`` is the
 chunk of index 7, named by the hashes of the request and of its scenes. ``end.json``, written last,
@@ -45,18 +45,18 @@ _AGAIN = "simulate_many with the same arguments"
 # Names of the files that a folder may hold; hidden files are allowed, too
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
-_Names = dict[int, list[str]]  # names of the files of each chunk, by its index, ascending
+_Names = dict[int, list[str]]  # file names of each chunk, by index, ascending
 
 
 class Folder:
-    """The files of one request: a new folder, or one that an earlier call has left.
+    """The files of one request: in a new folder, or in one left by an earlier call.
 
-    Anything else in the folder is refused by its name.
+    Anything else in the folder is rejected by name.
     """
 
     def __init__(self, path: Any, request: results.Request) -> None:
         self.path = Path(file_name("out", path))
-        self.done = self._chunks = 0  # scenes in files, and chunks looked at
+        self.done = self._chunks = 0  # scenes in files, and chunks checked
         about = _about(request)
         self._request, self._samples = _digest_of(about, request.times), request.samples
         is_new = not (self.path / _REQUEST).exists()
@@ -74,12 +74,12 @@ class Folder:
                 np.savez(new, about=np.array(json.dumps(about)), t=request.times)
         remove_unfinished(self.path)
         self._scenes: float = math.inf
-        with suppress(FileNotFoundError, ValueError):  # a damaged `end.json` is written again
+        with suppress(FileNotFoundError, ValueError):  # a damaged `end.json` is rewritten
             end = _end_of(self.path, self._request, self._names, self._samples)
             self._scenes = end["scenes"]
 
     def missing(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
-        """Yield chunks without a whole file; a file of other scenes is refused."""
+        """Yield chunks without a complete file; a file of other scenes is rejected."""
         for chunk in chunks:
             self._chunks += 1
             if self._has(chunk):
@@ -118,7 +118,7 @@ class Folder:
             new.write_text(json.dumps({"scenes": self.done, "digest": digest, **grid}))
 
     def _require_new(self) -> None:
-        """Raise ValueError for a name that is not of simulate_many, in a folder without request."""
+        """Raise ValueError for a foreign file name in a folder without a request."""
         for name in sorted(os.listdir(self.path)):
             if not _OURS.fullmatch(name):
                 self._refuse(
@@ -138,7 +138,7 @@ class Folder:
 
 
 class StoredMotions(Sequence[results.Answer]):
-    """The motions in a folder of `simulate_many`, read a file at a time when they are asked for.
+    """The motions in a folder of `simulate_many`, read one file at a time on access.
 
     A scene without a motion has its exception, as in the list of `simulate_many`.
     """
@@ -206,16 +206,16 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     Returns
     -------
     sequence of Trajectory or exception
-        The same bits as computed; ``events`` are those of the machine that computed them. Only a
-        file of at most 2048 scenes is in memory at a time. ``arrays(("theta", "x"))``,
-        ``to_xarray(…)`` and ``to_dataframe(…)`` have the quantities named (default: theta, omega,
-        x) in the shape of the scenes, with the axes of `MotionArrays`.
+        Bit for bit as computed; ``events`` are those of the machine that computed them. Only one
+        file, of at most 2048 scenes, is in memory at a time. ``arrays(("theta", "x"))``,
+        ``to_xarray(…)`` and ``to_dataframe(…)`` return the named quantities (default: theta,
+        omega, x) in the shape of the scenes, with the axes of `MotionArrays`.
 
     Raises
     ------
     ValueError
-        If it is another folder, of another schema version, or incomplete, or if its files do not
-        belong together; when a motion is read: if a file, which is named, is damaged.
+        If it is another kind of folder, of another schema version, or incomplete, or if its files
+        do not belong together; when a motion is read: if its file, which is named, is damaged.
     OSError
         If it cannot be read.
     """
@@ -238,7 +238,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
 
 
 def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
-    """Return number, axes and shape of the scenes of a folder, if its chunks fit ``end.json``."""
+    """Return number, axes and shape of a folder's scenes, if its chunks match ``end.json``."""
     cure = f": {_AGAIN} writes it anew"
     end = strict.restored(folder / _END, _of_end, strict.OBJECT, "simulate_many", cure)
     for index, (begin, _) in enumerate(sizes(samples)):
@@ -311,7 +311,7 @@ def _request_in(folder: Path) -> tuple[dict[str, Any], results.Request]:
 
 
 def _chunk(folder: Path, name: str, n: int, samples: int) -> results.Tables:
-    """Return the tables of the file of this name, with n scenes."""
+    """Return the tables of the file with this name, which has n scenes."""
     read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} computes it anew"
     return strict.restored(folder / name, read, strict.ARCHIVE, "simulate_many", cure)
 
@@ -335,7 +335,7 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
-    """Return the hash of all that the bits of a motion depend on, except for its scene."""
+    """Return the hash of everything, except its scene, that determines a motion bit for bit."""
     decisive = {name: about[name] for name in ("schema", "version", "settings")}
     return _digest(json.dumps(decisive, sort_keys=True).encode() + times.tobytes())
 

@@ -53,54 +53,54 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Simulate many scenes, each with the bits of `simulate`, by any workers.
+    """Simulate many scenes with any workers, each bit for bit as by `simulate`.
 
-    A scene that cannot be simulated yields its exception in the list; the others go on. Nothing is
-    warned of: the status of a trajectory (VALIDITY_LOST) says it.
+    A scene that cannot be simulated yields its exception in the list; the others continue. No
+    warnings are issued: see the status of a trajectory (VALIDITY_LOST).
 
     Parameters
     ----------
     scenes : iterable of Scene, or mapping
-        An iterable is taken a chunk at a time. A mapping has the names of Scene's arguments, and
-        numbers or arrays that broadcast; ``impulse`` may be an Impulse of arrays. The motions are
-        then in C order of the common shape.
+        An iterable is consumed one chunk at a time. A mapping has the names of Scene's arguments,
+        with numbers or arrays that broadcast; ``impulse`` may be an Impulse of arrays. The motions
+        are then in C order of the common shape.
     t : float or array_like, shape (n,)
-        End time or sample times of all scenes, as of `simulate` [s].
+        End time or sample times of all scenes, as for `simulate` [s].
     workers : int or executor
         Number of threads, up to 1024, -1 for all cores; or an object with `submit`, or a pool with
         `map`: an executor of concurrent.futures or mpi4py.futures, dask.distributed's Client. A
-        task holds up to 2048 scenes, or fewer if they have many samples. Executors of processes
-        also share the work of Python, threads only that of the core.
+        task holds up to 2048 scenes, or fewer if they have many samples. Process executors share
+        the work in Python as well, threads only that of the core.
     progress : bool or callable
-        True: a bar, by tqdm if it is installed. A function is called with the numbers of scenes
-        done and of all scenes (None for an iterable without a length) after each chunk.
+        True: a bar, by tqdm if it is installed. A function is called after each chunk with the
+        numbers of scenes done and in total (None for an iterable without a length).
     out : str or path-like, optional
-        Folder for the motions, a plain .npz file for each chunk; nothing is kept in memory. It is
-        made if it is missing. A call with the folder of an interrupted one, by any workers,
-        computes only missing and damaged chunks. `load_many` reads it.
+        Folder for the motions, one plain .npz file per chunk; nothing is kept in memory. It is
+        created if missing. Given the folder of an interrupted call, with any workers, it computes
+        only missing and damaged chunks. `load_many` reads it.
     returns : str or iterable of str, optional
-        Names of quantities of a trajectory: they are returned as `MotionArrays`, of the shape of
-        the scenes, then of the times. "theta", "omega" and "x" need no objects of Python.
+        Names of quantities of a trajectory: they are returned as `MotionArrays`, over the scenes'
+        shape, then the times. "theta", "omega" and "x" need no Python objects.
     raise_on_failure, **options
-        As of `simulate`, from ``model`` to ``rest_speed``.
+        As for `simulate`, from ``model`` to ``rest_speed``.
 
     Returns
     -------
     list of Trajectory or exception, or str, or MotionArrays
-        One for each scene, in order; with ``out`` the path of the folder; or what ``returns`` asks
-        for. A scene that `simulate` would refuse has a ValueError; an integration that stops early
-        has an IntegrationError, which has the trajectory (with ``raise_on_failure=False`` the
+        One for each scene, in order; with ``out`` the path of the folder; or what ``returns``
+        names. A scene that `simulate` would reject has a ValueError; an integration that stops
+        early has an IntegrationError with the trajectory (with ``raise_on_failure=False`` the
         trajectory itself); a scene whose worker died or was missing has a WorkerError, whose cause
         is the executor's exception.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong. A number of a mapping is refused by its name and index before
-        anything is computed; an object that is not a Scene in an iterable, by its index. If ``out``
-        holds something other than motions of the same scenes, times, settings and version.
+        If an argument is wrong. For a number in a mapping the error names it with its index before
+        anything is computed; for an object in an iterable that is not a Scene, its index. If
+        ``out`` holds anything but motions of the same scenes, times, settings and version.
     WorkerError
-        With ``out``: if workers were lost. Finished chunks are kept; the same call goes on.
+        With ``out``: if workers were lost. Finished chunks are kept; the same call resumes.
     OSError
         If ``out`` cannot be written; finished chunks are kept.
     """
@@ -151,8 +151,8 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
             function, *arguments = request.task(chunk)
             yield chunk, function(*arguments, threads)
         return
-    scenes = 0  # of the last task
-    each: int = request.size  # most bytes of results per scene so far; at first, of its samples
+    scenes = 0  # number in the last task
+    each: int = request.size  # largest size of results per scene so far; at first, of samples
 
     def tasks() -> Iterator[tuple[Chunk, Task]]:
         nonlocal scenes

@@ -1,4 +1,4 @@
-"""Readings of a film by the conventions of other trackers, and the one that fits its scene."""
+"""Readings of a film in the conventions of other trackers, and the one that fits its scene."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from .judgement import NORMAL, TRACKER, estimated, judged, settled
 from .search import Search
 
 X, Z, THETA = range(3)
-_RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [1/s], also of ms
-_SLOWED = (2, 3, 4, 5, 8, 10, 16)  # or quickened: a film by the clock of its player
+_RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [1/s]; 1000: ms
+_SLOWED = (2, 3, 4, 5, 8, 10, 16)  # or sped up by these factors: a film timed by its player's clock
 _UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # of time [s]
-_LENGTHS = (100.0, 1000.0)  # of centimetres and millimetres in a metre
-_WINDOW, _SURE = 8, 10.0  # fewest frames of a free fall, and its curvature over the error
-_NOISE = NORMAL / math.sqrt(20)  # deviation over the median third difference, of normal numbers
-_SMOOTH = 1e-4  # smallest noise over the range of a track
-_WRONG = 3.0  # ratio of the film's free fall to gravity, or inverse, that is no error of a scale
-_NEAR = 1.2  # ratio of a unit to the one that free fall shows
-_ALIASED = 10.0  # time between frames in which a body that rocks slowly has turned round
-_QUICK, _RUN = 6, 2  # starts of a try, and tries that are run to the end
+_LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
+_WINDOW, _SURE = 8, 10.0  # minimum frames in a free fall, and ratio of curvature to error
+_NOISE = NORMAL / math.sqrt(20)  # deviation per median third difference, for normal noise
+_SMOOTH = 1e-4  # smallest noise relative to the range of a track
+_WRONG = 3.0  # from this ratio of free fall to gravity, or its inverse, a scale error is ruled out
+_NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
+_ALIASED = 10.0  # spacing of frames in sqrt(L/g) at which a rocking body has turned back
+_QUICK, _RUN = 6, 2  # starts per try, and number of tries run to the end
 
 
 def free_fall(film: Film, unknowns: Unknowns) -> float | None:
-    """Return the downward acceleration of a flight in the film over that of the scene, or None.
+    """Return the ratio of the downward acceleration of a flight to that of the scene, or None.
 
-    A flight is a parabola to within the noise, higher than a rolling body rises and falls.
+    A flight is a parabola to within the noise, higher than a rolling body's rise and fall.
     """
     scene, seen = unknowns.scene, film.known[:, Z]
     t, z = film.t[seen], film.data[seen, Z]
@@ -50,7 +50,7 @@ def free_fall(film: Film, unknowns: Unknowns) -> float | None:
 
 
 def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float | None:
-    """Return the downward acceleration of heights on a parabola, None of others."""
+    """Return the downward acceleration of heights on a parabola, or None if they are on none."""
     centre, half = (t[0] + t[-1]) / 2, (t[-1] - t[0]) / 2
     powers = ((t - centre) / half)[:, None] ** np.arange(4)
     solution = np.linalg.lstsq(powers, z, rcond=None)[0]
@@ -62,9 +62,9 @@ def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float 
 
 
 def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
-    """Return readings in other units of time or length; none where those of the film may be right.
+    """Return readings in other units of time or length, or none if those of the film may be right.
 
-    Without a flight, frames may be too far apart to tell anything.
+    Without a flight, frames may be too far apart to decide.
     """
     scene = unknowns.scene
     if fall is None:
@@ -84,9 +84,9 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
 
 
 def readings(film: Film) -> list[Film]:
-    """Return readings of angles and places by other conventions, in the same unit of time.
+    """Return readings of angles and positions in other conventions, with the same unit of time.
 
-    Of a film that starts later than it lasts, only its clock is doubted.
+    If a film starts later than it lasts, only its clock is questioned.
     """
     x, z, theta = film.known.any(axis=0)
     clock = _read(film, "t = t - t[0]", t=film.t - film.t[0])
@@ -105,14 +105,14 @@ def readings(film: Film) -> list[Film]:
 
 
 def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
-    """Return the words of the reading that fits best, none if no reading does.
+    """Return the words for the reading that fits best, or "" if none fits.
 
-    Tries are ranked by the likelihood of their residuals, with deviations of their own.
+    Tries are ranked by the likelihood of their residuals, each with its own deviations.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
     for film in tries:
         search = Search(film, unknowns, TRACKER * sizes, loss)
-        with suppress(ValueError):  # nothing moves until the last time
+        with suppress(ValueError):  # no scene's motion reaches the last time
             best = search.minima(_QUICK)[0]
             for _ in range(2):
                 search.sigma = estimated(search, best, unknown)
@@ -127,7 +127,7 @@ def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str)
 
 
 def _origins(search: Search, best: Any) -> dict[str, float]:
-    """Return what has to be added to tracks whose origin is unknown."""
+    """Return the offsets to add to tracks of unknown origin."""
     motion = search.unknowns.motion(best.x, search.film.t)
     off = replace(search.film, adrift=()).off(motion) if motion else search.film.data
     return {TRACKS[k]: -float(np.nanmean(off[:, k])) for k in search.film.adrift}

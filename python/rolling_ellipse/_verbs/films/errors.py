@@ -1,4 +1,4 @@
-"""Standard errors of a fit, and unknowns that the film cannot tell."""
+"""Standard errors of a fit, and unknowns that the film cannot determine."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ import numpy as np
 from ..._ask.check import FloatArray
 from .search import LEAST, Search, decomposed
 
-_FAINT = 25.0  # rise of chi2 from which on a rival does not count
-_APART = 9.0  # rise of chi2 from which on a rival far away does not make a parameter unknown
-_UNEVEN = 0.125  # share of a range over which residuals are not linear
-_FAR = 30.0  # change, over the natural size, from which on a parameter is unknown
-_SAME = 0.1  # rise of the cost that no film tells
-_AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # shares of the way from the guess
+_FAINT = 25.0  # a rival with a larger rise of chi2 does not count
+_APART = 9.0  # a distant rival with a larger rise of chi2 makes no parameter unknown
+_UNEVEN = 0.125  # share of a range over which residuals are nonlinear
+_FAR = 30.0  # a parameter that changes by more than this many natural sizes is unknown
+_SAME = 0.1  # rise of the cost that no film can resolve
+_AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # fractions of the distance from the guess
 
 
 def standard_errors(
     search: Search, best: Any, rivals: list[Any]
 ) -> tuple[FloatArray, FloatArray, list[Any]]:
-    """Return standard errors and covariance of the unknowns, and all solutions on the way.
+    """Return standard errors and covariance of the unknowns, and all solutions found meanwhile.
 
-    Each parameter is moved by three errors, and further, with the others fitted anew: its error
-    grows to the change over the root of the rise of chi2 where that is more. Rivals are other
+    Each parameter is moved by three standard errors, and further, with the others refitted: its
+    error grows to the change over the root of the rise of chi2 if that is larger. Rivals are other
     minima.
     """
     unknowns, rivals = search.unknowns, list(rivals)
@@ -59,9 +59,9 @@ def standard_errors(
 
 
 def _steps_down(search: Search, best: Any, k: int) -> float:
-    """Return twice the largest half, quarter, ... of the range that chi2 does not tell.
+    """Return twice the largest half, quarter, ... of the range that chi2 does not resolve.
 
-    Linearised residuals do not tell restitution near 0, as a hop's height grows by its square.
+    Linearised residuals do not resolve restitution near 0: a hop's height grows with its square.
     """
     reach, rise = search.unknowns.high[k] - search.unknowns.low[k], math.inf
     while rise > 1 and reach > LEAST:

@@ -1,4 +1,4 @@
-"""A film of a motion, and the unknowns of its scene in their natural sizes."""
+"""A film of a motion, and the unknowns of its scene in units of their natural sizes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..simulate import simulate
 TRACKS = ("x", "z", "theta")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
-_FINEST, _COARSEST = 1e-15, 1e15  # sigma over the size of the body: squares stay within doubles
+_FINEST, _COARSEST = 1e-15, 1e15  # sigma over the size of the body: squares stay in range
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Film:
         return np.isfinite(self.data)
 
     def off(self, motion: Trajectory) -> FloatArray:
-        """Return measured minus computed tracks: angles modulo pi, tracks adrift by their mean."""
+        """Return measured minus computed tracks: angles modulo pi; if adrift, minus their mean."""
         off: FloatArray = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         for k in self.adrift:
@@ -47,7 +47,7 @@ class Film:
 
 
 def film_of(t: FloatArray, tracks: dict[str, Any]) -> Film:
-    """Return a user's tracks as a film, or raise errors that name them."""
+    """Return a user's tracks as a film; an error names the wrong one."""
     data = np.full((t.size, len(TRACKS)), math.nan)
     for k, (name, track) in enumerate(tracks.items()):
         if track is not None:
@@ -63,7 +63,7 @@ def sizes_of(scene: Scene) -> FloatArray:
 
 
 def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
-    """Return given standard deviations of the tracks, NaN for those to estimate."""
+    """Return the given standard deviations of the tracks, NaN for those to be estimated."""
     given = dict.fromkeys(TRACKS, math.nan)
     if isinstance(sigma, Mapping):
         distinct("sigma", sigma, TRACKS)
@@ -96,20 +96,20 @@ class Unknowns:
         return changed(self.scene, dict(zip(self.names, (u * self.sizes).tolist(), strict=True)))
 
     def motion(self, u: FloatArray, t: FloatArray) -> Trajectory | None:
-        """Return the motion at the times, or None if there is none until the last of them."""
-        with suppress(ValueError):  # no such scene
+        """Return the motion at the times, or None if it does not reach the last of them."""
+        with suppress(ValueError):  # some unknowns give no valid scene
             motion = simulate(self.scene_at(u), t, raise_on_failure=False)
             return motion if motion.t.size == t.size else None
         return None
 
     def with_values(self, values: Mapping[str, float]) -> FloatArray:
-        """Return the unknowns of the scene with other values of those named."""
+        """Return the scene's unknowns with new values for the named ones."""
         pairs = zip(self.names, self.own * self.sizes, strict=True)
         u: FloatArray = np.array([values.get(name, own) for name, own in pairs]) / self.sizes
         return u
 
     def turned(self, u: FloatArray) -> FloatArray:
-        """Return changes of the unknowns, that of theta without half turns."""
+        """Return changes of the unknowns; that of theta is reduced by half turns."""
         half = math.pi / self.sizes
         whole = np.where(np.array(self.names) == "theta", np.round(u / half), 0.0)
         turned: FloatArray = u - half * whole

@@ -1,4 +1,4 @@
-"""Whether a scene fits a film: deviations of the tracks, and residuals beside their neighbours."""
+"""Whether a scene fits a film: deviations of the tracks, and correlation of neighbour residuals."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from ..._ask.check import FloatArray
 from .film import TRACKS, sizes_of
 from .search import LEAST, Search, decomposed
 
-NORMAL = 1.4826  # standard deviation over the median size, of normal numbers
-TRACKER = 0.02  # deviation over the size of the body, or in rad, of a poor tracker
-_ALARM = 3.5  # no right film of 340 came above 2.99
-_FEWEST = 8  # pairs of neighbours, below which there is no verdict
-_ROUNDING = 1e-8  # deviation over the size, below which residuals are rounding of the motion
-_GAP = 1.5  # time from a frame to its neighbour, over the median time
-_WILD = 5.0  # residual over sigma of a frame that is no noise
-_MANY = 0.2  # share of wild frames of a track from which on they decide
+NORMAL = 1.4826  # standard deviation per median magnitude, for normal noise
+TRACKER = 0.02  # deviation of a poor tracker, relative to the size of the body or in rad
+_ALARM = 3.5  # none of 340 films of the right scene exceeded 2.99
+_FEWEST = 8  # fewer pairs of neighbours give no verdict
+_ROUNDING = 1e-8  # residuals with a smaller deviation over the size are rounding errors
+_GAP = 1.5  # largest time from a frame to its neighbour, over the median
+_WILD = 5.0  # residual over sigma that is not noise
+_MANY = 0.2  # outliers decide if they exceed this share of a track
 _COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: beyond any tracker
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the residuals say about the scene.
+    """What the residuals show about the scene.
 
     Attributes
     ----------
     fits : bool
-        False where the residuals are no noise.
+        False if the residuals are not noise.
     doubtful : bool
-        True where they are that, or larger than those of any tracker.
+        True if they are not noise, or larger than any tracker's.
     likeness : float
         Largest mean product of neighbouring residuals, over their mean square.
     words : tuple of str
@@ -47,8 +47,8 @@ class Verdict:
 def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
     """Return standard deviations of the tracks: the given ones, others from the residuals.
 
-    The unknowns take their share of the data of a track, the trace of its projection. Where there
-    are outliers, the median residual counts.
+    The unknowns use up a share of each track's data, the trace of its projection. If there are
+    outliers, the median residual counts.
     """
     residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
     directions, _, _, known = decomposed(best)
@@ -62,7 +62,7 @@ def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
 
 
 def settled(search: Search, best: Any, given: FloatArray, rounds: int) -> Any:
-    """Return the best solution after rounds in which sigma and the unknowns are fitted in turns."""
+    """Return the best solution after rounds that fit sigma and the unknowns in turn."""
     for _ in range(rounds):
         search.sigma = estimated(search, best, given)
         best = search.best([search.solve(best.x)])
@@ -71,7 +71,7 @@ def settled(search: Search, best: Any, given: FloatArray, rounds: int) -> Any:
 
 
 def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
-    """Return the standard deviation of residuals of which unknowns have taken some."""
+    """Return the standard deviation of residuals, with degrees of freedom reduced by `taken`."""
     left = max(residuals.size - taken.sum(), 1.0)
     if loss == "linear":
         return math.sqrt(float(np.sum(residuals**2)) / left)
@@ -79,7 +79,7 @@ def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
 
 
 def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the residuals of a track that have a next one, and these; missing frames part them."""
+    """Return the residuals of a track that have a next one, and the next ones, without gaps."""
     steps = np.diff(t)
     near = steps < _GAP * np.median(steps) if steps.size else np.zeros(0, dtype=bool)
     pair = near & np.isfinite(off[:-1]) & np.isfinite(off[1:])
@@ -90,8 +90,8 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
     """Return whether the scene fits the film.
 
     T = sqrt(P) sum r r' / sum (r^2 + r'^2)/2 over the P pairs of neighbouring residuals r, r' of a
-    track is a normal number where residuals are noise. Their mean stays in: a ground that is
-    shifted has residuals of one sign. Residuals of outliers count as `search.loss` weighs them.
+    track is normally distributed if residuals are noise. Their mean is not removed: a shifted
+    ground gives residuals of one sign. Residuals of outliers count as `search.loss` weighs them.
     """
     film, off = search.film, np.full(search.film.data.shape, math.nan)
     off[film.known] = search.residuals(best.x)
@@ -126,12 +126,12 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
 
 
 def _weighed(loss: str, off: FloatArray) -> FloatArray:
-    """Return residuals over sigma; where the loss is for outliers, it grows no more from 1 on."""
+    """Return residuals over sigma; for a robust loss, they saturate at about 1."""
     return off if loss == "linear" else off / np.sqrt(1 + off**2)
 
 
 def widened(verdict: Verdict) -> float:
-    """Return the factor of errors from residuals that are alike; it is an estimate only."""
+    """Return the factor by which correlated residuals widen errors; it is only an estimate."""
     alike = min(verdict.likeness, 0.98)
     return 1.0 if verdict.fits else math.sqrt((1 + alike) / (1 - alike))
 
@@ -143,7 +143,7 @@ def _printed(name: str, sigma: float) -> str:
 
 
 def counted(search: Search, residuals: FloatArray, given: FloatArray) -> str:
-    """Return the number of data, with chi2 of given deviations or the estimated ones."""
+    """Return the number of data in words, with chi2 for given deviations or the estimated ones."""
     film, chi2 = search.film, float(np.sum(residuals**2))
     dof = residuals.size - len(search.unknowns.names)
     words = [f"{residuals.size} data"]

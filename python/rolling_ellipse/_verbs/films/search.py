@@ -1,4 +1,4 @@
-"""Least squares from many starts: the best of the minima of a rough function."""
+"""Least squares from many starts: the best minimum of a rough function."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .film import Film, Unknowns
 from .starts import Box, cell, starts
 
 cost = attrgetter("cost")  # by which SciPy's solutions are compared
-LEAST = 1e-9  # smallest singular value, over the largest, that the data can tell
-_SHARES = 0.3, 0.6, 1.0  # of the film that are fitted in turn
-_TRIED = 30  # starts that are fitted
+LEAST = 1e-9  # smallest singular value, relative to the largest, that the data can resolve
+_SHARES = 0.3, 0.6, 1.0  # shares of the film that are fitted in turn
+_TRIED = 30  # number of starts that are fitted
 _HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
-_WORSE = 1.1, 50.0  # ratio and rise of the cost up to which the search goes on in a cell
-_IMPOSSIBLE = 1e3  # residual of a scene that cannot be, over the largest one of a body at rest
+_WORSE = 1.1, 50.0  # largest ratio and rise of the cost for which the search continues in a cell
+_IMPOSSIBLE = 1e3  # residual of an impossible scene, relative to the largest of a body at rest
 _EXACT: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-10)
 _EXACT |= {"max_nfev": 100, "jac": "3-point"}
 _ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
@@ -31,7 +31,7 @@ class Search:
     def __init__(self, film: Film, unknowns: Unknowns, sigma: FloatArray, loss: str) -> None:
         self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
         self.film, self.unknowns, self.sigma, self.loss = film, unknowns, sigma, loss
-        self.track = np.nonzero(film.known)[1]  # of each datum
+        self.track = np.nonzero(film.known)[1]  # track of each datum
         far = np.abs(film.data) + max(unknowns.scene.a, unknowns.scene.b)
         self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
 
@@ -81,9 +81,9 @@ class Search:
         return sorted(best.values(), key=cost)
 
     def best(self, minima: list[Any]) -> Any:
-        """Return the best of minima around those of a list that are nearly as good as its first.
+        """Return the best minimum around those of a list that are nearly as good as the first.
 
-        chi2 has kinks where the order of events changes, and many a minimum between them.
+        chi2 has kinks where the order of events changes, and many minima between them.
         """
         random, limit = np.random.default_rng(0), _WORSE[0] * minima[0].cost + _WORSE[1]
         close = [one for one in minima if one.cost < limit]
@@ -92,7 +92,7 @@ class Search:
         return min(self.solve(best.x, exact=True), best, key=cost)
 
     def _hopped(self, start: Any, random: np.random.Generator) -> Any:
-        """Return the best of solutions from normal numbers around one, if its motion has events."""
+        """Return the best solution from starts scattered around one, if its motion has events."""
         motion = self.unknowns.motion(start.x, self.film.t)
         if motion is None or not motion.events:
             return start
@@ -105,15 +105,15 @@ class Search:
         return best
 
     def _distance(self, residuals: FloatArray) -> float:
-        """Return the sum of orders of magnitude, to which a wild frame adds little."""
+        """Return a sum of logarithms, to which an outlier adds little."""
         return float(np.log1p(residuals**2).sum())
 
 
 def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return the singular values of the residuals' Jacobian, and which of them the data tell.
+    """Return the singular value decomposition of the residuals' Jacobian, and which values count.
 
-    They stand between their vectors in the space of the data, as columns, and of the unknowns, as
-    rows.
+    The order is: vectors in the space of the data, as columns; singular values; vectors in the
+    space of the unknowns, as rows; and which singular values the data resolve.
     """
     data, singular, axes = np.linalg.svd(one.jac, full_matrices=False)
     return data, singular, axes, singular > LEAST * singular[0]

@@ -1,4 +1,4 @@
-"""Starts of a fit: places and velocities from the first frames, coefficients from a grid."""
+"""Starting points of a fit: the first frames give positions and velocities, a grid coefficients."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from ..._core import Mode
 from .film import TRACKS as PLACES
 from .film import Film, Unknowns
 
-Box = tuple[FloatArray, FloatArray]  # least and largest unknowns
+Box = tuple[FloatArray, FloatArray]  # lower and upper bounds of the unknowns
 _GRID = {
     "friction": tuple(0.03 * 1.4**k for k in range(11)),
     "restitution": (0.2, 0.5, 0.8),
-    "inertia": (0.5, 1.0, 2.0),  # over the first guess
+    "inertia": (0.5, 1.0, 2.0),  # relative to the first guess
     "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
 }
-_CELL = 1.3  # from a friction of the grid to the ends of its cell, which overlaps the next ones
-_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames of the first pre-fit, ratio to the next, and last
-_WEIGHINGS = 20  # rounds of reweighting, in each of which wild frames lose weight
-_SPINS = 4000  # most angular velocities of a periodogram
+_CELL = 1.3  # ratio of a cell's ends to its friction on the grid; cells overlap
+_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames: of the first pre-fit, growth factor, maximum
+_WEIGHINGS = 20  # rounds of reweighting, each of which lowers the weight of outliers
+_SPINS = 4000  # largest number of angular velocities in a periodogram
 
 
 def starts(film: Film, unknowns: Unknowns) -> Iterator[tuple[FloatArray, Box]]:
     """Yield starts with equal coefficients, (n, k), and the box in which a fit from them stays.
 
     They are the scene's own, and pre-fits of more and more frames. Friction stays in a cell of its
-    grid: where it is large enough for the body to stick, no film tells how large it is, and a step
-    that overshoots would not come back.
+    grid: where it is large enough for the body to stick, no film can determine it, and a step that
+    overshoots would not come back.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):
@@ -59,7 +59,7 @@ def cell(unknowns: Unknowns, u: FloatArray) -> Box:
 
 
 def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
-    """Return other values to try, by places of unknowns."""
+    """Return other values to try, by index of the unknown."""
     grid = {}
     for k, name in enumerate(unknowns.names):
         if name in _GRID and not (name == "theta" and film.known[:, 2].any()):
@@ -69,7 +69,7 @@ def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
 
 
 def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
-    """Return places and velocities at t = 0, as if nothing happened in the first frames.
+    """Return positions and velocities at t = 0, as if there were no events in the first frames.
 
     After a blow the velocities are not those of the scene.
     """
@@ -100,9 +100,9 @@ def _known(unknowns: Unknowns, *names: str) -> dict[str, float | None]:
 def _line(
     values: FloatArray, powers: FloatArray, known: dict[str, float | None]
 ) -> dict[str, float]:
-    """Return the unknown ones of the coefficients, named in the order of powers of time.
+    """Return the unknown coefficients; `known` names all of them, in ascending powers of time.
 
-    The sum of absolute residuals is least, so that a wild frame decides nothing.
+    The sum of absolute residuals is minimised, so that an outlier decides nothing.
     """
     free = [name for name, value in known.items() if value is None]
     of_free = [k for k, value in enumerate(known.values()) if value is None]
@@ -123,13 +123,13 @@ def _line(
 def _spin(t: FloatArray, theta: FloatArray, unknowns: Unknowns) -> dict[str, float]:
     """Return the line through angles modulo half turns, from the peak of their periodogram.
 
-    A frame that is off by a quarter turn takes 2 from the height n of the peak, no more.
+    A frame that is off by a quarter turn lowers the peak, of height n, by only 2.
     """
     known = _known(unknowns, "theta", "omega")
     angle, omega = known.values()
     spins = np.array([omega or 0.0])
     if omega is None:
-        fastest = math.pi / 2 / np.median(np.diff(t))  # above, frames do not tell it
+        fastest = math.pi / 2 / np.median(np.diff(t))  # frames cannot resolve a faster one
         count = 8 * math.ceil(np.ptp(t) * fastest / math.pi) + 1
         spins = np.linspace(-fastest, fastest, min(count, _SPINS))
     sums = np.exp(2j * (theta - spins[:, None] * t)).sum(axis=1)

@@ -1,4 +1,4 @@
-"""The race: every contender at every setting, judged once, then timed in turns.
+"""The race: every contender at every setting, judged once, then timed in turn.
 
 Contenders are the package's own methods, `flow`, and peers, behind one interface.
 """
@@ -38,9 +38,9 @@ TOLERANCES, STEPS = "tolerances", "steps"
 
 _RELATIVE = 100.0  # rtol over atol
 _TOLERANCES = [10.0**-k for k in range(2, 15)]
-_MOST = 1_000_000  # rounds, samples
+_MOST = 1_000_000  # largest number of rounds or samples
 _JUDGING = 0.6  # share of max_seconds in which every run is made once
-_SHORTEST = 1e-3  # of a timing [s]: shorter calls are repeated
+_SHORTEST = 1e-3  # shortest timing [s]: shorter calls are repeated
 _POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 and more
 _HELD = ("ROLLING", "REST")
 _PAIRS = ("dop853", "dopri5", "auto")
@@ -54,9 +54,9 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer, by the protocol of peers; its call may also have `advice` on its answer."""
+    """A method or peer with the interface of peers; its call may have `advice` on its answer."""
 
-    run: Run  # its name, model, method, stabilization and tags
+    run: Run  # name, model, method, stabilization and tags
     ladder: str | None  # None: it has no setting
     prepare: Callable[[Scene, float, float], Any]
 
@@ -77,7 +77,7 @@ class _Simulation:
         self, arguments: dict[str, Any], ladder: str | None, scene: Scene, t_end: float,
         setting: float,
     ) -> None:  # fmt: skip
-        self.scene = replace(scene)  # a new scene, so that its own set-up is timed again
+        self.scene = replace(scene)  # a new scene, so that its set-up is timed again
         how = {TOLERANCES: {"rtol": setting, "atol": setting / _RELATIVE}, STEPS: {"step": setting}}
         given = arguments | how.get(ladder or "", {})
         self.settings = tuple((DEFAULTS.__getstate__() | given).values())
@@ -88,7 +88,7 @@ class _Simulation:
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
     def sample(self, times: FloatArray) -> Trajectory:
-        """Do all that `simulate` does except warn."""
+        """Do everything that `simulate` does except warn."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise IntegrationError(motion)
@@ -101,7 +101,7 @@ class _Simulation:
 
 
 def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
-    """Return the contenders that `methods` names, or by default those that suit the scene."""
+    """Return the contenders named by `methods`, or by default those that suit the scene."""
     if methods is None:
         methods = _suitable(scene, rolls)
     elif isinstance(methods, str):
@@ -115,13 +115,13 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
     if not (scene.slope or rolls):
-        return ("contact", "exact")  # "exact" shows that a model without slip has no answer
+        return ("contact", "exact")  # "exact" shows that a model without slip gives no answer
     first = ("contact", "flow") if scene.slope else ("flow",)
     return (*first, "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
 
 
 def _own(spec: Any) -> Contender:
-    """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
+    """Return the contender for "flow", a method, "model/method/stabilization", or a mapping."""
     if isinstance(spec, str) and (name := spec.casefold()) == "flow":
         run = Run(name, "rolling", "exact", "", tags=("own", "exact"))
         return Contender(run, None, _prepared_flow)
@@ -161,7 +161,7 @@ def _named(name: str) -> dict[str, Any]:
 
 
 def of_peer(peer: Any) -> Contender:
-    """Return the contender of a peer, or raise TypeError if it has no name or no `prepare`."""
+    """Return the contender for a peer, or raise TypeError if it has no name or no `prepare`."""
     name = getattr(peer, "name", None)
     if not isinstance(name, str) or not callable(getattr(peer, "prepare", None)):
         raise TypeError(f"peers must have a name and a function prepare, got {shown(peer)}")
@@ -174,7 +174,7 @@ def default_steps(scene: Scene, t_end: float) -> list[float]:
     """Return steps from a quarter to a 2048th of a half turn or half swing, up to `t_end` [s]."""
     try:
         half = period(scene) / 2
-    except ValueError:  # a slope, or no rolling
+    except ValueError:  # on a slope, or if the body does not roll
         half = math.inf
     if not math.isfinite(half):
         half = math.pi * math.sqrt(max(scene.a, scene.b) / scene.gravity)
@@ -190,8 +190,8 @@ def work_precision(
     """Compute one motion by many methods, and compare the errors reached and the times taken.
 
     Every method runs at every setting of its ladder. Each run is judged once, against the exact
-    motion. Then all are timed in rounds, in turns, so that other load of the machine disturbs all
-    alike; the least time of each counts. A run that is refused, stops early or is not made for want
+    motion. Then all are timed in turn, in rounds, so that other load on the machine affects all
+    alike; the least time of each counts. A run that is refused, stops early or is not made for lack
     of time stays among the runs, with its reason.
 
     Parameters
@@ -203,21 +203,21 @@ def work_precision(
         Methods of the package: "flow" (the function, exact); names of methods of the model
         "rolling" ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like;
         or mappings of arguments of `simulate` (and "name"), as {"method": "gauss", "stages": 2}.
-        Default: all that suit the scene. An empty sequence leaves the peers alone.
+        Default: all that suit the scene. With an empty sequence only peers race.
     tolerances : sequence of float, optional
-        rtol of methods that control their error, atol is a hundredth; default 1e-2 … 1e-14.
+        rtol of methods that control their error; atol is a hundredth of it; default 1e-2 … 1e-14.
     steps : sequence of float, optional
         Steps of the other methods [s]; default: a quarter to a 2048th of a half turn or swing.
     samples : int
         Number of irregular times at which the errors "l2" and "linf" are taken. The larger of
-        "linf" and the error at the end is what counts.
+        "linf" and the error at the end counts.
     rounds : int
-        Number of timings of each run; a slow run has fewer, as `max_seconds` allows.
+        Number of timings of each run; a slow run has fewer, within `max_seconds`.
     max_seconds : float
         Time for all runs [s], in equal shares; unused time is left to the others. Each method runs
-        at its coarsest setting, and at finer ones as long as its share lasts. A call that has
-        begun is not cut, and takes nothing from the others' shares. Not counted are the reference,
-        and the set-up: `prepare`, and what a first call takes longer (compiling, loading).
+        at its coarsest setting, and at finer ones as long as its share lasts. A running call is not
+        interrupted, and takes nothing from the others' shares. The reference is not counted, nor is
+        set-up: `prepare`, and the extra time of a first call (compiling, loading).
     peers : sequence
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
         returns a function without arguments that returns theta, omega, x at the end. They may have
@@ -229,12 +229,12 @@ def work_precision(
         Function of increasing times that returns theta, omega, x, in any arithmetic. Default:
         exact rolling, or the contact motion; errors below its own error cannot be resolved.
     progress : bool or callable
-        As of `simulate_many`; counts runs.
+        As for `simulate_many`; counts runs.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong; it is named. If the motion ends before `t_end`.
+        If an argument is wrong (the message names it), or the motion ends before `t_end`.
 
     Notes
     -----
@@ -271,7 +271,7 @@ def work_precision(
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:
         spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
-    # one call that took longer than all of that time takes none of the rest
+    # a call that took longer than all of that time leaves the rest untouched
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,
@@ -304,14 +304,14 @@ class _Attempt:
         self.contender, self.judge = contender, judge
         self.run = replace(contender.run, setting=setting, t_end=judge.t_end)
         self.call: Any = None  # the timed call; None before the first answer
-        self.setup = self.spent = 0.0  # time of `judge_once` [s]: its set-up, and the rest
+        self.setup = self.spent = 0.0  # time of `judge_once` [s]: set-up, and the rest
         self.times: list[float] = []  # [s]
 
     def note(self, status: str, reason: str, **figures: Any) -> None:
         self.run = replace(self.run, status=status, reason=reason, **figures)
 
     def judge_once(self) -> None:
-        """Set it up, run it and judge it; a failure is kept as its status."""
+        """Set up, run and judge the contender; a failure is kept as its status."""
         start = time.perf_counter()
         try:
             self._judge()
@@ -343,7 +343,7 @@ class _Attempt:
         self.call, self.repeats = call, 1 + int(_SHORTEST / self.once)  # calls in one timing
 
     def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
-        """Return the time of a second call and its answer; a longer first call is set-up."""
+        """Return the time of a second call and its answer; a longer first call includes set-up."""
         start = time.perf_counter()
         call()
         middle = time.perf_counter()
@@ -353,7 +353,7 @@ class _Attempt:
         return second, answer
 
     def expected(self, setting: float) -> float:
-        """Return how long being judged at a finer setting may take, without set-up [s]."""
+        """Return the estimated time of judging a finer setting, without set-up [s]."""
         power = 1.0 if self.contender.ladder == STEPS else _POWER_OF_TOLERANCES
         return self.spent * math.pow(self.run.setting / setting, power)
 
@@ -376,8 +376,8 @@ def _judge_all(
 ) -> float:
     """Judge the attempts that `seconds` allow, and return the time spent on them [s].
 
-    The coarsest settings of all ladders come first, then the second ones, and so on. Only a
-    coarsest attempt is always made. Any other is made if its ladder keeps within an equal share
+    The coarsest settings of all ladders come first, then the second ones, and so on. Only the
+    coarsest attempts are always made. Any other is made if its ladder stays within an equal share
     of `seconds`, or if it fits into the time that is left; if not, the ladder ends there.
     """
     share, spent, done = seconds / len(ladders), 0.0, 0
@@ -401,10 +401,10 @@ def _judge_all(
 
 
 def _time_in_turns(attempts: Sequence[_Attempt], rounds: int, seconds: float) -> None:
-    """Time all attempts that have an answer once, and in later rounds as `seconds` allow.
+    """Time all attempts that have an answer once, and again in later rounds within `seconds`.
 
-    A later timing is made if it costs at most an equal share of the time that is left for all
-    timings still to come, the cheapest ones first.
+    A later timing is made if it costs at most an equal share of the time left for all remaining
+    timings, the cheapest ones first.
     """
     able = [attempt for attempt in attempts if attempt.call is not None]
     able.sort(key=lambda attempt: attempt.repeats * attempt.once)

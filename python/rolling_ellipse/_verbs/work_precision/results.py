@@ -25,25 +25,25 @@ if TYPE_CHECKING:
     from ..._pictures.work_precision import WorkPrecisionChart
 
 _SCHEMA = 2
-_RUNS = 2  # depth of the runs in a file, one a line
+_RUNS = 2  # depth of the runs in a file, one per line
 _DECADES = tuple(10.0**-k for k in range(2, 15))
-_POOR = 1e-2  # a contender whose answers all err more is in the table of gaps
+_POOR = 1e-2  # a contender whose answers all have larger errors is in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
 
 
 @dataclass(frozen=True)
 class Gap:
-    """Runs of one contender that have the same status, which is not an answer, or a poor one."""
+    """Runs of one contender with the same status, which have no answer or a poor one."""
 
     name: str
-    settings: str  # of these runs
-    runs: int  # their number
+    settings: str  # settings of these runs
+    runs: int  # number of these runs
     answers: int  # number of the contender's runs that have an answer
-    status: str  # as of `Run`; "COMPLETED" where all answers are poor
-    reason: str  # of the first of these runs
+    status: str  # as in `Run`; "COMPLETED" if all answers are poor
+    reason: str  # reason of the first of these runs
 
     def row(self) -> Row:
-        """Return the cells of a row of the table."""
+        """Return the cells of its row in the table."""
         status = "" if self.status in (COMPLETED, NOT_RUN) else f"{self.status}, "
         return self.name, self.settings, status + self.reason
 
@@ -60,7 +60,7 @@ class Gaps(tuple[Gap, ...]):
         return html_table("", [gap.row() for gap in self], _HEAD)
 
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each gap."""
+        """Return a pandas DataFrame (``rolling_ellipse[data]``) with one row per gap."""
         frame: DataFrame = required("pandas", "to_dataframe").DataFrame(map(asdict, self))
         return frame
 
@@ -71,18 +71,18 @@ class WorkPrecision:
 
     In its methods `x` is the name of an error: "largest", "final", "l2", "linf", "energy", "gap" or
     "slip"; `y` that of a cost: "time", "samples_time", "setup", "spread", "steps", "rejected",
-    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; a
-    ValueError refuses any other.
+    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; any
+    other raises ValueError.
 
     Attributes
     ----------
     scene : Scene
     runs : tuple of Run
-        All runs, also those without an answer.
+        All runs, including those without an answer.
     references : tuple of Reference
-        The true motion's source and error, one for each end.
+        Source and error of the true motion, one for each end.
     machine : dict of str
-        Processor, compiler and flags, versions, date, rounds made.
+        Processor, compiler and flags, versions, date, number of rounds.
     """
 
     scene: Scene
@@ -92,7 +92,7 @@ class WorkPrecision:
 
     @property
     def reference(self) -> Reference:
-        """The reference of the last end."""
+        """The reference for the last end."""
         return self.references[-1]
 
     @property
@@ -101,7 +101,7 @@ class WorkPrecision:
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
-        """Return the runs to one end [s]."""
+        """Return the runs up to one end [s]."""
         end = self.judged_by(t_end).t_end
         return tuple(run for run in self.runs if run.t_end == end)
 
@@ -117,7 +117,7 @@ class WorkPrecision:
     def least(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
-        """Return by name the least `y` of each method that reaches an error of at most `at`."""
+        """Return, by name, the least `y` of each method that reaches an error of at most `at`."""
         able = by_name(self._able(at, x, y, t_end))
         return {name: min(run.value(y) for run in runs) for name, runs in able.items()}
 
@@ -126,7 +126,7 @@ class WorkPrecision:
     ) -> tuple[str, ...]:
         """Return the names of methods that might still reach an error of at most `at`.
 
-        They have not reached it, and were not run at all settings for want of time.
+        They have not reached it, and were not run at all settings for lack of time.
         """
         reached = self.least(at, x=x, y=y, t_end=t_end)
         late = by_name(run for run in self.of(t_end) if run.status == NOT_RUN)
@@ -136,10 +136,10 @@ class WorkPrecision:
         self, margin: float = 1.2, *, x: str = "largest", y: str = "time",
         t_end: float | None = None,
     ) -> dict[str, tuple[float, ...]]:  # fmt: skip
-        """Return by name the decades of the error, 1e-2 … 1e-14, at which a method is unbeaten.
+        """Return, by name, the decades of the error, 1e-2 … 1e-14, at which a method is unbeaten.
 
-        No other is faster by more than a factor of `margin`, at least 1. Decades that a method
-        might still reach (`not_run`) are left out.
+        There no other is faster by more than a factor of `margin`, at least 1. Decades that a
+        method might still reach (`not_run`) are left out.
         """
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
@@ -154,7 +154,7 @@ class WorkPrecision:
         return leads
 
     def verdict(self, *, t_end: float | None = None) -> str:
-        """Summarise which method is fastest at each error level, by which factor, and which fail.
+        """Summarise which method is fastest at each error level, by what factor, and which fail.
 
         The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
@@ -180,7 +180,7 @@ class WorkPrecision:
                 continue
             first, *others = sorted(least, key=least.__getitem__)
             rival = next((name for name in others if method[name] != method[first]), "")
-            is_open = self.not_run(decade, t_end=t_end) != ()  # others might still be faster
+            is_open = self.not_run(decade, t_end=t_end) != ()  # others might turn out faster
             ranked.append((decade, (first, is_open), rival, least))
         for (name, is_open), rows in groupby(ranked, itemgetter(1)):
             held = list(rows)
@@ -207,7 +207,7 @@ class WorkPrecision:
     def gaps(self, *, t_end: float | None = None) -> Gaps:
         """Return the table of the runs that failed, were refused or were not run, with reasons.
 
-        Contenders whose answers all err by more than 1e-2 are there, too. It prints as a table, and
+        Contenders whose answers all have errors above 1e-2 are included. It prints as a table, and
         has `to_dataframe`.
         """
         rows = []
@@ -236,10 +236,10 @@ class WorkPrecision:
     ) -> WorkPrecisionChart:  # fmt: skip
         """Draw a cost over an error, both on logarithmic axes, and return the artists.
 
-        Two camps stand out: the contenders of `highlight` and all others. The two strong lines
-        with steps are their fronts, the least `y` for every error, and arrows have the factors
-        between them. Thin lines join the runs of each contender. Errors above 10 are no answers,
-        and out of view; those below what can be attained, or judged, are drawn there.
+        Two camps stand out: the contenders of `highlight` and all others. Bold stepped lines are
+        their fronts, the least `y` for every error, and arrows show the factors between them. Thin
+        lines join the runs of each contender. Errors above 10 are not answers, and out of view;
+        those below what can be attained, or judged, are drawn at that limit.
 
         Parameters
         ----------
@@ -248,19 +248,19 @@ class WorkPrecision:
         tags : sequence of str, optional
             Draw only contenders with one of these tags (or names).
         ax : matplotlib Axes, optional
-            Axes to draw into; default: those of a new pyplot figure, which has the table of `gaps`
-            where it fits, and the machine.
+            Axes to draw into; default: those of a new pyplot figure, which also shows the table of
+            `gaps`, if it fits, and the machine.
         highlight : sequence of str, optional
-            Names or tags of the first camp. Default: the package's own methods beside peers, else
-            the exact ones.
+            Names or tags of the first camp. Default: the package's own methods if there are peers,
+            else the exact ones.
         by : {"library"}, optional
             Draw a small chart for each library instead, all with the same axes: for twenty
-            contenders and more. A peer's library is the first word of its name.
+            contenders or more. A peer's library is the first word of its name.
 
         Raises
         ------
         ValueError
-            If an argument is not as above; names that are not in the race are refused with all
+            If an argument is not as above; for names that are not in the race the message lists all
             valid ones.
         """
         from ..._pictures.work_precision import draw
@@ -268,7 +268,7 @@ class WorkPrecision:
         return draw(self, x, y, tags, ax, highlight, by, t_end)
 
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each run."""
+        """Return a pandas DataFrame (``rolling_ellipse[data]``) with one row per run."""
         pandas = required("pandas", "to_dataframe")
         errors = ({name: run.value(name) for name in ERRORS} for run in self.runs)
         rows = [asdict(run) | {"tags": " ".join(run.tags)} for run in self.runs]
@@ -276,7 +276,7 @@ class WorkPrecision:
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a file of JSON, a run a line, which appears whole or not at all."""
+        """Write everything to a JSON file, one run per line, which appears whole or not at all."""
         name = file_name("path", path)
         text = in_lines(self._about(), _RUNS)
         self._restored(text.encode())
@@ -315,7 +315,7 @@ class WorkPrecision:
         return [run for run in runs if max(run.value(x), floor) <= at]
 
     def judged_by(self, t_end: float | None) -> Reference:
-        """Return the reference of the runs to one end [s]."""
+        """Return the reference for the runs up to one end [s]."""
         ends = [reference.t_end for reference in self.references]
         if t_end is not None and t_end not in ends:
             listed = ", ".join(map(repr, ends))
@@ -328,7 +328,7 @@ class WorkPrecision:
 
     @classmethod
     def _restored(cls, content: bytes) -> WorkPrecision:
-        """Return the race of a text, if `save` would write the same text for it."""
+        """Return the race stored in a text, if `save` would write the same text for it."""
         about = parsed("the file", content.decode("utf-8"))
         if (schema := about.get("schema")) != _SCHEMA:
             raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")

@@ -1,6 +1,6 @@
 """Runs of a race, their errors, the reference that judges them, and their values in JSON.
 
-JSON has no NaN and no infinite numbers: they are null and the text "inf".
+JSON has no NaN and no infinite numbers: they become null and the text "inf".
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _Record = TypeVar("_Record")
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a run; NaN where a run has no such answer.
+    """Errors of a run; NaN if the run has no such answer.
 
     The error of a state is the largest of those of theta [rad], of omega over the largest |omega|
     of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
-    the end, or at the end alone for a run without samples. Gap and slip are those of a body that
-    touches and does not slide, over the longer semi-axis, and over that and the largest |omega|.
+    the end, or only at the end for a run without samples. Gap and slip are those of a body that
+    touches and does not slide, over the longer semi-axis, and over that times the largest |omega|.
     """
 
     final: float = math.nan  # error of the state at the end
@@ -45,21 +45,21 @@ class Run:
     """One contender at one setting, with its cost and its errors."""
 
     name: str
-    model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
+    model: str  # model, method and stabilization of `simulate`; for a peer "rolling", its name, ""
     method: str
     stabilization: str
-    setting: float = math.nan  # relative tolerance, or step [s]; NaN of a contender without any
+    setting: float = math.nan  # relative tolerance, or step [s]; NaN if it has neither
     errors: Errors = Errors()
-    time: float = math.nan  # least of a call that returns the state at the end [s]
-    setup: float = math.nan  # cost of a new scene, with the first call's longer time [s]
-    spread: float = math.nan  # median of the times over the least, less 1; NaN of a single timing
-    steps: int = 0  # of that call, as the next two; 0 where unknown
+    time: float = math.nan  # shortest time of a call that returns the state at the end [s]
+    setup: float = math.nan  # cost of a new scene, with the extra time of a first call [s]
+    spread: float = math.nan  # median of the times over the least, minus 1; NaN for a single timing
+    steps: int = 0  # number in that call, as are the next two; 0 if unknown
     rejected: int = 0
     evaluations: int = 0  # evaluations of the right-hand side
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
     reason: str = ""  # why it has no answer, or a warning about its answer
     tags: tuple[str, ...] = ()  # "own" or "peer", and others
-    samples_time: float = math.nan  # time of a call that returns the states at all sample times [s]
+    samples_time: float = math.nan  # time of a call for the states at all sample times [s]
     t_end: float = math.nan  # [s]
 
     @property
@@ -68,7 +68,7 @@ class Run:
         return self.status == COMPLETED
 
     def value(self, quantity: str) -> float:
-        """Return one of its errors or figures by name."""
+        """Return one of its errors or other figures by name."""
         return float(getattr(self.errors if quantity in ERRORS else self, quantity))
 
 
@@ -76,20 +76,20 @@ class Run:
 class Reference:
     """Source and error of the true motion by which the runs up to one end are judged.
 
-    `attainable` is the change of the state at the end by a relative change of 2.2e-16 of every
-    number of the scene, one after the other, and by two units in its last place: no computation
-    with doubles can promise less. It is NaN if the motion of a given reference goes on longer than
-    the package's.
+    `attainable` is the change of the state at the end due to a relative change of 2.2e-16 of every
+    number of the scene, one after the other, plus two units in its last place: no computation with
+    doubles can promise less. It is NaN if the motion of a given reference lasts longer than the
+    package's.
     """
 
     name: str  # source of the true motion
     t_end: float  # [s]
     floor: float  # its own error, as a `final` error: smaller ones cannot be resolved
     attainable: float
-    growth: float = 1.0  # factor of both at the worst of the sample times over the end; at least 1
+    growth: float = 1.0  # factor of both at the worst sample time, relative to the end; at least 1
 
     def limits(self, error: str) -> tuple[float, float]:
-        """Return floor and attainable for an error, by its name; 0 if it is not of the state."""
+        """Return floor and attainable for an error by name; 0 if it is not one of the state."""
         if error not in OF_STATES:
             return 0.0, 0.0
         factor = 1.0 if error == "final" else self.growth
@@ -105,7 +105,7 @@ def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
 
 
 def plain(value: Any) -> Any:
-    """Return nested records, as of `asdict`, in the values of JSON."""
+    """Return nested records, as from `asdict`, in JSON values."""
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     if isinstance(value, dict):
@@ -116,7 +116,7 @@ def plain(value: Any) -> Any:
 
 
 def read(kind: type[_Record], values: Any) -> _Record:
-    """Return a dataclass of this kind out of what `plain` makes of it."""
+    """Return a dataclass of this kind from the output of `plain`."""
     require_names(f"a {kind.__name__}", values, field_names(kind))
     return kind(**{each.name: _value(str(each.type), values[each.name]) for each in fields(kind)})  # type: ignore[arg-type]
 

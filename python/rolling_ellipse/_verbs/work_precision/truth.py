@@ -1,4 +1,4 @@
-"""The true motion of a race, its own error, the attainable error, and the errors of runs."""
+"""The true motion of a race, its error, the attainable error, and the errors of runs."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ Truth = Callable[[FloatArray], Columns]
 _INEXACT = [each.name for each in fields(Scene) if each.name not in ("mass", "x", "impulse")]
 _ROUNDING = 2.2e-16
 _CHANGE = 2.0**-42  # a thousand roundings: neither rounding nor the square of the change matters
-_MOST = 500  # times at which the attainable error is computed
-_GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples modulo 1 are no simple parts of any period
+_MOST = 500  # maximum number of times at which the attainable error is computed
+_GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples modulo 1 are not simple fractions of any period
 
 
 class Judge:
@@ -39,7 +39,7 @@ class Judge:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
         self.scene, self.t_end = scene, t_end
-        # units: own error over the attainable one, as the test suite bounds it by tables of 30 and
+        # units: error over the attainable one, as bounded by the test suite with tables of 30 and
         # more digits
         name, units, motion = "contact motion at rounding level", 8, _contact
         if rolls_for_certain(scene):
@@ -67,7 +67,7 @@ class Judge:
         self.reference = Reference(name, t_end, floor, attainable, growth)
 
     def errors(self, sampled: Any, end: tuple[float, float, float]) -> Errors:
-        """Return the errors of a motion at `times` (None: samples are not known) and at its end."""
+        """Return the errors of a motion at `times` (None: samples are unknown) and at its end."""
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
         if sampled is None:
             return Errors(final=final)
@@ -93,7 +93,7 @@ class Judge:
     def _apart(self, states: Any, exact: Any) -> FloatArray:
         """Return the differences of theta, omega and x over their sizes, (3, n).
 
-        They are subtracted first: the truth may have more digits than doubles.
+        The subtraction comes first, since the truth may be more precise than doubles.
         """
         return np.array(
             [
@@ -105,8 +105,8 @@ class Judge:
     def _attainable(self, motion: Callable[[Scene, FloatArray], Columns]) -> FloatArray:
         """Return the attainable error at up to `_MOST` of the times, the end last, (n,).
 
-        Derivatives by the numbers of the scene are central differences, or one-sided where one
-        of the changed scenes has no motion. NaN if the given reference outlasts the motion.
+        Derivatives by the numbers of the scene are central differences, or one-sided if one of
+        the changed scenes has no motion. NaN if the given reference outlasts the motion.
         """
         places = np.unique(np.linspace(1, self.times.size - 1, _MOST).round().astype(int))
         times = self.times[places]
@@ -122,7 +122,7 @@ class Judge:
         for name in _INEXACT:
             value: Any = getattr(scene, name) or 0.0
             change = _CHANGE * (max(1.0, abs(value)) if name == "theta" else value)
-            share = change if name == "theta" else _CHANGE  # of the number's size
+            share = change if name == "theta" else _CHANGE  # relative to the number
             if change == 0 or not math.isfinite(change):
                 continue
             sides = []
@@ -160,7 +160,7 @@ def _contact(scene: Scene, times: FloatArray) -> Columns:
 
 
 def rolls_for_certain(scene: Scene) -> bool:
-    """Whether the body is proved to roll for ever on level ground."""
+    """Whether the body is proved to roll forever on level ground."""
     return scene.slope == 0 and certify(scene).validity is Validity.VALID
 
 

@@ -1,7 +1,7 @@
-"""Adapters of physics engines, which are installed beside the package.
+"""Adapters for physics engines, which are installed alongside the package.
 
 Each module has ``simulate(problem, times, setting)`` for `benchmark.run`; the setting is the time
-step [s], and an id or a `Scene` may stand in place of the problem.
+step [s], and the problem may also be an id or a `Scene`.
 """
 
 from collections.abc import Callable
@@ -23,13 +23,13 @@ Run = tuple[Any, ...]  # what `start` of `engine` returns
 def engine(start: Callable[..., Run]) -> Callable[..., Result]:
     """Return `simulate` of an engine.
 
-    ``start(scene, step, **options)`` returns a function that takes a number of steps, one that
+    ``start(scene, step, **options)`` returns a function that makes a number of steps, one that
     returns the state (and N and F of the last step, if the engine has them), and a note. A scene
     that it refuses is not supported.
     """
 
     def simulate(problem: Any, times: FloatArray, setting: Any = None, **options: Any) -> Result:
-        """Return the states of a problem, or a scene, at times, with a time step [s]."""
+        """Return the states of a problem or a scene at times, with a time step [s]."""
         step = 1e-3 if setting is None else positive("setting", setting)
         counts = np.rint(times / step).astype(int)
         if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):

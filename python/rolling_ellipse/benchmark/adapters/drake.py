@@ -1,8 +1,9 @@
 """Drake with the body of `Scene.to_sdf`.
 
-Drake's defaults: point contact of a discrete plant with stiffness 1e6 N/m and Hunt-Crossley
-dissipation 50 s/m, in place of a coefficient of restitution; the approximation "lagged", which its
-manual prefers unless impacts must be resolved. The option `approximation` takes another one.
+Drake's defaults are used: point contact of a discrete plant with stiffness 1e6 N/m and
+Hunt-Crossley dissipation 50 s/m, instead of a coefficient of restitution; the approximation
+"lagged", which its manual prefers unless impacts must be resolved. The option `approximation`
+selects another one.
 """
 
 import logging
@@ -21,7 +22,7 @@ def simulate(scene: Scene, step: float, approximation: str = "lagged") -> Run:
     at, builder, logger = scene.initial_state, DiagramBuilder(), logging.getLogger("drake")
     config = MultibodyPlantConfig(time_step=step, discrete_contact_approximation=approximation)
     plant, _ = AddMultibodyPlant(config, builder)
-    logger.disabled = True  # it warns of a world's gravity, and of grounds for soft bodies
+    logger.disabled = True  # it warns about a world's gravity, and about grounds for soft bodies
     _, body = Parser(builder).AddModelsFromString(scene.to_sdf(), "sdf")
     plant.mutable_gravity_field().set_gravity_vector(gravity(scene))
     plant.Finalize()

@@ -1,9 +1,9 @@
 """MuJoCo with the body of `Scene.to_mjcf`, whose `contact_steps` is an option.
 
-MuJoCo finds the contact of ellipsoid and plane exactly; its contact is soft. Elliptic friction
-cones: the manual calls them more accurate. Contacts with a time constant of four steps: with two,
-the least that the manual allows, sliding bodies hop more. Restitution 1 by stiffness without
-damping, as in the manual, which has no way to a smaller one. Other integrators change little.
+MuJoCo locates the contact of ellipsoid and plane exactly; its contact is soft. Friction cones are
+elliptic, which the manual calls more accurate. Contacts have a time constant of four steps:
+with two, the least that the manual allows, sliding bodies hop more. Restitution 1 is stiffness
+without damping, as in the manual, which offers no smaller one. Other integrators change little.
 """
 
 import mujoco

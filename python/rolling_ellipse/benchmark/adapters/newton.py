@@ -1,7 +1,7 @@
 """Newton with its solver SolverMuJoCo, which is made for robots, and the body of `Scene.to_mjcf`.
 
-Contacts are set as in `adapters.mujoco`; numbers have single precision. The first call compiles for
-minutes.
+Contacts are set as in `adapters.mujoco`; numbers have single precision. The first call takes
+minutes to compile.
 """
 
 import newton
@@ -16,7 +16,7 @@ def simulate(scene: Scene, step: float) -> Run:
     builder, at = newton.ModelBuilder(), scene.initial_state
     builder.add_mjcf(scene.to_mjcf(timestep=step))
     model = builder.finalize()
-    model.set_gravity(gravity(scene))  # of a tilted one the builder keeps the size only
+    model.set_gravity(gravity(scene))  # the builder keeps only the magnitude of a tilted one
     solver = newton.solvers.SolverMuJoCo(model)
     control, states = model.control(), [model.state(), model.state()]
     states[0].joint_q.assign([at.x, at.z, at.theta])
