@@ -11,7 +11,7 @@ pytest.register_assert_rewrite("oracles")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Shapes: a circle, a hair beside it (where a*a - b*b cancels), generic, standing, thin in both
+# Shapes: a circle, a hair off a circle (where a*a - b*b cancels), generic, standing, thin in both
 # positions up to the limits of the package, and sizes far from a metre (results scale with the
 # unit)
 SHAPES = {

@@ -1,4 +1,4 @@
-"""`ends` has the last samples and the events of `simulate`, in any shape, by any workers."""
+"""`ends` gives the last samples and the events of `simulate`, for any shape and any workers."""
 
 import pickle
 from concurrent.futures import ThreadPoolExecutor
@@ -18,8 +18,8 @@ TIMES = np.linspace(0.0, 6.0, len(SCENES))
 
 
 @pytest.mark.parametrize("most", [10_000, 2])
-def test_ends_have_the_bits_of_simulate(most: int) -> None:
-    """A motion with more events ends before its time; they are counted up to then."""
+def test_ends_equal_simulate_bit_for_bit(most: int) -> None:
+    """A motion with too many events stops early; events are counted up to there."""
     ends = rl.ends(SCENES, TIMES, max_events=most)
     for k, (scene, t) in enumerate(zip(SCENES, TIMES.tolist(), strict=True)):
         motion = rl.simulate(scene, [t], max_events=most, raise_on_failure=False)
@@ -39,7 +39,7 @@ def test_ends_have_the_bits_of_simulate(most: int) -> None:
 
 
 @pytest.mark.parametrize("workers", [2, -1, ThreadPoolExecutor(2)])
-def test_workers_change_no_bit(workers: Any) -> None:
+def test_the_number_of_workers_changes_no_bit_of_the_results(workers: Any) -> None:
     require_same(rl.ends(SCENES, TIMES, workers=workers), rl.ends(SCENES, TIMES))
 
 
@@ -54,7 +54,7 @@ def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
     assert "6 COMPLETED" in repr(ends)
 
 
-def test_a_motion_without_its_end_has_its_exception() -> None:
+def test_a_motion_that_stops_early_has_an_exception_in_place_of_its_end() -> None:
     endless = rl.Scene(1.0, 1.0, z=1.5, friction=0.0, restitution=1.0)
     seen: list[Any] = []
     found = rl.ends([NAMED[0], endless], 1e5, progress=lambda *done: seen.append(done))
@@ -77,7 +77,7 @@ def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
     assert kinds == ["IMPACT"] * impacts + ["REST"]
 
 
-def test_a_table_of_ends_has_the_scenes_and_times() -> None:
+def test_a_table_of_ends_lists_the_scenes_and_times() -> None:
     grid = {"a": 2.0, "b": 1.0, "omega": [[1.0], [3.2]]}
     ends = rl.ends(grid, [0.5, 1.0, 1.5])
     table, rows = ends.to_xarray(), ends.to_dataframe()

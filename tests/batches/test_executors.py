@@ -1,4 +1,4 @@
-"""Batches on any executor have the bits of `simulate_many` without one; a lost task loses only its
+"""Batches on any executor equal `simulate_many` without one bit for bit; a lost task loses only its
 own scenes."""
 
 import itertools
@@ -21,7 +21,7 @@ from oracles.batches import ENDLESS, NAMED, TIMES, chunks, states
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
-from rolling_ellipse._verbs import workers  # whose limits are lowered
+from rolling_ellipse._verbs import workers  # its limits are lowered here
 from rolling_ellipse._verbs.batches.asked import sizes
 
 THETA = np.linspace(0.0, 1.0, 5000)  # 5000 elements are two tasks, of 2048 and 2952
@@ -29,8 +29,8 @@ MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Executor that runs each task at once, fails for the tasks in `lost`, and after some tasks
-    never ends one, or refuses more."""
+    """Executor that runs each task at once, fails those in `lost`, and after some tasks hangs or
+    refuses more."""
 
     def __init__(self, lost: Any = (), hangs_after: int = 10**9, closes_after: int = 10**9) -> None:
         self.lost, self.hangs_after, self.closes_after = lost, hangs_after, closes_after
@@ -49,7 +49,7 @@ class Here(Executor):
 
 
 class Mapping:
-    """A pool with nothing but map and close, as multiprocessing's and MPI pools have."""
+    """A pool with only map and close, as in multiprocessing and MPI."""
 
     def __init__(self, lost: bool = False) -> None:
         self.lost = lost
@@ -108,7 +108,7 @@ def test_every_pool_gives_the_same_bits(make: Callable[[], Any], tmp_path: Path)
                 rl.classify(**{"theta": 0.1, **body, **wrong}, workers=pool)
 
 
-def test_few_elements_and_none_are_those_without_an_executor() -> None:
+def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> None:
     """Scalars stay scalars; many times of one body, evaluated by a series, stay one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
@@ -117,7 +117,7 @@ def test_few_elements_and_none_are_those_without_an_executor() -> None:
     assert rl.classify(**body, workers=Here()) is rl.classify(**body)
 
 
-def test_an_executor_gets_128_tasks_before_its_first_result_is_asked_for() -> None:
+def test_an_executor_gets_128_tasks_before_its_first_result_is_requested() -> None:
     """Only the scenes of these tasks are taken."""
     taken, executor = itertools.count(), Here()
 
@@ -132,7 +132,7 @@ def test_an_executor_gets_128_tasks_before_its_first_result_is_asked_for() -> No
 
 
 class Heavy(Here):
-    """Executor that counts the bytes of results that nobody has asked for."""
+    """Executor that counts the bytes of results not yet requested."""
 
     held = most = largest = 0
 
@@ -171,11 +171,11 @@ class HeavyMap(Mapping):
         (200, 2**18, {"model": "multipliers", "method": "rk4", "step": 0.5}),
     ],
 )  # fmt: skip
-def test_results_that_wait_have_few_bytes(
+def test_pending_results_stay_within_the_byte_limit(
     samples: int, bytes_held: int, way: dict[str, Any], pool: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The bytes that wait stay below the allowed number, or are one result. A chunk may be a
-    sixteenth larger than the one before, and the limit follows one task later."""
+    """Pending bytes stay below the limit, or are a single result. A chunk may be a sixteenth larger
+    than the one before, and the limit follows one task later."""
     monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
@@ -214,7 +214,9 @@ def test_arrays_have_nan_for_lost_scenes() -> None:
 
 
 @pytest.mark.parametrize("workers", [Here(lost=(0, 3)), Here(closes_after=4), Mapping(lost=True)])
-def test_a_folder_keeps_the_others(workers: Any, tmp_path: Path) -> None:
+def test_when_a_task_is_lost_the_folder_keeps_the_scenes_of_the_others(
+    workers: Any, tmp_path: Path
+) -> None:
     out = tmp_path / "out"
     with pytest.raises(WorkerError, match=r"missing.* same call goes on") as caught:
         simulate_many(MANY, [1.0], workers=workers, out=out)
@@ -229,7 +231,7 @@ def test_a_folder_keeps_the_others(workers: Any, tmp_path: Path) -> None:
     assert list(load_many(out)) == simulate_many(MANY, [1.0])
 
 
-def test_functions_raise_what_the_executor_says() -> None:
+def test_functions_raise_the_error_that_the_executor_raises() -> None:
     body = {"a": 2.0, "b": 1.0, "omega": 1.0, "theta": THETA}
     with pytest.raises(BrokenProcessPool):
         rl.classify(**body, workers=Here(lost=(1,)))
@@ -237,7 +239,7 @@ def test_functions_raise_what_the_executor_says() -> None:
         rl.flow(1.0, **body, workers=Here(closes_after=1))
 
 
-def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
+def test_a_killed_process_loses_only_its_unfinished_scenes(tmp_path: Path) -> None:
     """A killed process breaks its pool: finished chunks are kept, the other scenes are
     WorkerErrors. The pool dies after a chunk of scenes at rest, in a scene that takes hours."""
     quick, out = [Scene(2.0, 1.0)] * 16, tmp_path / "out"
@@ -262,8 +264,9 @@ def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
 # ------------------------------------------------------------------------------------ interrupts
 
 
-def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) -> None:
-    """The fifth task never ends; the interrupt, after the others, cancels all tasks behind it."""
+def test_an_interrupt_keeps_finished_tasks_and_cancels_the_rest(tmp_path: Path) -> None:
+    """The fifth task never ends; the interrupt comes after the others and cancels all later
+    tasks."""
     executor, out = Here(hangs_after=4), tmp_path / "out"
 
     def look(done: int, of: int | None) -> None:
@@ -279,7 +282,7 @@ def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) ->
     assert list(load_many(out)) == simulate_many(MANY, [1.0])
 
 
-def test_what_ended_out_of_order_is_kept_too(tmp_path: Path) -> None:
+def test_chunks_finished_out_of_order_are_kept(tmp_path: Path) -> None:
     """The interrupt comes during the wait for the first task; five later chunks are kept."""
     out = tmp_path / "out"
 

@@ -20,7 +20,7 @@ from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from oracles.programs import run
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
-from rolling_ellipse._verbs.batches import folders  # whose version and schema are changed
+from rolling_ellipse._verbs.batches import folders  # its version and schema are changed here
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
 
@@ -50,14 +50,14 @@ def require_equal(loaded: Any, expected: Any) -> None:
     ],
     ids=str,
 )  # fmt: skip
-def test_motions_and_errors_come_back(way: dict[str, Any], out: Path) -> None:
+def test_motions_and_errors_are_read_back_unchanged(way: dict[str, Any], out: Path) -> None:
     many = NAMED * 3
     assert simulate_many(many, TIMES, out=out, **way) == str(out)
     assert len(chunks(out)) == 3
     require_equal(load_many(out), singly(many, TIMES, **way))
 
 
-def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
+def test_unusual_values_survive_saving_to_a_folder(out: Path) -> None:
     """Signs of zeros, infinite friction, missing arguments and last bits of a blow survive."""
     mine = [
         Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
@@ -69,7 +69,9 @@ def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
 
 
 @pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # 512 * 5e-324 / 1000 rounds to 5e-324
-def test_an_end_so_near_that_samples_coincide(out: Path, end: float) -> None:
+def test_a_motion_with_coinciding_samples_survives_saving_to_a_folder(
+    out: Path, end: float
+) -> None:
     simulate_many([scenes.rocking], end, out=out)
     require_equal(load_many(out), singly([scenes.rocking], end))
 
@@ -77,7 +79,7 @@ def test_an_end_so_near_that_samples_coincide(out: Path, end: float) -> None:
 # -------------------------------------------------------------------------------- continuation
 
 
-def test_what_is_there_is_not_computed_again(out: Path) -> None:
+def test_finished_chunks_are_not_computed_again(out: Path) -> None:
     simulate_many(GRID, TIMES, out=out)
     everything = states(out)
     first, *_, last = chunks(out)
@@ -89,12 +91,12 @@ def test_what_is_there_is_not_computed_again(out: Path) -> None:
     assert set(now) == set(everything) and len(reports) == 1
     assert {name for name in now if now[name] != everything[name]} == {first.name}
     require_equal(load_many(out), simulate_many(GRID, TIMES))
-    last.unlink()  # a damaged file of a complete folder is also made again
+    last.unlink()  # a damaged file of a complete folder is also rebuilt
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
 
 
-def test_scenes_one_by_one_and_as_arrays_are_the_same(out: Path) -> None:
+def test_scenes_given_singly_or_as_arrays_are_the_same_request(out: Path) -> None:
     simulate_many(GRID, TIMES, out=out)
     before = states(out)
     each = (Scene(2.0, 1.0, theta=0.3, omega=float(omega)) for omega in GRID["omega"])
@@ -117,7 +119,9 @@ def test_scenes_one_by_one_and_as_arrays_are_the_same(out: Path) -> None:
                      scenes.report]}, "scenes 49 to 49"),
     ],
 )  # fmt: skip
-def test_another_request_is_refused(changes: dict[str, Any], reason: str, out: Path) -> None:
+def test_a_folder_from_another_request_is_rejected(
+    changes: dict[str, Any], reason: str, out: Path
+) -> None:
     request: dict[str, Any] = {"scenes": GRID, "t": TIMES}
     simulate_many(**request, out=out)
     before = states(out)
@@ -127,7 +131,9 @@ def test_another_request_is_refused(changes: dict[str, Any], reason: str, out: P
     simulate_many(**request, out=out)
 
 
-def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_from_another_version_is_rejected(
+    out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     simulate_many(GRID, TIMES, out=out)
     monkeypatch.setattr(folders, "version", lambda name: "0.0.9")
     with pytest.raises(ValueError, match=r"^out must be .* version '\d.*', not '0.0.9'"):
@@ -138,7 +144,7 @@ def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) 
         load_many(out)
 
 
-def test_what_is_no_folder_of_motions_is_refused_and_left_alone(tmp_path: Path) -> None:
+def test_anything_but_a_folder_of_motions_is_rejected_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("kept")
     (tmp_path / "lost+found").mkdir()
     (tmp_path / ".DS_Store").write_text("kept")
@@ -171,9 +177,9 @@ def remake(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
-def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: Path) -> None:
-    """A file with a changed byte is refused by its name, or the byte means nothing, as the dates of
-    a zip archive do. The same call of simulate_many then repairs chunks and end.json. It refuses a
+def test_every_damaged_byte_is_detected_or_harmless(name: str, stride: int, small: Path) -> None:
+    """A file with a changed byte is refused by name, or the byte is insignificant, as in the dates
+    of a zip archive. The same call of simulate_many then repairs chunks and end.json. It refuses a
     damaged request.npz, and continues when that file is removed."""
     path = chunks(small)[0] if name == "chunk" else small / name
     whole, expected = path.read_bytes(), list(load_many(small))
@@ -200,7 +206,9 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
 
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
 @pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
-def test_other_files_in_their_places_are_refused(name: str, content: bytes, small: Path) -> None:
+def test_foreign_files_in_place_of_chunks_are_rejected(
+    name: str, content: bytes, small: Path
+) -> None:
     path = chunks(small)[0] if name == "chunk" else small / name
     path.write_bytes(content)
     with pytest.raises(ValueError, match=rf"^path must name a file written by sim.*{path.name}"):
@@ -208,7 +216,7 @@ def test_other_files_in_their_places_are_refused(name: str, content: bytes, smal
 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])
-def test_an_end_that_counts_other_scenes_is_refused(count: Any, small: Path) -> None:
+def test_an_end_file_with_another_scene_count_is_rejected(count: Any, small: Path) -> None:
     """The folder has three scenes; another count would need other chunks."""
     end = json.loads((small / "end.json").read_text())
     (small / "end.json").write_text(json.dumps(end | {"scenes": count}))
@@ -229,7 +237,7 @@ def test_an_end_that_counts_other_scenes_is_refused(count: Any, small: Path) -> 
     ],
     ids=["times", "settings", "scenes"],
 )  # fmt: skip
-def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path) -> None:
+def test_two_folders_merged_into_one_are_rejected(changes: Any, out: Path, tmp_path: Path) -> None:
     request: dict[str, Any] = {"scenes": GRID, "t": np.array([2.0, 6.0])}
     simulate_many(**request, out=out)
     simulate_many(**(request | changes), out=tmp_path / "other")
@@ -246,7 +254,7 @@ def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path)
     require_equal(load_many(out), simulate_many(**request))
 
 
-def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
+def test_parts_of_the_same_folder_can_be_merged(out: Path, tmp_path: Path) -> None:
     simulate_many(GRID, TIMES, out=out)
     shutil.copytree(out, tmp_path / "other")
     for place, path in enumerate(chunks(out)):
@@ -262,7 +270,7 @@ def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
     require_equal(load_many(out), simulate_many(GRID, TIMES))
 
 
-def test_a_chunk_under_the_name_of_another_request_is_refused(out: Path, tmp_path: Path) -> None:
+def test_a_chunk_under_the_name_of_another_request_is_rejected(out: Path, tmp_path: Path) -> None:
     """A chunk of another request has states at other times."""
     simulate_many(GRID, [2.0, 6.0], out=out)
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
@@ -277,7 +285,7 @@ def test_a_chunk_under_the_name_of_another_request_is_refused(out: Path, tmp_pat
 # -------------------------------------------------------------------------- links and leftovers
 
 
-def test_links_lead_to_no_file_outside(out: Path, tmp_path: Path) -> None:
+def test_links_never_lead_to_a_file_outside_the_folder(out: Path, tmp_path: Path) -> None:
     out.mkdir()
     for name in ("end.json", "request.npz"):
         (out / name).symlink_to(tmp_path / "outside" / name)
@@ -297,7 +305,7 @@ with replacing(sys.argv[1]) as new:
 """
 
 
-def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(out: Path) -> None:
+def test_leftovers_of_killed_runs_are_removed_but_not_files_being_written(out: Path) -> None:
     out.mkdir()
     with subprocess.Popen(
         [sys.executable, "-c", LIVES, os.fspath(out / "note.txt")],
@@ -315,7 +323,7 @@ def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(ou
 # ---------------------------------------------------------------------- full disks, interrupts
 
 
-def test_a_full_disk_leaves_the_request_alone(out: Path) -> None:
+def test_a_full_disk_leaves_the_request_intact(out: Path) -> None:
     """Files may have 15 kB here, and the first chunk, of 1600 samples, needs 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
     with files_of_at_most(15_000), pytest.raises(OSError) as caught:
@@ -327,7 +335,7 @@ def test_a_full_disk_leaves_the_request_alone(out: Path) -> None:
 
 
 def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
-    """Sixteen scenes at rest are done at once; a scene of hours behind them is interrupted."""
+    """Sixteen scenes at rest are done at once; a scene of hours after them is interrupted."""
     quick = [Scene(2.0, 1.0)] * 16
 
     def last() -> Iterator[Scene]:
@@ -355,7 +363,7 @@ rl.simulate_many([rl.scenes.rocking] * 400, [1.0], out=sys.argv[1], progress=loo
 """
 
 
-def test_a_killed_process_has_left_what_it_finished(out: Path) -> None:
+def test_a_killed_process_leaves_its_finished_chunks(out: Path) -> None:
     assert run(KILLED, out).returncode == -signal.SIGKILL
     before = states(out)
     assert len(before) > 5

@@ -1,4 +1,4 @@
-"""`simulate_many` has the bits of `simulate`, exceptions in place and scenes from arrays."""
+"""`simulate_many` equals `simulate` bit for bit; exceptions stay in place; arrays give scenes."""
 
 import inspect
 import itertools
@@ -18,7 +18,7 @@ from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
 from rolling_ellipse._ask.settings import Options
 from rolling_ellipse._verbs.batches.asked import sizes
-from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # of an older folder
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # for an older folder
 
 ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
 WAYS: dict[str, dict[str, Any]] = {
@@ -35,7 +35,7 @@ WAYS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("workers", [1, 2, -1])
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
+def test_simulate_many_equals_simulate_bit_for_bit(way: dict[str, Any], workers: int) -> None:
     """Fields, events and messages of exceptions are equal, and no warning appears."""
     expected = singly(NAMED, TIMES, **way)
     answers = simulate_many(NAMED, TIMES, workers=workers, **way)
@@ -45,7 +45,7 @@ def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
             assert one == other and one.sol(one.t_end) == other.sol(one.t_end)
 
 
-def test_the_ways_lead_everywhere() -> None:
+def test_the_settings_cover_every_kind_of_result() -> None:
     """The settings in WAYS give motions, refusals and both kinds of early stops."""
     every = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
     kinds = {name: {type(each) for each in answers} for name, answers in every.items()}
@@ -58,7 +58,7 @@ def test_the_ways_lead_everywhere() -> None:
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-def test_arrays_have_the_bits_of_the_list(way: dict[str, Any]) -> None:
+def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
     """Samples that a motion has not reached, or whose scene is refused, are NaN."""
     names = ("x", "theta", "omega", "z", "friction_force", "mode")
     listed = simulate_many(NAMED * 3, TIMES, **way)
@@ -77,8 +77,8 @@ def test_arrays_have_the_bits_of_the_list(way: dict[str, Any]) -> None:
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
-    """Shape and names are those of the arrays, in memory and in a folder; one argument alone along
-    an axis names it, and two of them, or scenes of an iterable, are coordinates of "scene"."""
+    """Shape and names are those of the arrays, in memory and in a folder; a single argument along
+    an axis names it; several, or scenes of an iterable, become coordinates of "scene"."""
     b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
     grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
     data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()
@@ -96,7 +96,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
         listed = simulate_many(wanted, TIMES, returns="x").to_xarray()
         assert listed["x"].dims == ("scene", "t") and np.array_equal(listed["omega0"], speeds)
         assert listed["theta0"].dims == ("scene",) and "b" not in listed.coords
-    (end,) = (tmp_path / "out").glob("end.json")  # of a folder before shapes were stored
+    (end,) = (tmp_path / "out").glob("end.json")  # of a folder written before shapes were stored
     names, about = _chunks(tmp_path / "out"), json.loads(end.read_text())
     digest = _digest_of_all(names[0][0].split("-")[1], 12, names, {})
     end.write_text(json.dumps({"scenes": 12, "digest": digest}))
@@ -104,20 +104,20 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
-def test_times_as_of_simulate(t: Any) -> None:
-    """3000 times are more samples than the core evaluates in one block."""
+def test_times_are_accepted_as_in_simulate(t: Any) -> None:
+    """3000 times exceed the samples that the core evaluates in one block."""
     require_same(simulate_many(ROLLING, t), singly(ROLLING, t))
 
 
-def test_bodies_at_the_limits() -> None:
-    """Extreme bodies have the bits of `simulate`: bodies must not affect their neighbours."""
+def test_bodies_at_the_limits_do_not_affect_their_neighbours() -> None:
+    """Extreme bodies equal `simulate` bit for bit: bodies must not affect their neighbours."""
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
     require_same(simulate_many(bodies, t), singly(bodies, t))
 
 
-def test_arrays_broadcast() -> None:
+def test_arrays_broadcast_in_c_order() -> None:
     """Arrays broadcast in C order, with numbers, None and blows among them."""
     a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
     blow = Impulse(jx=0.0, jz=[[[-1.0]], [[-20.0]]], dx=0.5)
@@ -131,8 +131,8 @@ def test_arrays_broadcast() -> None:
     assert list(map(repr, scenes)) == [repr(each.scene) for each in motions]  # with signs of zeros
 
 
-def test_every_argument_of_a_scene_has_its_place() -> None:
-    """Each argument has its own number, not the default, so that every exchange is seen."""
+def test_no_two_arguments_of_a_scene_are_swapped() -> None:
+    """Each argument has its own number, not the default, so that any mix-up is detected."""
     arguments: dict[str, Any] = {
         "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
         "friction": 0.7, "restitution": 0.3, "theta": 0.2, "omega": 0.4, "x": 5.0, "z": 6.0,
@@ -143,7 +143,7 @@ def test_every_argument_of_a_scene_has_its_place() -> None:
         require_same(simulate_many(given, TIMES), [simulate(Scene(**arguments), TIMES)])
 
 
-def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> None:
+def test_an_invalid_value_near_the_end_is_rejected_before_anything_is_computed() -> None:
     theta = np.zeros(200_000)
     theta[170_001] = math.nan
     with pytest.raises(ValueError, match=r"^scenes\['theta'\]\[170001\] must be"):
@@ -152,7 +152,7 @@ def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> N
 
 
 @pytest.mark.parametrize("nothing", [[], {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
-def test_no_scenes(nothing: Any, tmp_path: Path) -> None:
+def test_no_scenes_give_an_empty_result(nothing: Any, tmp_path: Path) -> None:
     assert simulate_many(nothing, 1.0) == [] == simulate_many(iter(()), 1.0)
     found = rl.load_many(simulate_many(nothing, [1.0], out=tmp_path / "none")).arrays()
     assert found.status.size == found["x"].size == found.to_xarray()["x"].size == 0
@@ -167,11 +167,11 @@ def test_no_scenes(nothing: Any, tmp_path: Path) -> None:
         {"a": [], "b": []},
     ],
 )
-def test_what_may_be_right_of_no_scenes_is_not_refused(given: dict[str, Any]) -> None:
+def test_arguments_that_could_be_valid_are_accepted_with_no_scenes(given: dict[str, Any]) -> None:
     assert rl.ends({"a": 2.0, "b": 1.0} | given, 1.0).theta.size == 0
 
 
-def test_arguments_are_those_of_simulate() -> None:
+def test_simulate_many_takes_the_arguments_of_simulate() -> None:
     own = {"scene", "scenes", "workers", "progress", "out", "returns"}
     mine, others = (
         {name: each for name, each in inspect.signature(of).parameters.items() if name not in own}
@@ -198,7 +198,9 @@ def test_progress_is_reported_after_each_chunk() -> None:
 
 
 @pytest.mark.parametrize("bar", [True, False])
-def test_progress_is_shown(bar: bool, capfd: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_is_shown_with_or_without_a_bar(
+    bar: bool, capfd: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     if not bar:
         monkeypatch.setattr("rolling_ellipse._ask.progress.find_spec", lambda name: None)
     simulate_many([scenes.rocking] * 20, 1.0, progress=True)
@@ -206,7 +208,7 @@ def test_progress_is_shown(bar: bool, capfd: Any, monkeypatch: pytest.MonkeyPatc
     assert ("20/20" if bar else "\r20 of 20 scenes\n") in shown
 
 
-def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
+def test_scenes_are_consumed_only_as_needed(tmp_path: Path) -> None:
     """Only the scenes of the current chunk are alive if an output folder is given."""
     living: weakref.WeakSet[Scene] = weakref.WeakSet()
     most = 0
@@ -230,7 +232,7 @@ def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_stops_scenes_of_hours(workers: int) -> None:
+def test_ctrl_c_interrupts_scenes_that_would_take_hours(workers: int) -> None:
     """The interrupt stops a scene within its steps, in any thread, and no thread is left."""
     before = len(list(Path("/proc/self/task").iterdir()))
     with ctrl_c_after(0.2):

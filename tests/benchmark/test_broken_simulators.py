@@ -1,7 +1,7 @@
-"""Simulators that do not answer: "right" only where the answer does not depend on the break.
+"""Broken simulators: "right" only where the answer does not depend on the break.
 
-The table `BROKEN` has each break, the problems that it leaves as they are, each with the reason,
-and what the score has to say of it elsewhere.
+The table `BROKEN` lists each break, the problems that it leaves unaffected, each with the reason,
+and what the score must say about it elsewhere.
 """
 
 import math
@@ -35,7 +35,7 @@ TURN = 180 / math.pi
 
 
 class Break(NamedTuple):
-    """What becomes of right states, the problems that it leaves as they are, and the words for it
+    """Effect on right states, the problems left unaffected, and the words of the score
     elsewhere."""
 
     of: Change
@@ -110,8 +110,8 @@ def right(scores: benchmark.Scores) -> set[str]:
 
 @pytest.mark.parametrize("name", BROKEN)
 @pytest.mark.parametrize("accurate", [True, False])
-def test_right_is_what_does_not_depend_on_the_break(name: str, accurate: bool) -> None:
-    """Also beside errors of the simulator: those of a gravity that is off by 1e-5."""
+def test_only_answers_unaffected_by_the_fault_are_right(name: str, accurate: bool) -> None:
+    """Even with errors of the simulator, here those of a gravity that is off by 1e-5."""
     broken = BROKEN[name]
 
     def mine(one: Any, t: Any, _: Any) -> Any:
@@ -164,7 +164,7 @@ OTHERS: dict[str, tuple[Change, str, list[str]]] = {
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_other_mistakes_are_named(name: str) -> None:
+def test_mistakes_in_the_output_are_named(name: str) -> None:
     change, problem, words = OTHERS[name]
     one = benchmark.problem(problem)
     score = score_of(one, change(one, one.exact(one.output_times)))
@@ -173,8 +173,8 @@ def test_other_mistakes_are_named(name: str) -> None:
 
 @pytest.mark.parametrize("off", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
-def test_no_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
-    """Errors of another scene are no mistakes of output."""
+def test_no_output_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
+    """Errors due to another scene are not mistakes in the output."""
     for by in (1 - off, 1 + off):
         if field != "restitution" or by < 1:
             mine = changed(**{field: lambda scene, by=by: getattr(scene, field) * by})
@@ -182,7 +182,7 @@ def test_no_mistake_is_named_where_there_is_none(field: str, off: float) -> None
 
 
 def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
-    """Impacts of `hit.settle` in closed form: flights shorter by e each, from the second on."""
+    """Impacts of `hit.settle` in closed form: from the second on, flights shorten by a factor e."""
     first, second = (event.t for event in one.events[:2])
     times, last = [first, second], second - first
     while len(times) < most:
@@ -193,7 +193,7 @@ def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
 
 @pytest.mark.parametrize("count", [11, 21, 22, 40, 200])
 @pytest.mark.parametrize("sticks", [True, False])
-def test_bounces_beyond_any_cut_are_right(count: int, sticks: bool) -> None:
+def test_bounces_may_be_listed_up_to_any_cutoff(count: int, sticks: bool) -> None:
     """After 200 of them the times between them are below an ulp."""
     one = benchmark.problem("hit.settle")
     events = every_impact(one, count)
@@ -205,7 +205,7 @@ def test_bounces_beyond_any_cut_are_right(count: int, sticks: bool) -> None:
 
 
 @pytest.mark.parametrize("rest_speed", [1e-12, 1e-9, 1e-3, 0.03])
-def test_any_threshold_of_rest_is_right(rest_speed: float) -> None:
+def test_a_simulator_may_use_any_rest_threshold(rest_speed: float) -> None:
     def mine(one: Any, t: Any, _: Any) -> Any:
         motion = simulate(one.scene, t, rest_speed=rest_speed)
         events = [(event.kind, event.t) for event in motion.events]
@@ -228,7 +228,7 @@ def test_any_threshold_of_rest_is_right(rest_speed: float) -> None:
         (lambda all_of: [], "missed 5 IMPACT"),
     ],
 )
-def test_other_bounces_are_wrong(change: Any, words: str) -> None:
+def test_wrong_bounces_are_judged_wrong(change: Any, words: str) -> None:
     one = benchmark.problem("hit.settle")
     score = score_of(one, one.exact(one.output_times), events=change(every_impact(one, 22)))
     assert score.answer == "wrong" and words in score.reason, score
@@ -237,8 +237,8 @@ def test_other_bounces_are_wrong(change: Any, words: str) -> None:
 # ----------------------------------------------------------------------- each answer
 
 
-def test_the_disc_has_rolled_exactly_forty_metres() -> None:
-    """The question of roll.circle is where it is, not whether it turned: 32 m is wrong."""
+def test_the_disc_must_have_rolled_exactly_forty_metres() -> None:
+    """roll.circle asks where the body is, not whether it turned: 32 m is wrong."""
 
     scores = benchmark.run(
         lambda one, t, share: one.exact(t) * [share, 1, share, share, 1, share],
@@ -249,7 +249,7 @@ def test_the_disc_has_rolled_exactly_forty_metres() -> None:
 
 
 @pytest.mark.parametrize(("column", "word"), [(0, "x"), (2, "theta")])
-def test_a_body_that_lies_neither_rocks_nor_moves(column: int, word: str) -> None:
+def test_a_resting_body_must_neither_rock_nor_move(column: int, word: str) -> None:
     def mine(one: Any, t: Any, size: float) -> Any:
         states = one.exact(t)
         states[:, column] += size * np.sin(t)
@@ -260,8 +260,8 @@ def test_a_body_that_lies_neither_rocks_nor_moves(column: int, word: str) -> Non
     assert word in scores[0].reason
 
 
-def test_a_law_is_named_only_where_one_is_nearest_by_far() -> None:
-    """Between two laws there is none; each law itself is named."""
+def test_a_law_is_named_only_if_it_is_by_far_the_nearest() -> None:
+    """Between two laws no law is named; each law itself is."""
     one = benchmark.problem("law.which")
     motions = {"stronge": one.states, **one.laws}
     t = one.output_times[np.rint(one.times * 100).astype(int)]
@@ -275,7 +275,7 @@ def test_a_law_is_named_only_where_one_is_nearest_by_far() -> None:
                 assert score_of(one, 0.98 * states + 0.02 * its, t=t).answer == "right"
 
 
-def test_a_body_that_never_slips_does_not_slide_all_the_way() -> None:
+def test_a_simulated_body_that_never_slips_is_judged_wrong() -> None:
     score = score_of(benchmark.problem("slide.slope"), np.outer(np.ones(201), [0, 1, 0, 0, 0, 0]))
     assert score.answer == "wrong" and "missed 1 SLIP" in score.reason
 
@@ -284,7 +284,7 @@ def test_a_body_that_never_slips_does_not_slide_all_the_way() -> None:
 
 
 @pytest.mark.parametrize("off", [1000.0, -5.0, 0.1, -0.02])
-def test_a_wrong_time_is_wrong_in_python_files_and_command(
+def test_a_wrong_event_time_is_judged_wrong_in_python_in_files_and_by_the_command(
     off: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     one = benchmark.problem("slide.stick")
@@ -301,7 +301,7 @@ def test_a_wrong_time_is_wrong_in_python_files_and_command(
 
 
 @pytest.mark.parametrize("name", sorted(IDS - set(NO_EVENTS)))
-def test_times_are_judged_by_the_stated_share(name: str) -> None:
+def test_event_times_are_judged_by_the_stated_tolerance(name: str) -> None:
     """2 % of sqrt(L/g), or a thousandth of the condition, 10 % at most."""
     one = benchmark.problem(name)
     known = known_events(one)[: 5 if name == "hit.settle" else None]

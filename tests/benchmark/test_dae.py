@@ -20,10 +20,10 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [*NAMES, "uphill"])
-def test_the_exact_motion_and_the_jacobian(name: str, form: str) -> None:
-    """F is 0 but for 8 ulps in each entry of y and y': the exact motion's own and those in F.
+def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form: str) -> None:
+    """F is 0 to within 8 ulps of each entry of y and y': the exact motion's own and those in F.
 
-    Central differences have errors of step^2/6 = 2e-11 by third derivatives, which for the thin
+    Central differences have errors of step^2/6 = 2e-11 from third derivatives, which for the thin
     body are some (a/b)^4 of the Jacobian, and roundings of 1e-16/step.
     """
     one = benchmark.problem("roll.rock" if name == "uphill" else name)
@@ -80,8 +80,10 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
         ("roll.rock", "ggl", "00000 00011 2221 222"), ("roll.thin", "ggl", "00000 00011 2221 222"),
     ],
 )  # fmt: skip
-def test_the_index(name: str, form: str, least: str) -> None:
-    """Least number of differentiations that determine each entry of y'; the index is the most."""
+def test_the_index_is_the_largest_number_of_differentiations(
+    name: str, form: str, least: str
+) -> None:
+    """Fewest differentiations that determine each entry of y'; the index is the largest of them."""
     dae = benchmark.problem(name).dae(form)
     found = sum((~determined(dae, k)).astype(int) for k in range(dae.index + 1))
     assert "".join(map(str, found)) == least.replace(" ", "")
@@ -98,7 +100,7 @@ def program(library: str) -> Any:
 
 
 @pytest.mark.parametrize("form", ["index2", "ggl"])
-def test_solve_dae(form: str) -> None:
+def test_solve_dae_stays_within_its_tolerance(form: str) -> None:
     """The page's program, whose states are columns of a matrix, keeps its tolerance for a second;
     the table has the whole motions."""
     table = PAGE.partition("<!-- radau")[2].partition("<!-- end of radau")[0]
@@ -111,8 +113,8 @@ def test_solve_dae(form: str) -> None:
     assert np.max(abs(dae.states(found.y.T) - one.exact(times)) / one.scales) < 1e-8
 
 
-def test_ida() -> None:
-    """The page's program; its table has all problems, which take minutes."""
+def test_ida_stays_within_its_tolerance() -> None:
+    """The page's program; its table covers all problems, which takes minutes."""
     errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)
     assert {row[:2] for row in errors} == {(name, form) for name in NAMES for form in FORMS[2:]}
     assert max(float(error) for *_, error in errors) <= 1e-8

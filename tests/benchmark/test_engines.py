@@ -23,7 +23,7 @@ def adapter(name: str) -> Any:
     return import_module(f"rolling_ellipse.benchmark.adapters.{name}").simulate
 
 
-def test_mujoco_reads_mjcf() -> None:
+def test_mujoco_reads_mjcf_as_intended() -> None:
     """The point above the centre moves forwards as theta grows: the Jacobian's last column."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(SCENE.to_mjcf(timestep=0.002))
@@ -42,7 +42,7 @@ def test_mujoco_reads_mjcf() -> None:
     assert contact.pos == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=1e-6)
 
 
-def test_drake_reads_sdf() -> None:
+def test_drake_reads_sdf_as_intended() -> None:
     """Two links of 1e-9 of the mass move with the body; Drake leaves the gravity out."""
     drake = pytest.importorskip("pydrake.all")
     builder = drake.DiagramBuilder()
@@ -66,8 +66,9 @@ def test_drake_reads_sdf() -> None:
 
 
 @pytest.mark.parametrize("name", ["mujoco", "drake", "pymunk"])
-def test_an_adapter_falls_and_lies(name: str) -> None:
-    """Symplectic Euler is off by g t h/2 in z of a fall; an overlap of 0.002 m stays at rest."""
+def test_through_each_adapter_a_body_falls_and_rests_correctly(name: str) -> None:
+    """Symplectic Euler errs by g t h/2 in the z of a fall; a body that overlaps by 0.002 m stays at
+    rest."""
     simulate, drop = adapter(name), benchmark.problem("hit.drop_stick")
     t = drop.output_times[:49]  # before it lands
     off = np.abs(simulate(drop, t, 0.005).states - drop.exact(t))
@@ -80,7 +81,7 @@ def test_an_adapter_falls_and_lies(name: str) -> None:
 
 
 def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
-    """The error of stiff contacts falls with the step, that of its own contacts does not."""
+    """The error of stiff contacts falls with the step, that of MuJoCo's own contacts does not."""
     scene = Scene(2.0, 1.0, friction=1.0, theta=0.2, omega=3.2)
 
     def error(dt: float, contact_steps: float | None = 2.0) -> float:
@@ -90,8 +91,8 @@ def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
     assert error(1e-3) < 0.5 * error(4e-3) and error(1e-3) < 0.1 * error(1e-3, None)
 
 
-def test_a_derivative_of_mjx(capsys: pytest.CaptureFixture[str]) -> None:
-    """The page's program prints what the page says, to the digits of its differences."""
+def test_mjx_reproduces_the_derivatives_on_the_page(capsys: pytest.CaptureFixture[str]) -> None:
+    """The page's program prints the page's numbers, to the accuracy of its differences."""
     pytest.importorskip("mujoco.mjx")
     page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
     (program,) = re.findall(r"```python\n(import jax\n.*?)```", page, flags=re.DOTALL)

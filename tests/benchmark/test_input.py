@@ -1,4 +1,4 @@
-"""Ids in place of problems, near names of wrong ones, and numbers that are not finite."""
+"""Ids in place of problems, suggestions for misspelt names, and numbers that are not finite."""
 
 import math
 from pathlib import Path
@@ -10,7 +10,7 @@ from rolling_ellipse import benchmark
 from rolling_ellipse.benchmark.adapters import engine
 
 
-def test_ids_stand_for_problems() -> None:
+def test_ids_are_accepted_in_place_of_problems() -> None:
     """One or several, in a call and in a folder; adapters take them, too."""
     several = benchmark.run(exact, problems=["slide.slope", benchmark.problem("roll.rock")])
     assert [score.problem for score in several] == ["slide.slope", "roll.rock"]
@@ -24,7 +24,7 @@ def test_ids_stand_for_problems() -> None:
         assert [one.id for one in benchmark.problems(tags)] == ["hit.drop_slip"]
 
 
-def test_an_id_stands_for_a_problem_in_adapters() -> None:
+def test_an_adapter_accepts_an_id_in_place_of_a_problem() -> None:
     one, t = benchmark.problem("roll.rock"), np.arange(3) / 100
     simulate = engine(lambda scene, step: (lambda steps: None, lambda: [scene.theta] * 6))
     for given in (one.id, one, one.scene):
@@ -61,7 +61,9 @@ def test_the_nearest_name_is_suggested(typed: str, near: str) -> None:
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize(("row", "column"), [(0, 0), (7, 3), (123, 5), (500, 1)])
-def test_what_is_not_finite_is_named(bad: float, row: int, column: int, tmp_path: Path) -> None:
+def test_values_that_are_not_finite_are_named(
+    bad: float, row: int, column: int, tmp_path: Path
+) -> None:
     """By its row and column, in Python and in files; also between the given times."""
     one = benchmark.problem("slide.stick")
     states = one.exact(one.output_times)
@@ -73,7 +75,7 @@ def test_what_is_not_finite_is_named(bad: float, row: int, column: int, tmp_path
         assert f"{STATE[column]} is {bad} in row {row} (t = {row / 100:g} s)" in score.reason
 
 
-def test_a_force_that_is_endless_is_named() -> None:
+def test_an_infinite_force_is_named() -> None:
     one = benchmark.problem("slide.stick")
     right = exact(one, one.output_times)
     normal = right.normal_force.copy()

@@ -1,9 +1,9 @@
 """The numbers of the files are the doubles nearest to the motion of the scene in the file.
 
-Other roads than the maker's power series. Flights before the first impact, bounces of a flat body,
-and a disc that slides down a slope have closed forms. For rolling: with s = theta, or
-theta = theta_m cos s in a swing, the energy gives dt/ds in closed form. Times and paths are its
-integrals in 40 digits, and the states at given times come from Newton's method.
+The methods differ from the maker's power series. Flights before the first impact, bounces of a flat
+body, and a disc that slides down a slope have closed forms. For rolling: with s = theta, or theta =
+theta_m cos s in a swing, the energy gives dt/ds in closed form. Times and paths are its integrals
+in 40 digits, and the states at given times come from Newton's method.
 """
 
 import json
@@ -103,7 +103,7 @@ def problem(name: str) -> Any:
 
 
 def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
-    """Numbers with another double that is nearer; in the middle between two both are nearest."""
+    """Numbers for which another double is nearer; midway between two, both count as nearest."""
     return [
         (p, q)
         for p, value in zip(known, exact, strict=True)
@@ -112,7 +112,7 @@ def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("name", ROLLING)
-def test_each_number_is_the_nearest_double(name: str) -> None:
+def test_each_value_is_the_double_nearest_to_the_exact_one(name: str) -> None:
     data, wrong = problem(name), []
     with mp.workdps(DIGITS + 5):
         body = Rolling(data["scene"])
@@ -131,7 +131,7 @@ FLYING = [path.stem for path in sorted(FOLDER.glob("*.json")) if path.stem[:3] i
 
 
 @pytest.mark.parametrize("name", FLYING)
-def test_a_flight_is_the_parabola_of_its_start(name: str) -> None:
+def test_a_flight_is_the_parabola_given_by_its_start(name: str) -> None:
     data = problem(name)
     with mp.workdps(DIGITS):
         x, z, theta, x_dot, z_dot, omega = (mpf(data["scene"][key]) for key in data["columns"][1:7])
@@ -144,7 +144,7 @@ def test_a_flight_is_the_parabola_of_its_start(name: str) -> None:
     assert wrong == [] and count >= 1
 
 
-def test_a_disc_slides_down_a_slope_by_constant_forces() -> None:
+def test_a_disc_slides_down_a_slope_under_constant_forces() -> None:
     data = problem("slide.slope")
     with mp.workdps(DIGITS):
         given = {key: mpf(value) for key, value in data["scene"].items()}
@@ -161,7 +161,7 @@ def test_a_disc_slides_down_a_slope_by_constant_forces() -> None:
     assert wrong == [] and len(data["states"]) > 20
 
 
-def test_bounces_of_a_flat_body_come_at_equal_times() -> None:
+def test_bounces_of_a_flat_body_are_equally_spaced_in_time() -> None:
     """From rest at z: the first after sqrt(2 (z - b)/g), the others after twice that."""
     data = problem("hit.bounce_flat")
     with mp.workdps(DIGITS):

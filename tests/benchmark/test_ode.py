@@ -31,14 +31,14 @@ def solved(one: benchmark.Problem) -> tuple[NDArray[np.float64], list[tuple[str,
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_dop853_reaches_nine_digits(name: str) -> None:
+def test_dop853_is_accurate_to_nine_digits(name: str) -> None:
     """Local errors of 1e-12, some thousand steps and conditions up to 1e3 stay below 1e-9."""
     one = benchmark.problem(name)
     states, events = solved(one)
     scored = one.times <= one.horizon
     assert np.max(np.abs(states - one.states)[scored] / one.scales) < 1e-9
     known = [(event.kind.name, event.t, event.condition) for event in one.events]
-    if name == "hit.settle":  # slower bounces to the end, whose sum in the known answer is STICK
+    if name == "hit.settle":  # slower bounces follow, which the known answer sums into STICK
         assert 0 < known[-1][1] - events[-1][1] < 4e-7 / one.scales[5]
         known, events = known[:-1], events[: len(known) - 1]
     assert [kind for kind, _ in events] == [kind for kind, *_ in known]
@@ -47,7 +47,7 @@ def test_dop853_reaches_nine_digits(name: str) -> None:
     assert one.ode().switching_times == pytest.approx([event.t for event in one.events])
 
 
-def test_another_array_module() -> None:
+def test_the_equations_work_with_another_array_module() -> None:
     jnp = pytest.importorskip("jax.numpy")
     for name in IDS:
         one = benchmark.problem(name)

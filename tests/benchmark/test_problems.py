@@ -1,9 +1,9 @@
 """The package gives the known answers of reference/make_benchmark.py, which shares no code with it.
 
 Bound. Inputs are doubles, off by up to half an ulp, 1.1e-16 of them, and so are the numbers of the
-files. A condition is the change of an answer, in its own scale, by that of all inputs: a method as
-good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room for its own roundings
-and for forces, functions of the state with slopes of up to three weights by scale.
+files. A condition is the change of an answer, in its own scale, caused by that of all inputs: a
+method as good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room for its own
+roundings and for forces, functions of the state with slopes of up to three weights by scale.
 """
 
 import json
@@ -43,7 +43,7 @@ def errors(data: Any, found: Any, exact: Any) -> NDArray[np.float64]:
 
 
 @each_problem
-def test_states_forces_and_events_are_the_known_ones(name: str) -> None:
+def test_states_forces_and_events_match_the_known_answers(name: str) -> None:
     """Within the bound, and states and forces to twelve digits where the condition is large."""
     data, of = PROBLEMS[name], motion(name)
     rows, condition = np.array(data["states"]), np.array(data["condition"])
@@ -65,7 +65,7 @@ def test_states_forces_and_events_are_the_known_ones(name: str) -> None:
         assert errors(data, mine, [known["before"], known["after"]]).max() <= most
 
 
-def test_other_laws_of_restitution_are_the_known_ones() -> None:
+def test_other_laws_of_restitution_match_the_known_answers() -> None:
     data = PROBLEMS["law.which"]
     body = {key: data["scene"][key] for key in ("a", "b", "friction", "restitution")}
     (hit,), g = data["events"], data["scene"]["gravity"]
@@ -82,7 +82,7 @@ def test_other_laws_of_restitution_are_the_known_ones() -> None:
 
 
 @each_problem
-def test_twins_have_the_same_events(name: str) -> None:
+def test_slightly_changed_problems_have_the_same_events(name: str) -> None:
     """All inputs off by 1e-12 of their size, zeros of the start by 1e-12 of their scale."""
     data, rng = PROBLEMS[name], random.Random(33)
     scene, sizes = data["scene"], dict(zip(STATE, data["scales"], strict=True))
@@ -98,7 +98,7 @@ def test_twins_have_the_same_events(name: str) -> None:
         assert [each.kind for each in twin.events] == [each.kind for each in motion(name).events]
 
 
-def test_the_files_are_small_and_of_one_form() -> None:
+def test_the_files_are_small_and_share_one_format() -> None:
     assert len(PROBLEMS) == 20 and sum(data["scored"] for data in PROBLEMS.values()) == 18
     assert sum(path.stat().st_size for path in FOLDER.glob("*.json")) <= 200_000
     for name, data in PROBLEMS.items():
@@ -111,7 +111,7 @@ def test_the_files_are_small_and_of_one_form() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """Bounces that are asked for rise by more than 0.002 L before; the end is that of the last."""
+    """Bounces that count rise by more than 0.002 L before; the end is that of the last."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

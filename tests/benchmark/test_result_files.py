@@ -1,4 +1,4 @@
-"""Files of problems and results: written over nothing, and read as they must be."""
+"""Files of problems and results: they overwrite nothing and are read as documented."""
 
 import os
 import shutil
@@ -32,8 +32,8 @@ def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: P
     assert len(scores.to_dataframe()) == 18
 
 
-def test_a_cut_file_is_refused_by_its_last_row(tmp_path: Path) -> None:
-    """As a full disk leaves it: within a number the row is shorter, or another number."""
+def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> None:
+    """As a full disk leaves it: a cut within a number gives a shorter row or another number."""
     one = benchmark.problem("slide.stick")
     benchmark.export(tmp_path)
     path = write_states(tmp_path, one, one.exact(one.output_times))
@@ -43,7 +43,7 @@ def test_a_cut_file_is_refused_by_its_last_row(tmp_path: Path) -> None:
         benchmark.score(tmp_path)
 
 
-def test_an_empty_file_of_events_counts_as_none(tmp_path: Path) -> None:
+def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
     """Events are then read off the states; of two columns with one name the first counts."""
     one = benchmark.problem("slide.stick")
     rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
@@ -55,7 +55,7 @@ def test_an_empty_file_of_events_counts_as_none(tmp_path: Path) -> None:
 
 
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
-    """All is written, or nothing: an own file, a link to it, a dangling one, a folder, a pipe."""
+    """All or nothing is written: over a file, a link to it, a dangling link, a folder, a pipe."""
     mine, place = tmp_path / "mine", tmp_path / "place"
     for name in ("README.txt", "roll.rock.json", "roll.rock.csv", "hit.settle.sdf"):
         for make in (
@@ -76,7 +76,7 @@ def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
             shutil.rmtree(place)
 
 
-def test_a_full_disk_leaves_no_cut_file(tmp_path: Path) -> None:
+def test_a_full_disk_leaves_no_truncated_file(tmp_path: Path) -> None:
     with files_of_at_most(3000), pytest.raises(OSError, match="large"):
         benchmark.export(tmp_path)
     whole = {path.name: path.read_bytes() for path in tmp_path.iterdir()}

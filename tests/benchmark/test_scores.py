@@ -56,7 +56,7 @@ def dull_below_threshold(scene: Any, theta: float, *velocity: float) -> Any:
 
 
 def sticky(one: Any, t: Any, setting: Any) -> Any:
-    """Ground that may pull: where a body lifts off, it rolls on."""
+    """Ground that may pull: a body that would lift off rolls on."""
     states = one.exact(t)
     for event in (event for event in one.events if event.kind is EventKind.LIFT_OFF):
         given = dict(zip(STATE, event.after, strict=True)) | dict.fromkeys(["z", "x_dot", "z_dot"])
@@ -66,7 +66,8 @@ def sticky(one: Any, t: Any, setting: Any) -> Any:
 
 
 def hovering(one: Any, t: Any, setting: Any) -> Any:
-    """Convex friction: opening at friction times slip for a step of 0.01 s, it slides that high."""
+    """Convex friction: the gap opens at friction times slip for 0.01 s, and the body slides
+    there."""
     states = one.exact(t)
     hop = 0.01 * one.scene.friction * np.abs(gap_and_slip(one, states)[1])
     states[:, 1] += np.where(one.trajectory.sol(t).mode == Mode.SLIDING, hop, 0.0)
@@ -95,7 +96,7 @@ BROKEN: dict[str, tuple[Callable[..., Any], set[str]]] = {
             scene, theta, x_dot, z_dot - 0.005 * scene.gravity * bool(scene.restitution), omega
         )), BOUNCES,
     ),
-    # all other bodies that bounce come down at 1.9 m/s or more
+    # all other bouncing bodies land at 1.9 m/s or more
     "no restitution below 0.5 m/s": (colliding(dull_below_threshold), {"hit.settle"}),
     # in hit.bounce and hit.bounce_flat the ground has no friction
     "no friction in a collision": (
@@ -105,7 +106,7 @@ BROKEN: dict[str, tuple[Callable[..., Any], set[str]]] = {
     ),
     # the only body that lifts off
     "sticky ground": (sticky, {"leave.slip_then_lift"}),
-    # those that slide on for a time; other slip is inside the collisions
+    # those that slide for a while; other slip is within collisions
     "convex friction": (hovering, WITH_SLIP - {"hit.drop_slip_e", "hit.settle", "law.which"}),
 }  # fmt: skip
 
@@ -121,8 +122,8 @@ def rolls_only(one: Any, t: Any, h: Any) -> Any:
     return one.exact(t) * (10 if one.id == "roll.rock" else 1 + h)
 
 
-def test_the_exact_motion_is_perfect() -> None:
-    """Twelve digits at least; an error of 2.2e-16 of all inputs is the condition number times it.
+def test_the_exact_motion_gets_a_perfect_score() -> None:
+    """Twelve digits at least: an error of 2.2e-16 of all inputs grows by the condition number.
 
     Two such units are allowed for the rounding of the motion and of the known answer.
     """
@@ -140,7 +141,7 @@ def test_the_exact_motion_is_perfect() -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")  # held by the sticky ground
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
-    """Energy shows the loss of bounces that are over before the next given time."""
+    """The energy reveals lost bounces that are over before the next given time."""
     mine, expected = BROKEN[name]
     found = benchmark.run(mine, tolerance=TOLERANCE)
     caught = {s.problem for s in found if not s.passed or s.energy_lost > TOLERANCE}
@@ -148,7 +149,7 @@ def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
     assert name != "convex friction" or found[IDS.index("slide.stick")].hop > 1e-3
 
 
-def test_forces_are_scored_where_they_are_given() -> None:
+def test_forces_are_scored_where_they_are_provided() -> None:
     """Over m g = 9.81 N, with friction 0.2; the normal force of one row is missing."""
     one = benchmark.problem("slide.stick")
     right = exact(one, one.output_times)
@@ -165,8 +166,8 @@ def test_forces_are_scored_where_they_are_given() -> None:
         assert forces == pytest.approx(expected, nan_ok=True)
 
 
-def test_events_are_read_off_the_states() -> None:
-    """Times to two rows; kinds that neither a short contact nor a slow start of slip blurs."""
+def test_events_are_inferred_from_the_states() -> None:
+    """Times to within two rows; kinds not blurred by a short contact or a slow onset of slip."""
     for name in ("hit.bounce_flat", "hit.drop_slip", "hit.drop_stick", "leave.slip_then_lift"):
         one = benchmark.problem(name)
         read = read_off(one, one.output_times, one.exact(one.output_times))
@@ -176,7 +177,7 @@ def test_events_are_read_off_the_states() -> None:
                 assert abs(t - event.t) < 0.02, name
 
 
-def test_own_events_are_compared_with_the_exact_ones() -> None:
+def test_events_of_the_simulator_are_compared_with_the_exact_ones() -> None:
     one = benchmark.problem("leave.slip_then_lift")
     events = [(event.kind, event.t + 1e-4) for event in one.events]
     right, lost, more = (
@@ -188,7 +189,7 @@ def test_own_events_are_compared_with_the_exact_ones() -> None:
     assert more.answer == "wrong" and more.events["invented"] == {"JAM": 1}
 
 
-def test_a_ladder_has_an_order_and_a_trend() -> None:
+def test_a_ladder_of_steps_gives_an_order_and_a_trend() -> None:
     chosen = [benchmark.problem("roll.rock")]
     ladder = [1e-2, 5e-3, 1e-3]
     scores = benchmark.run(lambda one, t, h: one.exact(t) + h**2, problems=chosen, ladder=ladder)
@@ -199,7 +200,7 @@ def test_a_ladder_has_an_order_and_a_trend() -> None:
     assert scores.order("roll.rock")[1].startswith("plateau at")
 
 
-def test_what_is_not_supported_is_not_wrong() -> None:
+def test_unsupported_problems_do_not_count_as_wrong() -> None:
     found = benchmark.run(rolls_only, ladder=[0.0])
     assert found.wrong == ["roll.rock"] and not found[IDS.index("hit.bounce")].passed
     assert "not supported: 8" in found.verdict()
@@ -209,7 +210,7 @@ def test_what_is_not_supported_is_not_wrong() -> None:
     }
 
 
-def test_the_picture_says_what_is_right(tmp_path: Path) -> None:
+def test_the_picture_shows_which_answers_are_right(tmp_path: Path) -> None:
     """Marks have the shape of their answers; digits or the answer stand beside each row."""
     scores = benchmark.run(rolls_only, ladder=[0.1, 1e-5])
     chart = scores.plot(tmp_path / "scores.png")
@@ -232,7 +233,7 @@ def test_the_picture_says_what_is_right(tmp_path: Path) -> None:
     assert scores.plot(ax=ax).ax is ax and scores[0].tolerance == 1e-6
 
 
-def test_rows_that_are_not_finite_are_missing() -> None:
+def test_rows_that_are_not_finite_count_as_missing() -> None:
     one = benchmark.problem("slide.stick")
     states = one.exact(one.output_times)
     states[100:] = math.nan
@@ -246,7 +247,7 @@ def test_rows_that_are_not_finite_are_missing() -> None:
     assert huge.answer == "wrong" and huge.error > 1e299
 
 
-def test_gradients_are_those_of_the_exact_motion() -> None:
+def test_gradients_equal_those_of_the_exact_motion() -> None:
     gradients = benchmark.gradients()
     assert len(gradients) == 8
     for known in gradients:
@@ -260,7 +261,9 @@ def test_gradients_are_those_of_the_exact_motion() -> None:
     assert ball.value[1] == 0.5435575344560164
 
 
-def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_exits_with_1_for_wrong_answers_and_2_for_bad_input(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Exit code 1 where an answer is wrong, 2 on bad input."""
     assert main(["benchmark", "list"]) == 0
     listed = capsys.readouterr().out

@@ -19,7 +19,7 @@ TIMES = simulate(scenes.rolling, 1.0)._solution
 SLIDES = simulate(scenes.slip, 1.0)._solution
 
 
-def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
+def test_unaligned_arrays_are_copied_on_entry() -> None:
     """Unaligned numbers are copied: a `const double*` to them would be undefined behaviour. All
     arrays come in through one type, which copies them."""
     aligned = np.linspace(0.0, 1.0, 100_001)
@@ -33,8 +33,8 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
     assert not there.flags.aligned and copied == [False, True]
 
 
-def test_threads_that_cannot_start_are_not_missed() -> None:
-    """200 workers give the bits of one thread if memory ends after some twenty thread stacks."""
+def test_failing_to_start_threads_changes_no_bit() -> None:
+    """200 workers give the bits of one thread even if memory ends after some twenty stacks."""
     code = """
         import resource
         import numpy as np
@@ -53,8 +53,8 @@ def test_threads_that_cannot_start_are_not_missed() -> None:
     assert printed(code) == "the same\n"
 
 
-def test_memory_that_is_not_there_is_a_memory_error() -> None:
-    """Whatever array is the first that finds no room: 16 MB each, in memory that grows by 16 MB."""
+def test_running_out_of_memory_raises_a_memory_error() -> None:
+    """Whichever array is the first without room: 16 MB each, in memory that grows by 16 MB."""
     code = """
         import resource
         import numpy as np
@@ -123,9 +123,9 @@ LOOPS: dict[str, Callable[[], Any]] = {
 
 
 @pytest.mark.parametrize("loop", LOOPS.values(), ids=LOOPS.keys())
-def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
+def test_ctrl_c_interrupts_every_long_loop(loop: Callable[[], Any]) -> None:
     """The third signal, after 0.3 s, is the interrupt; each loop would take longer. A loop that
-    does not ask for signals meets all of them as one, at its end."""
+    does not check for signals receives all of them as one, at its end."""
     met = 0
 
     def third(*_: object) -> None:
@@ -144,12 +144,12 @@ def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
         signal.signal(signal.SIGALRM, usual)
 
 
-def test_choices_are_those_of_the_core() -> None:
+def test_choices_equal_those_of_the_core() -> None:
     for name in ("MODELS", "METHODS", "STABILIZATIONS"):
         assert getattr(settings, name) == getattr(_core, name)
 
 
-def test_only_what_is_public_is_offered() -> None:
+def test_dir_lists_only_public_names() -> None:
     assert dir(rl) == sorted(rl.__all__)
     for module in (rl.scenes, rl.geometry):
         assert dir(module) == sorted(module.__all__)
@@ -184,8 +184,8 @@ class Dial:
         return self.value
 
 
-def test_settings_that_were_seen_before_are_checked_again() -> None:
-    """As are an equal number of another type and an object that has changed."""
+def test_settings_seen_before_are_checked_again() -> None:
+    """So are an equal number of another type and an object that has changed."""
     scene, dial = rl.scenes.rolling, Dial(1e-4)
     how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
     assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500

@@ -27,7 +27,7 @@ WEIRD = rl.Scene(
 
 
 def sliding() -> Events:
-    """54 events of half a minute downhill."""
+    """The 54 events of half a minute downhill."""
     return rl.simulate(rl.scenes.slope, 30.0).events
 
 
@@ -127,13 +127,13 @@ REPORT, JUMP = rl.scenes.report, rl.simulate(rl.scenes.jump, 2.0)
         ("roll.rock", lambda word: rl.benchmark.problem(word).times),
     ],
 )  # fmt: skip
-def test_words_are_understood_in_any_case(word: str, call: Callable[[str], Any]) -> None:
+def test_words_are_accepted_in_upper_or_lower_case(word: str, call: Callable[[str], Any]) -> None:
     for typed in (word.upper(), word.title()):
         assert np.array_equal(call(typed), call(word))
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "cp437", "utf-8"])
-def test_a_console_of_any_encoding_shows_all(encoding: str, monkeypatch: Any) -> None:
+def test_a_console_of_any_encoding_shows_everything(encoding: str, monkeypatch: Any) -> None:
     found, console = sliding(), io.TextIOWrapper(io.BytesIO(), encoding=encoding)
     monkeypatch.setattr("sys.stdout", console)
     print(*(make() for make in LISTED.values()), found, *found[:2], *rl.report.errata())
@@ -150,7 +150,7 @@ def test_a_console_of_any_encoding_shows_all(encoding: str, monkeypatch: Any) ->
 
 
 @each_listed
-def test_text_and_html_say_the_same(make: Callable[[], Any]) -> None:
+def test_text_and_html_show_the_same_content(make: Callable[[], Any]) -> None:
     found = make()
     html = Reader(found._repr_html_())
     lines = str(found).splitlines()
@@ -160,22 +160,22 @@ def test_text_and_html_say_the_same(make: Callable[[], Any]) -> None:
 
 
 @each_listed
-def test_a_repr_is_one_line(make: Callable[[], Any]) -> None:
+def test_every_repr_fits_on_one_line(make: Callable[[], Any]) -> None:
     text = repr(make())
     assert "\n" not in text and len(text) < 420 and " object at 0x" not in text
 
 
 @each_listed
-def test_values_are_equal_by_what_they_say(make: Callable[[], Any]) -> None:
+def test_values_are_compared_by_content(make: Callable[[], Any]) -> None:
     one, other = make(), make()
-    _ = one._repr_html_()  # a cached value does not count
+    _ = one._repr_html_()  # cached values do not count
     for same in (other, copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
         assert one == same and hash(one) == hash(same)
     for thing in (None, repr(one), rl.thresholds(3.0, 1.0), rl.Scene(1.0, 1.0)):
         assert one != thing
 
 
-def test_a_changed_value_is_another() -> None:
+def test_a_changed_field_makes_a_value_unequal() -> None:
     things: Any = (rl.certify(rl.scenes.jump), rl.thresholds(2.0, 1.0), sliding()[3], fitted())
     for made in things:
         for field in filter(lambda each: each.init, dataclasses.fields(made)):
@@ -186,7 +186,7 @@ def test_a_changed_value_is_another() -> None:
     assert sliding() == sliding() and sliding()[:3] != sliding()[:4]
 
 
-def test_a_scene_shows_its_arguments_and_what_follows_from_them() -> None:
+def test_a_scene_shows_its_arguments_and_derived_quantities() -> None:
     assert repr(rl.scenes.circle) == "Scene(a=1.0, b=1.0, omega=2.0)"
     assert str(rl.scenes.report).splitlines()[1:] == [
         "a        2 m",
@@ -204,7 +204,7 @@ def test_a_scene_shows_its_arguments_and_what_follows_from_them() -> None:
     assert "restitution  1\n" in str(rl.scenes.bounce)
 
 
-def test_values_come_with_their_units() -> None:
+def test_values_are_printed_with_their_units() -> None:
     bounds = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # a body that may jam
     lines = dict(line.split(None, 1) for line in str(bounds).splitlines()[1:])
     assert lines["roll_over_speed"] == f"{bounds.roll_over_speed:.6g} rad/s"
@@ -245,7 +245,7 @@ def test_events_are_a_tuple_that_prints_as_a_table() -> None:
         assert f"{before} → {after}" in line
 
 
-def test_a_row_says_what_an_impact_did() -> None:
+def test_the_repr_of_an_impact_shows_its_effect() -> None:
     hit = next(each for each in sliding() if each.kind is rl.EventKind.IMPACT)
     row = repr(hit)
     assert row.startswith(f"<Event IMPACT at t = {hit.t:.9g} s, theta = ")
@@ -255,7 +255,7 @@ def test_a_row_says_what_an_impact_did() -> None:
 
 
 @pytest.mark.parametrize(("count", "rows"), [(0, 0), (1, 1), (16, 16), (17, 17), (18, 17)])
-def test_rows_are_left_out_where_that_makes_it_shorter(count: int, rows: int) -> None:
+def test_rows_are_omitted_only_if_that_shortens_the_table(count: int, rows: int) -> None:
     events = sliding()[:count]
     assert type(events) is Events
     cells = Reader(events._repr_html_()).cells
@@ -267,7 +267,7 @@ def test_rows_are_left_out_where_that_makes_it_shorter(count: int, rows: int) ->
         assert repr(events).splitlines()[0] == "1 event"
 
 
-def test_parts_and_copies_of_events_are_events() -> None:
+def test_slices_and_copies_of_events_are_events() -> None:
     events = sliding()
     assert type(events[3:9:2]) is Events and events[3:9:2] == tuple(events)[3:9:2]
     assert events[-1] is tuple(events)[-1]
@@ -275,7 +275,7 @@ def test_parts_and_copies_of_events_are_events() -> None:
         assert type(again) is Events and again == events
 
 
-def test_events_as_a_dataframe() -> None:
+def test_a_dataframe_of_events_has_all_their_values() -> None:
     events = sliding()
     frame = events.to_dataframe()
     assert list(frame["kind"]) == [each.kind.name for each in events]
@@ -294,7 +294,7 @@ def test_events_as_a_dataframe() -> None:
     assert none["t"].dtype == frame["t"].dtype == float
 
 
-def test_infinite_friction_never_fails_as_a_reason() -> None:
+def test_infinite_friction_is_never_blamed_for_a_slip() -> None:
     """The slip before a lift-off under infinite friction has its own reason."""
     events = rl.simulate(rl.Scene(2.0, 1.0, omega=5.2), 1.0).events
     kinds = [each.kind for each in events]
@@ -329,7 +329,7 @@ def drawn(motion: rl.Trajectory) -> tuple[list[float], list[tuple[float, ...]], 
 
 
 @pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)
-def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
+def test_a_motion_shows_a_picture_of_its_bodies(scene: rl.Scene) -> None:
     motion = rl.simulate(scene, 3.0)
     html = motion._repr_html_()
     assert 2500 < len(html) < 6000 and repr(motion)[1:-1] in html
@@ -340,7 +340,7 @@ def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
         assert max(axes) - 0.1 <= y <= height - min(axes) + 0.1
 
 
-def test_the_bodies_are_where_the_motion_is() -> None:
+def test_the_bodies_are_drawn_where_the_motion_puts_them() -> None:
     """Pixels are written to 0.1; a body that turns clockwise does so in the picture."""
     motion = rl.simulate(rl.scenes.report, 3.0)
     _, places, (rx, ry) = drawn(motion)
@@ -354,7 +354,7 @@ def test_the_bodies_are_where_the_motion_is() -> None:
         assert turn == pytest.approx(np.degrees(theta), abs=0.06)
 
 
-def test_downhill_goes_down() -> None:
+def test_the_ground_of_a_slope_is_drawn_at_its_true_angle() -> None:
     """The first line is the ground: some 400 pixels long, its ends written to 0.05 pixels."""
     html = rl.simulate(rl.scenes.slope, 3.0)._repr_html_()
     ground = re.search(r'points="(\S+) (\S+) (\S+) (\S+)"', html)
@@ -364,7 +364,7 @@ def test_downhill_goes_down() -> None:
 
 
 @pytest.mark.parametrize("t", [[0.0, 1e9], [1e9], 0.0, [0.0, 1e-300]])
-def test_few_samples_are_shown_as_well(t: Any) -> None:
+def test_a_motion_with_few_samples_still_has_a_picture(t: Any) -> None:
     motion = rl.simulate(rl.scenes.rolling, t)
     assert len(drawn(motion)[1]) in (1, 9)
 
@@ -376,7 +376,7 @@ def test_a_motion_too_far_away_to_be_drawn_has_no_picture() -> None:
     assert "<svg" not in motion._repr_html_() and "COMPLETED" in motion._repr_html_()
 
 
-def test_a_motion_that_never_began_has_no_picture() -> None:
+def test_a_motion_without_samples_has_no_picture() -> None:
     motion = rl.simulate(rl.scenes.bounce, [5.0], max_events=1, raise_on_failure=False)
     assert motion.t.size == 0
     html = motion._repr_html_()

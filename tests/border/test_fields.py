@@ -86,12 +86,14 @@ def test_scenes_have_the_fields_of_the_core() -> None:
 
 @pytest.mark.parametrize("road", ROADS)
 @pytest.mark.parametrize("name", FIELDS)
-def test_a_scene_keeps_its_numbers(road: str, name: str, tmp_path: Path) -> None:
+def test_a_scene_keeps_its_values_through_every_interface(
+    road: str, name: str, tmp_path: Path
+) -> None:
     assert ROADS[road](changed(name), tmp_path) == changed(name) != START
 
 
 @pytest.mark.parametrize("name", FIELDS)
-def test_a_number_changes_the_motion(name: str) -> None:
+def test_every_value_of_a_scene_affects_the_motion(name: str) -> None:
     """The core reads the number, and so do the units of a contact motion."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
@@ -114,7 +116,7 @@ def test_a_motion_is_the_same_in_other_units(scene: Scene, units: Any) -> None:
     assert len(one.events) > (3 if scene is START else 0) and np.any(one.normal_force > 0)
 
 
-def test_each_field_is_an_option_or_has_a_reason() -> None:
+def test_each_field_is_a_command_line_option_or_has_a_reason() -> None:
     assert {*SCENE_OPTIONS, *NOT_TYPED} == set(names(Scene))
     assert not set(SCENE_OPTIONS) & set(NOT_TYPED)
     for name in SCENE_OPTIONS:
@@ -130,12 +132,12 @@ def test_settings_have_the_fields_of_the_core() -> None:
             _core.Settings({key: value for key, value in given.items() if key != name})
 
 
-def test_starts_have_the_fields_of_the_core() -> None:
+def test_initial_states_have_the_fields_of_the_core() -> None:
     assert set(names(type(START.initial_state))) == {*UNITS["InitialState"], "mode", "reason"}
     assert set(UNITS["State"]) < set(UNITS["InitialState"])
 
 
-def test_an_event_keeps_its_numbers() -> None:
+def test_an_event_keeps_its_values_in_tables() -> None:
     motion = rl.simulate(START, TIMES, model="contact")
     row = motion._solution.events.tolist()[0]
     named = dict(zip(_core.COLUMNS["events"], row, strict=True))
@@ -148,7 +150,7 @@ def test_an_event_keeps_its_numbers() -> None:
     assert event_row(event_values(event)) == row
 
 
-def test_statistics_and_columns_have_their_names() -> None:
+def test_statistics_and_columns_have_the_names_of_the_core() -> None:
     assert set(rl.simulate(START, TIMES).stats) == set(_core.STATS) <= set(_core.COLUMNS["codes"])
     no_scenes = np.empty((0, len(_core.COLUMNS["scenes"])))
     tables = _core.simulate_table(no_scenes, DEFAULTS.core, TIMES, 1)

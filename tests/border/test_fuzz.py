@@ -17,7 +17,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(TOOLS))
 
 
-def test_nothing_is_found() -> None:
+def test_a_short_run_finds_no_fault() -> None:
     """A short run finds nothing; on failure the assertion shows the lines of each finding."""
     command = [sys.executable, str(TOOLS / "fuzz_api.py"), "--seed", "1", "--calls", str(CALLS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
@@ -27,7 +27,7 @@ def test_nothing_is_found() -> None:
     assert f"{CALLS} cases" in done.stdout
 
 
-def test_every_argument_of_what_is_public_is_drawn() -> None:
+def test_the_fuzzer_draws_every_public_argument() -> None:
     """An argument of a new function needs a line in `NUMBERS` or `OTHERS` of `fuzz/calls.py`."""
     from fuzz.calls import FUNCTIONS, NUMBERS, OTHERS, OWN, PLAIN, SLOW
 
@@ -36,7 +36,7 @@ def test_every_argument_of_what_is_public_is_drawn() -> None:
     assert names <= {*NUMBERS, *OTHERS}
 
 
-def test_a_case_is_the_same_every_time() -> None:
+def test_a_case_is_reproducible() -> None:
     from fuzz_api import Hunt
 
     drawn: list[list[list[str]]] = []
@@ -53,7 +53,7 @@ def test_a_case_is_the_same_every_time() -> None:
     assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_a_finding_is_shortened(capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_failing_case_is_shrunk(capfd: pytest.CaptureFixture[str]) -> None:
     """Every motion of a body with restitution is a finding here, and one is printed."""
     from fuzz.process import Finding
     from fuzz_api import Hunt
@@ -84,7 +84,7 @@ def test_a_finding_is_shortened(capfd: pytest.CaptureFixture[str]) -> None:
         ("copy", "promises.same(*(rl.simulate(rl.scenes.rolling, t) for t in ([1.0], [0.5])))"),
     ],
 )
-def test_it_sees(kind: str, code: str) -> None:
+def test_the_fuzzer_finds_planted_faults(kind: str, code: str) -> None:
     from fuzz.process import Process
 
     with Process(0.3) as process:

@@ -1,6 +1,6 @@
 """Public functions of arrays give the same bits for an array of any layout, and for its rows.
 
-Functions of numbers broadcast; each element has the bits of a single call.
+Functions of numbers broadcast; each element equals a single call bit for bit.
 """
 
 import inspect
@@ -197,7 +197,7 @@ def bits(result: Any) -> list[Any]:
 
 
 @each_call
-def test_bits_do_not_depend_on_the_layout(name: str) -> None:
+def test_results_are_bit_identical_for_every_memory_layout(name: str) -> None:
     call = CALLS[name]
     given = {key: values.copy() for key, values in call.given.items()}
     expected = bits(call.function(**given))
@@ -209,7 +209,7 @@ def test_bits_do_not_depend_on_the_layout(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, call in CALLS.items() if call.rows])
-def test_a_row_of_many_has_the_bits_of_a_single_call(name: str) -> None:
+def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None:
     """Whatever the layout of the row: layouts take turns."""
     call, layouts = CALLS[name], list(LAYOUTS.values())
     many = leaves(call.function(**call.given))
@@ -241,7 +241,7 @@ def answers(name: str, given: dict[str, Any]) -> tuple[Any, ...]:
 
 
 @each_of_numbers
-def test_an_element_is_a_single_call(name: str) -> None:
+def test_each_element_of_a_result_equals_a_single_call(name: str) -> None:
     given = shaped(name, *SHAPES)
     arrays, every = answers(name, given), np.broadcast_arrays(*given.values())
     assert all(values.shape == (3, 4, 5) for values in arrays)
@@ -256,7 +256,9 @@ def test_an_element_is_a_single_call(name: str) -> None:
 
 @each_of_numbers
 @pytest.mark.parametrize("shape", [(0,), (0, 4), (1,), (1, 1)])
-def test_results_have_the_shape_of_arguments_and_own_memory(name: str, shape: Any) -> None:
+def test_results_have_the_shape_of_the_arguments_and_their_own_memory(
+    name: str, shape: Any
+) -> None:
     given = shaped(name, (), shape)
     for values in answers(name, given):
         assert values.shape == shape
@@ -264,14 +266,14 @@ def test_results_have_the_shape_of_arguments_and_own_memory(name: str, shape: An
 
 
 @each_of_numbers
-def test_a_wrong_number_beside_an_empty_array_is_refused(name: str) -> None:
+def test_an_invalid_value_next_to_an_empty_array_is_rejected(name: str) -> None:
     given = {key: float(value) for key, value in shaped(name, ()).items()}
     for empty, wrong in itertools.permutations(given, 2):
         with pytest.raises(ValueError, match=rf"^{wrong}(\[0\])? must be"):
             answers(name, given | {empty: np.empty((2, 0)), wrong: np.nan})
 
 
-def test_coordinates_broadcast_before_their_last_axis() -> None:
+def test_coordinates_broadcast_over_all_but_their_last_axis() -> None:
     theta, omega = np.linspace(-2.0, 5.0, 4)[:, None], np.array([0.5, -1.0, 3.0])
     q, q_dot = rl.kinematics(theta, omega, **AXES)
     residuals = vars(rl.constraints(q.tolist(), q_dot, **AXES))
@@ -315,8 +317,8 @@ def takes_arrays(function: Any) -> bool:
     )
 
 
-def test_every_function_of_arrays_is_tried() -> None:
-    """Those whose docstrings say array_like, or that leave open of what kind an argument is."""
+def test_every_function_that_takes_arrays_is_tested() -> None:
+    """Those whose docstrings say array_like or leave the kind of an argument open."""
     found = {name for name, function in public() if takes_arrays(function)}
     assert len(found) > 50
     assert found <= {name.partition(":")[0] for name in CALLS}

@@ -81,7 +81,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 each_road = pytest.mark.parametrize("road", ROADS.values(), ids=ROADS)
 
 
-def test_the_comparison_sees_a_bit_and_a_flag() -> None:
+def test_the_comparison_detects_a_changed_bit_or_flag() -> None:
     for change in (np.array([1.0, 2.0]), np.array([1.0, math.nextafter(2, 3)])):
         change.flags.writeable = change[1] == 2.0
         fixed = np.array([1.0, 2.0])
@@ -100,7 +100,7 @@ def parts(thing: Any) -> set[type]:
     return {type(thing)} | inner
 
 
-def test_every_public_class_is_here() -> None:
+def test_every_public_class_is_tested() -> None:
     here = set().union(*(parts(make()) for make in OBJECTS.values()))
     assert not public_classes(rl, rl.report, rl.impacts, rl.course) - here
     assert Settings in here
@@ -108,7 +108,9 @@ def test_every_public_class_is_here() -> None:
 
 @each_road
 @pytest.mark.parametrize("make", OBJECTS.values(), ids=OBJECTS)
-def test_it_comes_back_as_it_went(make: Callable[[], Any], road: Callable[[Any], Any]) -> None:
+def test_an_object_survives_every_kind_of_copy_unchanged(
+    make: Callable[[], Any], road: Callable[[Any], Any]
+) -> None:
     require_same(make(), road(make()))
 
 
@@ -118,7 +120,7 @@ def test_pickles_hold_no_more_than_needed() -> None:
     for name in ("q", "energy", "r_ddot", "contact_x", "events"):
         getattr(motion, name)
     assert len(pickle.dumps(motion)) == size < 9 * 8 * TIMES.size + 4000
-    assert copy.copy(motion).q is motion.q  # a shallow copy computes nothing again
+    assert copy.copy(motion).q is motion.q  # a shallow copy recomputes nothing
     assert copy.copy(motion)._solution is motion._solution
 
 
@@ -140,7 +142,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize("how", ["fork", "spawn", "forkserver"])
-def test_pools_return_motions(how: str, tmp_path: Path) -> None:
+def test_process_pools_return_motions_unchanged(how: str, tmp_path: Path) -> None:
     program, path = tmp_path / "pools.py", tmp_path / "found"
     program.write_text(POOLS)
     scenes = (rl.scenes.report, rl.scenes.rocking, rl.scenes.bounce)
@@ -162,7 +164,7 @@ PICTURES = (
 
 
 @pytest.mark.parametrize("draw", PICTURES, ids=lambda draw: draw.__name__)
-def test_pictures_are_pickled_as_figures_are(draw: Callable[..., Any]) -> None:
+def test_pictures_pickle_like_figures(draw: Callable[..., Any]) -> None:
     figure = Figure()
     motion = MOTIONS["contact"]()
     if draw is rl.plot:
@@ -185,7 +187,7 @@ def require_same_lines(one: Any, other: Any) -> None:
         assert np.array_equal(line.get_xydata(), same.get_xydata(), equal_nan=True)
 
 
-def test_all_classes_of_the_core_are_known() -> None:
+def test_all_classes_of_the_core_are_tested() -> None:
     bound = {name for name, kind in vars(_core).items() if type(kind).__name__ == "pybind11_type"}
     assert bound == set(core_objects())
 
@@ -204,7 +206,7 @@ for thing in core_objects().values():
 """
 
 
-def test_objects_of_the_core_refuse_to_be_pickled_or_copied() -> None:
+def test_objects_of_the_core_cannot_be_pickled_or_copied() -> None:
     """Pickling runs in a separate process, because a pickled core object might end it."""
     refusals = [f"_core.{name} cannot be pickled or copied" for name in core_objects()]
     assert printed(CORE, TESTS).splitlines() == [text for text in refusals for _ in ROADS]

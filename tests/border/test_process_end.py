@@ -60,7 +60,7 @@ assert thread.is_alive()
 
 
 @pytest.mark.parametrize("call", LONG.values(), ids=LONG)
-def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> None:
+def test_a_daemon_thread_does_not_block_the_end_of_the_process(call: str, tmp_path: Path) -> None:
     """The main thread ends during the call, at two moments; the process ends with exit code 0."""
     for seconds in ("0.15", "0.22"):
         script = DAEMON.replace("{call}", call).replace("{seconds}", seconds)
@@ -103,7 +103,7 @@ raise SystemExit(code)
 """
 
 
-def test_a_fork_beside_a_figure_does_not_wait_for_it() -> None:
+def test_a_fork_does_not_wait_for_a_figure_being_drawn_in_another_thread() -> None:
     assert run(FORK).returncode == 0
 
 
@@ -135,5 +135,5 @@ raise SystemExit(code)
 """
 
 
-def test_ctrl_c_ends_long_work_of_a_child_that_a_thread_forked() -> None:
+def test_ctrl_c_interrupts_long_work_in_a_child_process_forked_by_a_thread() -> None:
     assert run(FORKED_BY_A_THREAD).returncode == 0

@@ -52,7 +52,7 @@ def explorer(path: Path) -> None:
 
 
 def refused_picture() -> None:
-    """Draw a picture that fails when its figure is open."""
+    """Draw a picture that fails while its figure is open."""
     with pytest.raises(ValueError):
         rl.plot_energy(ROLLED, color="no such colour")
 
@@ -62,7 +62,7 @@ def warned() -> None:
         simulate(SLIPPING, [0.0, 2.0], model="rolling")
 
 
-def test_threads_leave_what_they_share_as_it_was(tmp_path: Path) -> None:
+def test_threads_leave_shared_state_unchanged(tmp_path: Path) -> None:
     """Thirteen threads work at once; each warning is shown, and each figure has its own number."""
     films = [lambda i=i: film(tmp_path / f"film{i}.{'gif' if i else 'mp4'}") for i in range(3)]
     work: list[Callable[[], Any]] = [
@@ -86,7 +86,7 @@ def test_threads_leave_what_they_share_as_it_was(tmp_path: Path) -> None:
     [lambda path: explorer(path / "page.html"), lambda _: rl.plot_error(COARSE), lambda _: race()],
     ids=["explorer", "error", "race"],
 )
-def test_warnings_are_not_caught(deed: Any, tmp_path: Path, monkeypatch: Any) -> None:
+def test_the_package_does_not_catch_warnings(deed: Any, tmp_path: Path, monkeypatch: Any) -> None:
     """`warnings.catch_warnings` would silence all threads."""
 
     def caught(*_: Any, **__: Any) -> None:
@@ -98,7 +98,7 @@ def test_warnings_are_not_caught(deed: Any, tmp_path: Path, monkeypatch: Any) ->
 
 
 @pytest.mark.parametrize("suffix", ["gif", "mp4"])
-def test_a_film_leaves_settings_alone_while_it_is_written(
+def test_shared_settings_stay_unchanged_while_a_film_is_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The settings are compared within each frame, when other threads may run."""
@@ -114,7 +114,7 @@ def test_a_film_leaves_settings_alone_while_it_is_written(
     assert all(seen)
 
 
-def test_a_picture_that_fails_closes_its_own_figure_only(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failing_picture_closes_only_its_own_figure(monkeypatch: pytest.MonkeyPatch) -> None:
     """The failing picture closes its own figure, while another figure is opened beside it."""
     mine, usual = [], plt.figure
 

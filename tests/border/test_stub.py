@@ -37,17 +37,17 @@ def public(of: object) -> set[str]:
     return {name for name in dir(of) if not name.startswith("_")}
 
 
-def test_the_names_are_those_of_the_extension() -> None:
+def test_the_stub_has_the_names_of_the_extension() -> None:
     assert public(_core) == FUNCTIONS.keys() | CLASSES.keys() | CONSTANTS
     assert len(FUNCTIONS) > 20 and len(CLASSES) > 10
 
 
-def test_functions_take_the_arguments_of_the_extension() -> None:
+def test_functions_of_the_stub_take_the_arguments_of_the_extension() -> None:
     for name, function in FUNCTIONS.items():
         assert bound(getattr(_core, name)) == declared(function), name
 
 
-def test_classes_have_the_members_of_the_extension() -> None:
+def test_classes_of_the_stub_have_the_members_of_the_extension() -> None:
     for name, declaration in CLASSES.items():
         kind = getattr(_core, name)
         if issubclass(kind, enum.Enum):
@@ -68,7 +68,7 @@ def test_classes_have_the_members_of_the_extension() -> None:
             assert bound(getattr(kind, method)) == declared(function), f"{name}.{method}"
 
 
-def test_a_script_with_every_verb_runs_and_its_types_are_known(tmp_path: Path) -> None:
+def test_a_typed_script_with_every_verb_runs(tmp_path: Path) -> None:
     """mypy --strict reads the script with the tests; here it runs, and misses no verb."""
     assert all(isinstance(number, float | int) for number in use(tmp_path))
     script = inspect.getsource(use)

@@ -19,7 +19,7 @@ from rolling_ellipse._ask.records import cached_property
 from rolling_ellipse._motion import trajectory as trajectories
 
 THREADS, CALLS_EACH = 8, 1000
-PLACES = 5  # different calls of each kind, so that threads do different work at a time
+PLACES = 5  # different calls of each kind, so that threads do different work at the same time
 BODY = {"a": 2.0, "b": 1.0}
 TIMES = np.linspace(0.0, 1.0, 20)
 ROLLED = simulate(scenes.rolling, 4.0)
@@ -99,7 +99,7 @@ def refusal(call: Callable[[], Any]) -> str:
     return str(caught.value)
 
 
-def test_mixed_calls_have_the_bits_of_one_thread() -> None:
+def test_concurrent_mixed_calls_equal_single_threaded_ones_bit_for_bit() -> None:
     """8000 calls: each thread makes all calls in its own random order."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
@@ -135,7 +135,7 @@ LATE: dict[str, Callable[[], Any]] = {
 
 
 @pytest.mark.parametrize("make", LATE.values(), ids=LATE)
-def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> None:
+def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[], Any]) -> None:
     """Threads read the properties of a new object together, each in another order."""
 
     def comparable(value: Any) -> Any:
@@ -157,7 +157,7 @@ def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> N
             require_same({name: comparable(read[name]) for name in names}, alone)
 
 
-def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
+def test_every_property_cached_by_a_trajectory_is_tested() -> None:
     """`late_names` finds the properties of the samples and the late answers of the solver."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
@@ -171,7 +171,7 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 
 
 @pytest.mark.parametrize(("within", "read"), READS.values(), ids=READS)
-def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
+def test_computing_a_property_of_one_motion_does_not_block_another_motion(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A thread held inside a property lets another thread read the property of another motion."""

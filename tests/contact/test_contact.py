@@ -39,7 +39,9 @@ def random_motions(
 @pytest.mark.parametrize(
     ("inertia", "speed", "omega"), [(None, 3.0, 0.0), (2.0, 3.0, 0.0), (0.0135, -0.0255, -30.3)]
 )
-def test_a_sliding_disc(slope: float, inertia: float | None, speed: float, omega: float) -> None:
+def test_a_sliding_disc_follows_its_closed_form(
+    slope: float, inertia: float | None, speed: float, omega: float
+) -> None:
     """x.. = g (sin - mu cos), omega. = mu g cos a/k^2 until omega a = x.; then the disc rolls."""
     a, mu, mass = 0.7, 0.1, 2.0
     scene = Scene(
@@ -70,7 +72,9 @@ def test_a_sliding_disc(slope: float, inertia: float | None, speed: float, omega
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.5, 0.5), (0.7, 1.9)])
 @pytest.mark.parametrize("e", [0.5, 0.9])
 @pytest.mark.parametrize("friction", [0.0, 0.3, math.inf])
-def test_dropped_without_spin_a_body_rests(a: float, b: float, e: float, friction: float) -> None:
+def test_a_body_dropped_without_spin_comes_to_rest(
+    a: float, b: float, e: float, friction: float
+) -> None:
     """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
     v = 1.7
     scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
@@ -85,7 +89,7 @@ def test_dropped_without_spin_a_body_rests(a: float, b: float, e: float, frictio
     assert abs(kinds(simulate(scene, 2 * meant)).count(EventKind.IMPACT) - count) <= 1
 
 
-def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> None:
+def test_velocities_of_a_settling_body_change_linearly_until_it_rests() -> None:
     """Infinitely many bounces are one segment with linearly interpolated velocities; theta and x
     are their integrals plus the averaged displacement of the bounces."""
     scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, z=2.5, friction=0.4, restitution=0.5, x_dot=1.0)
@@ -110,13 +114,13 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
         most = 1e-9 * abs(end - start) + 4 * EPS * abs(start)
         assert np.all(np.abs(getattr(inside, name) - expected) <= most), name
     at = support(inside.theta, scene.a, scene.b)
-    # The height belongs to an angle reduced to the next quarter turn: equal but for rounding.
+    # The height belongs to an angle reduced to the next quarter turn: equal to within rounding.
     assert np.all(np.abs(inside.z - at.h) <= 2 * EPS * at.h)
     assert np.all(inside.normal_force == 0)
 
 
-def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
-    """A thousand bounces end at the same distance from x = 0 and from x = 1, but for rounding."""
+def test_bounces_cover_the_same_distance_from_any_start_to_within_rounding() -> None:
+    """A thousand bounces end at the same distance from x = 0 and from x = 1, to within rounding."""
     scene = Scene(
         0.03, 1.0, gravity=1.0, inertia=0.001, theta=1.5718, omega=1.0,
         impulse=Impulse(jz=1e-7), restitution=1.0,
@@ -128,7 +132,7 @@ def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
     assert there.events[-1].state_after.x == 1.0 + gone
 
 
-def test_bounces_down_a_steep_slope_are_even() -> None:
+def test_a_body_bouncing_down_a_steep_slope_accelerates_uniformly() -> None:
     """A slope without friction accelerates the body evenly in flight, settling and sliding."""
     slope = 1.5
     scene = Scene(2.0, 1.0, friction=0.0, restitution=0.5, slope=slope, z=1.0 + 1e-12)
@@ -141,8 +145,8 @@ def test_bounces_down_a_steep_slope_are_even() -> None:
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
 @pytest.mark.parametrize("side", [1, -1])
-def test_held_on_a_slope(a: float, b: float, side: int) -> None:
-    """The contact is under the centre, tan(alpha) = h'/h, and mu >= tan(alpha) holds the body."""
+def test_enough_friction_holds_a_body_on_a_slope(a: float, b: float, side: int) -> None:
+    """The contact is below the centre, tan(alpha) = h'/h, and mu >= tan(alpha) holds the body."""
     theta = side * 0.3
     at = support(theta, a, b)
     slope = math.atan2(at.slope, at.h)
@@ -211,7 +215,9 @@ def slide_in_its_own_clock(
     ("friction", "theta"), [(1.5, 1.1954466905), (2.0, 1.334565838), (4.0, 1.46422879159)]
 )
 @pytest.mark.parametrize("omega", [1.0, -1.0])
-def test_a_slide_comes_out_of_a_small_response(friction: float, theta: float, omega: float) -> None:
+def test_a_slide_with_a_small_contact_response_lasts_until_lift_off(
+    friction: float, theta: float, omega: float
+) -> None:
     """The slide lasts from B = 0.005, where N = c/B is large, to the lift-off at c = 0."""
     x_dot = float(support(theta, 2.0, 1.0).h) * omega + 500
     scene = Scene(2.0, 1.0, theta=theta, omega=omega, x_dot=x_dot, friction=friction)
@@ -227,7 +233,7 @@ def test_a_slide_comes_out_of_a_small_response(friction: float, theta: float, om
 
 
 @pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
-def test_a_jam_on_the_way(scene: Scene) -> None:
+def test_a_slide_may_jam_midway(scene: Scene) -> None:
     """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
 
     c vanishes more slowly than B: where SciPy stops, a part of c is left, and a part of omega and
@@ -293,9 +299,9 @@ def test_a_slip_ends_just_before_a_jam(a: float, b: float, friction: float, slip
 
 @pytest.mark.parametrize("short", [1e-3, 1e-5, 1e-7, 1e-9])
 @pytest.mark.parametrize("slope", [0.0, 0.02])
-def test_short_slips_are_found(slope: float, short: float) -> None:
-    """The friction is below the largest |F|/N of rolling by a part `short`; the slip lasts about as
-    long as its square root, down to microseconds."""
+def test_short_slips_are_detected(slope: float, short: float) -> None:
+    """The friction is below the largest |F|/N of rolling by a fraction `short`; the slip lasts
+    about as long as its square root, down to microseconds."""
     rolling = Scene(2.0, 1.0, omega=3.2, slope=slope)
     times = np.linspace(0, 0.9, 200_001)
     needed = simulate(rolling, times, model="contact").friction_needed
@@ -308,8 +314,8 @@ def test_short_slips_are_found(slope: float, short: float) -> None:
     assert stick.t - slip.t < 2 * math.sqrt(short)
 
 
-def test_the_limit_of_much_friction() -> None:
-    """mu = 1e3, 1e4.5 and 1e6 approach mu = infinity like 1/mu, in a slide that begins at N = 0."""
+def test_large_friction_approaches_the_infinite_limit() -> None:
+    """mu = 1e3, 1e4.5 and 1e6 approach mu = infinity like 1/mu, in a slide that starts at N = 0."""
     times = np.linspace(0, 0.35, 351)
     scene = Scene(2.0, 1.0, omega=5.0)
     limit = simulate(scene, times)
@@ -326,7 +332,7 @@ def test_the_limit_of_much_friction() -> None:
     assert off[1] / off[2] == pytest.approx(10**1.5, rel=0.1)
 
 
-def test_a_jam_ends_the_motion_where_it_starts() -> None:
+def test_a_jam_at_the_start_ends_the_motion_there() -> None:
     """tests/stability/test_painleve.py has the law. Slip to the other side does not jam."""
     jamming = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
     motion = simulate(jamming, 1.0)
@@ -338,9 +344,9 @@ def test_a_jam_ends_the_motion_where_it_starts() -> None:
     assert simulate(below, 1.0).status is Status.COMPLETED
 
 
-def test_only_slip_jams() -> None:
-    """A jam needs slip; without slip the contact acceleration always has a solution. Slides end
-    before two motions are possible, and an impact ends without the slip for it."""
+def test_only_a_slipping_contact_jams() -> None:
+    """A jam needs slip; without slip the contact acceleration always has a solution. A slide ends
+    before two motions become possible, and an impact leaves no slip for it."""
     jams = 0
     for scene, motion in random_motions(1000, 31, friction=3.0, restitution=0.0):
         assert "two motions" not in motion.message or motion.t_end == 0
@@ -356,7 +362,7 @@ def test_only_slip_jams() -> None:
 INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5484)
 
 
-def test_of_two_possible_motions_none_is_taken() -> None:
+def test_neither_of_two_possible_motions_is_chosen() -> None:
     """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both motions
     obey Newton's and Coulomb's laws."""
     start = INDETERMINATE.initial_state
@@ -375,7 +381,7 @@ def test_of_two_possible_motions_none_is_taken() -> None:
         assert kinds(simulate(INDETERMINATE.replace(**other), 0.1)) == []
 
 
-def test_a_blow_may_lead_to_two_motions() -> None:
+def test_two_motions_may_be_possible_after_a_blow() -> None:
     """A push along the ground through its centre makes the body slide faster and turn as before."""
     scene = INDETERMINATE.replace(x_dot=None)
     push = Impulse(jx=known(INDETERMINATE.x_dot) - scene.initial_state.x_dot)
@@ -393,7 +399,7 @@ def test_unlimited_friction_never_jams() -> None:
 # -------------------------------------------------------------------------- laws of every motion
 
 
-def test_what_no_motion_may_do() -> None:
+def test_every_motion_obeys_the_laws_of_contact() -> None:
     """3e5 samples obey the laws: no penetration, N >= 0, friction within its cone and against the
     slip, energy never grows. Integrated arcs have an error of 1e-13 per step at their ends and a
     few 1e-11 between them; averaged bounces gain at most the square of their duration."""
@@ -432,7 +438,7 @@ def test_the_first_arc_is_exact_rolling() -> None:
         assert np.array_equal(getattr(contact, name), getattr(rolling, name)), name
 
 
-def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
+def test_auto_chooses_the_contact_model_only_where_needed() -> None:
     for scene, model in (
         (rl.scenes.report, "rolling"), (rl.scenes.circle, "rolling"),
         (rl.scenes.jump, "contact"), (rl.scenes.slip, "contact"),
@@ -446,7 +452,7 @@ def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
 
 
 @eventful
-def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
+def test_samples_at_an_event_show_the_state_after_it(name: str) -> None:
     motion = simulate(getattr(rl.scenes, name), 5.0)
     assert motion.events
     for event in motion.events:
@@ -458,7 +464,7 @@ def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
             assert abs(getattr(at, field)[0] - getattr(after, field)) <= 4 * EPS * size, field
 
 
-def test_what_happens_at_the_last_time_has_happened() -> None:
+def test_an_event_at_the_last_time_is_included() -> None:
     """Impacts end exact flights, whose times do not depend on the span."""
     events = simulate(rl.scenes.bounce, 5.0).events
     assert len(events) >= 5
@@ -469,7 +475,7 @@ def test_what_happens_at_the_last_time_has_happened() -> None:
 
 
 @eventful
-def test_a_scene_on_the_way_continues_the_motion(name: str) -> None:
+def test_a_scene_taken_from_a_motion_continues_it(name: str) -> None:
     motion = simulate(getattr(rl.scenes, name), 5.0)
     ends = [0.0, *(event.t for event in motion.events), 5.0]
     for i, (begin, end) in enumerate(itertools.pairwise(ends)):
@@ -482,7 +488,7 @@ def test_a_scene_on_the_way_continues_the_motion(name: str) -> None:
 
 
 def test_a_start_that_cannot_roll_slides_at_once() -> None:
-    """|F| > mu N at t = 0: the body slips against the friction needed, with a slip like t."""
+    """|F| > mu N at t = 0: the body slips against the friction needed; the slip grows like t."""
     scene = Scene(2.0, 1.0, theta=0.5, friction=0.1)
     needed = simulate(scene.replace(friction=math.inf), [0.0]).friction_force[0]
     motion = simulate(scene, [0.0, 1e-4, 2e-4])
@@ -492,7 +498,7 @@ def test_a_start_that_cannot_roll_slides_at_once() -> None:
     assert slip[2] / slip[1] == pytest.approx(2, rel=1e-3)
 
 
-def test_max_events() -> None:
+def test_a_motion_stops_at_max_events() -> None:
     scene = rl.scenes.bounce
     whole = simulate(scene, 5.0)
     count = len(whole.events)
@@ -506,7 +512,7 @@ def test_max_events() -> None:
     assert np.array_equal(cut.theta[:-1], whole.theta[: cut.t.size - 1])
 
 
-def test_max_steps_stops_where_the_steps_ended() -> None:
+def test_a_motion_stopped_by_max_steps_ends_at_its_last_step() -> None:
     """max_steps counts the steps of all arcs; the slide of the slip scene needs more than five."""
     whole = simulate(rl.scenes.slip, 5.0)
     cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
@@ -534,18 +540,20 @@ STARTS = [
 
 
 @pytest.mark.parametrize(("scene", "mode", "reason"), STARTS)
-def test_starts_that_look_like_rolling(scene: Scene, mode: Mode, reason: str) -> None:
+def test_starts_that_look_like_rolling_get_their_true_mode(
+    scene: Scene, mode: Mode, reason: str
+) -> None:
     assert scene.initial_state.mode is mode and reason in scene.initial_state.reason
 
 
-def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
+def test_a_body_in_equilibrium_on_a_slope_stays_at_rest_in_every_model() -> None:
     for model in ("auto", "rolling", "multipliers"):
         motion = simulate(IN_BALANCE, 1e4, model=model)
         assert np.all(motion.mode == Mode.REST) and np.all(motion.omega == 0)
         assert np.ptp(motion.theta) == 0
 
 
-def test_leaving_the_ground_is_no_slip() -> None:
+def test_leaving_the_ground_does_not_count_as_slipping() -> None:
     """Rolling on a slope may continue with c <= 0; if friction then fails, the body flies."""
     scene = Scene(
         1.12284991254411, 1.0, friction=8.997344246579441, restitution=1.0,
@@ -559,9 +567,9 @@ def test_leaving_the_ground_is_no_slip() -> None:
 
 @pytest.mark.parametrize("theta", [-3e15, 1e16, 1e22, -1e50])
 @pytest.mark.parametrize("omega", [0.5, 3.0])
-def test_an_angle_without_parts_of_a_turn_is_where_it_points(theta: float, omega: float) -> None:
+def test_whole_half_turns_of_the_angle_do_not_change_the_motion(theta: float, omega: float) -> None:
     """An angle far from zero and its remainder modulo pi give the same slides, jumps and rolls, to
-    a few roundings of the angle and at most 40 of the time."""
+    within a few roundings of the angle and at most 40 of the time."""
     with mp.workdps(400):
         rest = float(mp.mpf(theta) - mp.nint(mp.mpf(theta) / mp.pi) * mp.pi)
     near = Scene(1.0, 0.2, theta=rest, omega=omega, friction=0.6, restitution=0.5, x_dot=2.0)
@@ -577,7 +585,7 @@ def test_an_angle_without_parts_of_a_turn_is_where_it_points(theta: float, omega
 
 
 @pytest.mark.parametrize("omega", [-1e-88, -1e-100, -1e-150, 1e-200, -5e-324])
-def test_next_to_no_speed_on_a_tip(omega: float) -> None:
+def test_a_tiny_speed_on_a_tip_lets_the_body_roll_or_rest(omega: float) -> None:
     """The body rolls if the rounded angle of the tip lets it fall, or rests if its speed vanishes
     in its own units. The search for the end of rolling always stops."""
     thin = Scene(6.1e-13, 6.05e-14, theta=math.pi / 2, omega=omega, friction=0.89, gravity=1.0)
@@ -588,7 +596,7 @@ def test_next_to_no_speed_on_a_tip(omega: float) -> None:
             assert motion.success and abs(motion.theta[0] - scene.theta) <= 1e-12
 
 
-def test_a_flight_farther_than_doubles_reach_says_so() -> None:
+def test_a_flight_too_fast_for_doubles_is_reported() -> None:
     """Bounces down a steep slope get faster and longer each time."""
     scene = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
     motion = simulate(scene, 1e300, model="contact", raise_on_failure=False)
@@ -602,7 +610,9 @@ def test_a_flight_farther_than_doubles_reach_says_so() -> None:
 
 @pytest.mark.parametrize("theta", [1e-101, -1e-150, 1e-235, -5e-324])
 @pytest.mark.parametrize("omega", [-30.0, 30.0, 1e6])
-def test_endless_friction_beside_the_flat_is_that_on_it(theta: float, omega: float) -> None:
+def test_infinite_friction_acts_near_the_flat_position_as_it_does_there(
+    theta: float, omega: float
+) -> None:
     """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""
     flat = Scene(2.0, 1.0, theta=0.0, omega=omega, friction=math.inf, x_dot=0.0)
     expected, beside = (
@@ -614,7 +624,7 @@ def test_endless_friction_beside_the_flat_is_that_on_it(theta: float, omega: flo
     assert np.isfinite(beside.friction_force).all() and np.isfinite(beside.normal_force).all()
 
 
-def test_a_rebound_of_a_rounding_on_the_tip_does_not_take_the_body_through_the_ground() -> None:
+def test_a_rebound_of_rounding_size_on_the_tip_does_not_pass_through_the_ground() -> None:
     """Rounding leaves the body no speed off the ground, and its weight presses it down."""
     scene = Scene(
         1.0, 0.8, gravity=1.0, inertia=0.41, friction=0.0, restitution=1.0,

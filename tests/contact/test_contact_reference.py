@@ -66,14 +66,14 @@ each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one i
 
 
 def shares(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
-    """Errors (n, 7) divided by the claimed bound; a time 0 must be exact."""
+    """Errors (n, 7) divided by the claimed bound; a time of 0 must be exact."""
     allowed = UNITS * motion.units + motion.rounding
     off: NDArray[np.float64] = table.differences(values, motion.values)
     return off / np.maximum(allowed, 1e-300)
 
 
 @each_motion
-def test_events_and_states_are_right(motion: Motion) -> None:
+def test_events_and_states_agree_with_a_30_digit_reference(motion: Motion) -> None:
     """Kinds of events agree, and times and states have the claimed accuracy. A jam at the start
     (end = 0) also ends a simulation of 1 s."""
     end = float(motion.values[-1][0]) or 1.0
@@ -86,8 +86,8 @@ def test_events_and_states_are_right(motion: Motion) -> None:
     assert shares(motion, values).max() <= 1
 
 
-def test_an_error_of_1e_11_is_seen() -> None:
-    """The judge is sharp: 1e-11 of any value of a first event, or of a unit, exceeds ten bounds."""
+def test_an_error_of_1e_11_is_detected() -> None:
+    """The check is sharp: 1e-11 of any value of a first event, or of a unit, exceeds ten bounds."""
     for motion in MOTIONS:
         values = np.array(motion.values, float)
         off = shares(motion, (values + 1e-11 * np.maximum(np.abs(values), 1)).tolist())
@@ -95,7 +95,7 @@ def test_an_error_of_1e_11_is_seen() -> None:
         assert off[0].min() > 10, motion.name
 
 
-def test_table_covers_what_it_promises() -> None:
+def test_the_table_covers_all_kinds_of_events_and_bodies() -> None:
     """The table has all kinds of events, friction, restitution, slopes, round and thin bodies."""
     kinds = [kind for one in MOTIONS for kind in one.kinds]
     least = {"slip": 30, "stick": 30, "reverse": 8, "lift_off": 12, "impact": 80}

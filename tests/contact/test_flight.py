@@ -90,7 +90,7 @@ def check(scene: Scene, flight: Scene | None = None) -> float:
     return t
 
 
-def test_the_first_touch_of_random_flights() -> None:
+def test_random_flights_end_at_their_first_touch() -> None:
     rng = np.random.default_rng(17)
     for _ in range(1000):
         check(random_flight(rng))
@@ -98,7 +98,7 @@ def test_the_first_touch_of_random_flights() -> None:
 
 @pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("omega", [8.0, -40.0, 700.0])
-def test_a_graze_is_no_miss(omega: float, miss: float) -> None:
+def test_a_graze_is_distinguished_from_a_miss(omega: float, miss: float) -> None:
     """A tip `miss` above the ground passes and lands later; a tip `miss` below has landed."""
     landings = []
     for offset in (miss, -miss):
@@ -122,7 +122,9 @@ def test_a_graze_is_no_miss(omega: float, miss: float) -> None:
 @pytest.mark.parametrize("omega", [7.0, -7.0, 40.0, 300.0])
 @pytest.mark.parametrize("beyond", [0.0, 0.02, 0.1, 0.3])
 @pytest.mark.parametrize("slope", [0.0, 0.8])
-def test_leaving_by_acceleration_alone(omega: float, beyond: float, slope: float) -> None:
+def test_a_body_may_leave_the_ground_by_acceleration_alone(
+    omega: float, beyond: float, slope: float
+) -> None:
     """Rolling at c = g cos(alpha) + h'' omega^2 < 0 around the tip: gap and rate start at zero."""
     scene = Scene(2.0, 1.0, theta=math.pi / 2 + beyond, omega=omega, slope=slope, friction=0.3)
     gap = Gap(scene)
@@ -142,7 +144,7 @@ def test_leaving_by_acceleration_alone(omega: float, beyond: float, slope: float
         (0.34, 0.46, -8.5, 6.4), (0.04, -1.24, 1.4, 7.2), (0.31, 0.62, -3.7, 0.2),
     ],
 )  # fmt: skip
-def test_a_blow_that_presses_leaves_no_speed_into_the_ground(
+def test_after_a_downward_blow_no_velocity_into_the_ground_remains(
     b: float, theta: float, omega: float, strength: float
 ) -> None:
     """The body flies at once from a closed gap with gap rate zero, after a blow of any strength."""
@@ -161,7 +163,7 @@ def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
         assert t == pytest.approx(2 * u / GRAVITY, rel=4 * EPS)
 
 
-def test_samples_in_flight_are_the_parabola() -> None:
+def test_samples_in_flight_lie_on_a_parabola() -> None:
     scene = Scene(
         2.0, 1.0, theta=0.4, omega=2.0, z=5.0, x=-1.0, x_dot=0.7, z_dot=3.0, slope=0.3,
         restitution=1.0,
@@ -182,7 +184,7 @@ def test_samples_in_flight_are_the_parabola() -> None:
 
 
 @pytest.mark.parametrize("omega", [1.0, 10.0])
-def test_small_hops_of_a_turning_circle(omega: float) -> None:
+def test_small_hops_of_a_turning_circle_are_exact_to_a_few_ulp(omega: float) -> None:
     """A circle's h is its radius, rounded up or down; the hops are far lower than that rounding."""
     scene = Scene(1.0, 1.0, z=1.5, omega=omega, x_dot=1.0, friction=0.0, restitution=0.6)
     events = simulate(scene, 3.0).events
@@ -192,9 +194,12 @@ def test_small_hops_of_a_turning_circle(omega: float) -> None:
 
 
 @pytest.mark.parametrize(("b", "restitution"), [(1e-3, 1.0), (1e-3, 0.0), (0.5, 0.5)])
-def test_a_spin_too_fast_for_the_clock_comes_down_as_well(b: float, restitution: float) -> None:
+def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
+    b: float, restitution: float
+) -> None:
     """Bounces down a steep slope grow until a body turns by more than half a turn between two
-    doubles of time. The body lands without a gain of energy, to roundings of its two parts."""
+    doubles of time. The body lands without a gain of energy, to within roundings of its two
+    parts."""
     scene = Scene(1.0, b, theta=3.54, omega=-1e-3, slope=-1.5, restitution=restitution)
     motion = simulate(scene, [0.0, 1e20], model="contact")
     times = [event.t for event in motion.events]
@@ -240,8 +245,9 @@ def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) ->
 def test_elastic_impacts_neither_gain_nor_lose_energy(
     a: float, b: float, theta: float, omega: float, z: float
 ) -> None:
-    """At most 2e-17 of the energy an impact, a tenth of a rounding: the time of contact is the
-    nearest double, early as often as late. The next double alone gains 5e-17 to 2e-16 at each."""
+    """At most 2e-17 of the energy per impact, a tenth of a rounding: the time of contact is the
+    nearest double, early as often as late. Taking the next double instead would gain 5e-17 to 2e-16
+    at each."""
     impacts = 50_000
     scene = Scene(a, b, theta=theta, omega=omega, z=z, friction=0.0, restitution=1.0)
     motion = simulate(scene, 1e9, model="contact", max_events=impacts, raise_on_failure=False)
@@ -254,7 +260,7 @@ def test_elastic_impacts_neither_gain_nor_lose_energy(
 @pytest.mark.parametrize("slope", [0.0, -0.768, 0.4])
 def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> None:
     """Without friction impacts change neither spin nor path. The bound is a rounding of each input,
-    and of the result, however many hops there are: equal hops would round alike."""
+    and of the result, however many hops there are, although equal hops round alike."""
     radius, fall, speed = 0.039, GRAVITY * math.sin(slope), -0.0357
     scene = Scene(
         radius, radius, slope=slope, theta=theta, omega=-7.99, x_dot=speed, z_dot=1.1e-3,

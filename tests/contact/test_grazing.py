@@ -1,9 +1,9 @@
-"""A body in contact that is weightless but for rounding neither takes off nor sinks.
+"""A body in contact that is weightless to within rounding neither takes off nor sinks.
 
 The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. A body
-that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed before and
-after. At an angle with c = 0 on level ground it leaves while it turns towards the tip, and stays
-while it turns away.
+that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed down before
+and after. At an angle with c = 0 on level ground it leaves while it turns towards the tip, and
+stays while it turns away.
 """
 
 import math
@@ -38,7 +38,7 @@ def lowest(moving: Trajectory) -> float:
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
+def test_a_tip_on_the_verge_of_lift_off_stays_on_ice(
     a: float, b: float, ulps: int, side: int, restitution: float
 ) -> None:
     """The body slides on without friction and keeps (k^2 + h'^2) omega^2/2 + g h."""
@@ -57,7 +57,9 @@ def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("friction", [0.3, math.inf])
-def test_rough_ground_keeps_weightless_tips(a: float, b: float, friction: float, ulps: int) -> None:
+def test_a_weightless_tip_stays_on_rough_ground(
+    a: float, b: float, friction: float, ulps: int
+) -> None:
     """The body slips or rolls on from the tip, and no event follows another too soon to resolve."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=friction, theta=tip(a, b), omega=start)
@@ -74,7 +76,9 @@ def test_rough_ground_keeps_weightless_tips(a: float, b: float, friction: float,
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("from_the_tip", [True, False])
-def test_beside_the_tip_its_way_decides(friction: float, from_the_tip: bool, ulps: int) -> None:
+def test_away_from_the_tip_the_direction_of_rotation_decides_lift_off(
+    friction: float, from_the_tip: bool, ulps: int
+) -> None:
     away = 0.6  # angle from the tip at pi/2
     theta = math.pi / 2 - away
     omega = weightless_spin(2.0, 1.0, theta) * (1 + ulps * EPS / 2) * (-1 if from_the_tip else 1)
@@ -97,8 +101,8 @@ def test_a_tip_on_rough_slopes_gains_no_energy(a: float, b: float, side: int, sl
     assert moving.t.size == 0 or lowest(moving) >= -8 * EPS
 
 
-def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
-    """Infinite friction on a slipping tip spins it up in no time until c = 0. After that friction
+def test_infinite_friction_makes_a_tip_weightless_and_keeps_it_so() -> None:
+    """Infinite friction on a slipping tip spins it up instantly until c = 0. After that friction
     keeps the gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c
     grows again as the square of the angle, from below its rounding."""
     scene = Scene(75.0, 50.0, gravity=1.0, theta=-math.pi / 2, x_dot=17.0)
@@ -113,7 +117,7 @@ def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
     assert moving.omega[1] == pytest.approx(spin, rel=1e-2)
 
 
-def test_a_slope_may_hold_a_weightless_start_on_its_way_to_the_tip() -> None:
+def test_a_weightless_body_turning_towards_its_tip_may_stay_on_a_slope() -> None:
     """Where c = 0, N of rolling is h h' (g sin(alpha) - h' omega^2)/D (physics 18, 19)."""
     rng, held = np.random.default_rng(125), 0
     for _ in range(200):

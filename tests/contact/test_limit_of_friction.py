@@ -1,4 +1,4 @@
-"""Friction equals the need of a start without slip, but for rounding.
+"""Friction equals, to within rounding, what a start without slip needs.
 
 The next moment decides whether such a body rolls or slips. It must do one of them, as with a little
 more friction or a little less.
@@ -29,7 +29,7 @@ def needed(a: float, b: float, theta: float, omega: float) -> float:
 @pytest.mark.parametrize("ulps", [-2, -1, 0, 1, 2])
 @pytest.mark.parametrize(("theta", "omega"), PLACES)
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.2, 1.0), (3.0, 1.0)])
-def test_at_the_limit_a_body_moves_as_beside_it(
+def test_a_body_at_the_friction_limit_moves_as_it_does_just_off_the_limit(
     a: float, b: float, theta: float, omega: float, ulps: int
 ) -> None:
     limit = needed(a, b, theta, omega) * (1 + ulps * EPS / 2)
@@ -66,7 +66,7 @@ def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, u
 
 @pytest.mark.parametrize("ulps", [-2, 0, 2, 100])
 @pytest.mark.parametrize("swing", [6.6e-13, -6.6e-13])
-def test_a_body_that_hardly_rocks_is_held_by_its_friction(swing: float, ulps: int) -> None:
+def test_a_barely_rocking_body_is_held_by_friction(swing: float, ulps: int) -> None:
     """In its swing |F|/N is tan(slope) to 2e-14, and would be far more a micro-radian away.
 
     A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
@@ -95,7 +95,7 @@ def test_a_body_that_hardly_rocks_is_held_by_its_friction(swing: float, ulps: in
     ],
     ids=["circle", "slope", "subnormal friction", "far from a metre"],
 )  # fmt: skip
-def test_what_numbers_without_digits_ask_for_is_the_same_in_all_units(scene: Scene) -> None:
+def test_subnormal_numbers_and_extreme_units_do_not_change_the_mode(scene: Scene) -> None:
     moving = simulate(scene, [0.0], model="contact", max_events=12)
     assert moving.status is Status.COMPLETED
     assert moving.mode[0] == scene.initial_state.mode

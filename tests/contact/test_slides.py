@@ -44,7 +44,7 @@ def friction_share(scene: Scene, motion: Trajectory) -> float:
 
 @pytest.mark.parametrize("slope", [0.0, 0.2, -0.4])
 def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
-    """Each term is rounded, and theta, an argument of all terms, to some ulp."""
+    """Each term is rounded, and theta, an argument of all terms, has errors of some ulp."""
     for scene, motion in slides(20, seed=5, slope=slope):
         assert set(motion.mode) == {Mode.SLIDING}
         start = scene.initial_state
@@ -65,7 +65,7 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
         assert np.all(np.abs(motion.x - x) <= 16 * EPS * ways), scene
 
 
-def test_a_frictionless_slide_keeps_its_energy() -> None:
+def test_a_frictionless_slide_conserves_energy() -> None:
     """(k^2 + h'^2) omega^2/2 + g h over a thousand oscillations changes by a random walk of
     roundings.
 
@@ -82,7 +82,7 @@ def test_a_frictionless_slide_keeps_its_energy() -> None:
 
 @pytest.mark.parametrize("creep", [1e-2, 1e-4, 1e-6])
 @pytest.mark.parametrize(("a", "b", "theta"), [(2.0, 1.0, math.pi / 2), (0.3, 2.0, 0.0)])
-def test_a_frictionless_slide_creeps_over_the_tip_as_often_as_it_comes_there(
+def test_a_frictionless_slide_creeps_over_the_tip_at_every_pass(
     a: float, b: float, theta: float, creep: float
 ) -> None:
     """Each pass of the tip has the omega of the first: the energy has few roundings there, though
@@ -122,7 +122,7 @@ THIN = (
 @pytest.mark.parametrize(
     ("scene", "t", "kinds", "units", "known"), THIN, ids=["after another slide", "fallen"]
 )
-def test_a_thin_body_keeps_its_digits_where_its_slip_reverses(
+def test_a_thin_body_stays_accurate_where_its_slip_reverses(
     scene: Scene, t: float, kinds: list[str], units: int, known: dict[str, tuple[float, float]]
 ) -> None:
     """The numbers are those of reference/contact_motion.py in 42 digits, units as in its table."""
@@ -157,11 +157,11 @@ NEAR_A_JAM = (
 
 
 @pytest.mark.parametrize(("given", "known", "t"), NEAR_A_JAM)
-def test_a_slide_near_a_jam_keeps_its_digits(given: Any, known: dict[str, float], t: float) -> None:
+def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], t: float) -> None:
     """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
 
-    The numbers are those of reference/impulse_clock.py in 45 digits. A start in doubles has their
-    roundings, two by two; some 60 pieces add one each, by chance of either sign."""
+    The numbers come from reference/impulse_clock.py in 45 digits. A start in doubles has their
+    roundings, two by two; some 60 pieces add one each, of random sign."""
     end = simulate(Scene(**given), 1.0, raise_on_failure=False).events[0]
     assert end.kind is EventKind.STICK
     assert abs(end.t - t) <= 8 * EPS * t
@@ -169,7 +169,7 @@ def test_a_slide_near_a_jam_keeps_its_digits(given: Any, known: dict[str, float]
         assert abs(getattr(end.state_after, name) - value) <= 8 * EPS * abs(value), name
 
 
-def test_a_light_body_rocks_against_a_jam_in_time() -> None:
+def test_the_timing_of_a_light_body_rocking_near_a_jam_stays_accurate() -> None:
     """Some twenty swings in 0.3 s, at each end of which B all but vanishes.
 
     The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
@@ -183,7 +183,7 @@ def test_a_light_body_rocks_against_a_jam_in_time() -> None:
     assert abs(motion.theta[0] - 1.530610922571990750118888) <= 1.5 * late + EPS
 
 
-def test_a_slide_that_is_due_to_stick_has_no_slip_left() -> None:
+def test_a_slide_on_the_verge_of_sticking_has_no_slip_left() -> None:
     """The time of STICK is rounded up, here by 1e-13 s, in which the slip would change its sign;
     with the other sign this light body jams."""
     scene = Scene(
@@ -198,14 +198,14 @@ def test_a_slide_that_is_due_to_stick_has_no_slip_left() -> None:
     assert cut.scene_at(cut.t_end).initial_state.mode is Mode.ROLLING
 
 
-def test_few_pieces_make_a_slide() -> None:
+def test_a_slide_takes_few_steps() -> None:
     """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
     assert [each.kind for each in whole.events] == [EventKind.STICK]
     assert whole.stats["steps"] <= 20 and whole.stats["evaluations"] == 0
 
 
-def test_a_slide_is_as_smooth_where_pieces_meet() -> None:
+def test_a_slide_is_smooth_where_its_pieces_meet() -> None:
     """Samples lie closer together than any piece: second differences are h^2 times the second
     derivative of a smooth function, plus the rounding of three samples."""
     step = 1e-5
@@ -220,13 +220,13 @@ def test_a_slide_is_as_smooth_where_pieces_meet() -> None:
 
 
 @pytest.mark.parametrize("theta", [1e-8, 1e-12, 1e-13, 1e-16, 1e-20, 1e-30, 1e-80])
-def test_next_to_no_response_a_slide_sticks_at_once(theta: float) -> None:
-    """Infinite friction turns a nearly flat body by 1/B, and B is in proportion to theta: within a
+def test_a_slide_with_almost_no_contact_response_sticks_at_once(theta: float) -> None:
+    """Infinite friction turns a nearly flat body by 1/B, and B is proportional to theta: within a
     time like theta it sticks, as after an impulse along the ground, J = 1/(1/m + h^2/I) of the
     slip.
 
-    Until then the body turns by less than 2 theta, which changes no velocity by more; the rest is
-    rounding. The highest powers of 1/theta in the series would overflow.
+    Until then the body turns by less than 2 theta, which changes no velocity by more than that; the
+    rest is rounding. The highest powers of 1/theta in the series would overflow.
     """
     scene = Scene(1.0, 0.5, gravity=1.0, theta=theta, x_dot=-1.0)
     stick = simulate(scene, 1.0, model="contact").events[0]
@@ -236,7 +236,7 @@ def test_next_to_no_response_a_slide_sticks_at_once(theta: float) -> None:
     assert abs(stick.state_after.x_dot - (impulse - 1)) <= 4 * theta + 16 * EPS
 
 
-def test_a_slide_too_quick_for_any_power_says_so() -> None:
+def test_a_slide_too_fast_for_doubles_is_reported() -> None:
     """A ball falls along a slope of 1e-200, until the square of its time overflows."""
     scene = Scene(1.0, 1.0, slope=1e-200, friction=1e-236)
     found = simulate(scene, [0.0, 1e100, 1e200], model="contact", raise_on_failure=False)
@@ -255,7 +255,9 @@ def spinning_on_a_slope(rng: np.random.Generator, roundness: float) -> Scene:
 
 
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
-def test_a_nearly_round_body_leaves_a_slope_where_nothing_presses_it(roundness: float) -> None:
+def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
+    roundness: float,
+) -> None:
     """The centre falls evenly; the body lifts off where g cos(alpha) + h'' omega^2 = 0."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     left = 0
@@ -283,7 +285,9 @@ def test_a_nearly_round_body_leaves_a_slope_where_nothing_presses_it(roundness: 
 
 @pytest.mark.parametrize("k2", [1e-6, 0.25, 1.0])
 @pytest.mark.parametrize("turned", [1.0, 1e3, 1e6])
-def test_a_ball_slides_evenly_however_far_it_turns(k2: float, turned: float) -> None:
+def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
+    k2: float, turned: float
+) -> None:
     """The slide goes mu g t^2/2 along, at speed mu g t, until a omega equals x': one part in 1 +
     k^2/a^2 before friction would end the spin alone. The remaining spin is a difference, exact to
     its roundings."""
@@ -303,8 +307,8 @@ def test_a_ball_slides_evenly_however_far_it_turns(k2: float, turned: float) -> 
     assert np.all(np.abs(np.abs(motion.x[:3]) - path) <= 8 * EPS * terms)
 
 
-def test_without_friction_the_centre_moves_uniformly() -> None:
-    """x_dot is constant to the last bit, and x = x0 + x_dot t: no sum with h omega is in it."""
+def test_the_centre_moves_uniformly_without_friction() -> None:
+    """x_dot is constant to the last bit, and x = x0 + x_dot t: it contains no sum with h omega."""
     motions = slides(40, 31, friction=0.0, slope=0.0)
     for scene, motion in motions:
         start = scene.initial_state.x_dot
@@ -316,7 +320,7 @@ def test_without_friction_the_centre_moves_uniformly() -> None:
     assert len(motions) == 40
 
 
-def test_a_reversed_slip_changes_no_velocity() -> None:
+def test_a_reversal_of_slip_changes_no_velocity() -> None:
     scene = Scene(3.84, 1.0, friction=1e-8, omega=1.0, x_dot=0.4, theta=0.3)
     motion = simulate(scene, 20.0, model="contact")
     reversals = [event for event in motion.events if event.kind is EventKind.REVERSE]

@@ -1,10 +1,10 @@
 """The C++ programs, in a second build of the core without optimisation.
 
-It must have the bits of the installed extension: motions of every model and answers of every proof
-(golden.cpp) are compared with those of the extension, and with the committed ones (golden.txt) if
-the C library is the same. Another version of the library, or the same one on a processor without
-fused multiply-add, rounds sin, cos, exp and log in another way; then the bound of oracles/golden.py
-holds.
+It must agree with the installed extension bit for bit: motions of every model and answers of every
+proof (golden.cpp) are compared with those of the extension, and with the committed ones
+(golden.txt) if the C library is the same. Another version of the library, or the same one on a
+processor without fused multiply-add, rounds sin, cos, exp and log differently; then the bound of
+oracles/golden.py holds.
 """
 
 import os
@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """Path of a program beside the interpreter (from the test extra), else of the system's."""
+    """Path of a program beside the interpreter (from the test extra), else the system's."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 
@@ -73,20 +73,22 @@ def second(build: Path) -> Build:
 
 
 @pytest.mark.parametrize("program", ["core_test", "threads_test", "allocations_test", "lanes_test"])
-def test_all_holds(program: str, build: Path) -> None:
+def test_every_core_program_passes(program: str, build: Path) -> None:
     if program == "lanes_test" and not (build / program).exists():
         pytest.skip("this processor has no lanes of its own")
     assert "all hold" in run(str(build / program))
 
 
-def test_the_second_build_has_the_committed_bits(second: Build) -> None:
+def test_the_second_build_equals_the_committed_records(second: Build) -> None:
     library, records = second
     worst, where = difference(RECORDS, records)
     print(library, worst, where)
     assert worst <= (0.0 if library == LIBRARY else OTHER_LIBRARY), where
 
 
-def test_another_rounding_of_the_c_library_stays_in_the_bound(build: Path, second: Build) -> None:
+def test_a_c_library_that_rounds_differently_stays_within_the_bound(
+    build: Path, second: Build
+) -> None:
     """glibc without fused multiply-add rounds as on a processor that has none."""
     library, records = printed(build / "golden", GLIBC_TUNABLES="glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4")
     if library == second[0]:
@@ -96,7 +98,7 @@ def test_another_rounding_of_the_c_library_stays_in_the_bound(build: Path, secon
     assert 0 < worst <= OTHER_LIBRARY, where
 
 
-def test_every_model_method_and_event_has_its_bits() -> None:
+def test_the_records_cover_every_model_method_and_event() -> None:
     motions = [each.words for each in RECORDS if each.kind == "motion"]
     stabilizations = {words[3] for words in motions if words[1] == "multipliers"}
     assert stabilizations == {"none", "baumgarte", "projection", "projection+energy", "ggl"}
@@ -115,25 +117,25 @@ def compare(mine: list[Record], through_python: list[Record], bound: float) -> N
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_motions_through_python(name: str) -> None:
+def test_motions_computed_through_python_stay_within_the_bound(name: str) -> None:
     """Motions stay within the bound: without a compiler the bits of this C library are unknown."""
     motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_motions_of_the_extension_have_the_bits_of_the_second_build(
+def test_motions_of_the_extension_equal_the_second_build_bit_for_bit(
     name: str, second: Build
 ) -> None:
     motion = [each for each in blocks(second[1], "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), 0.0)
 
 
-def test_bodies_of_the_installed_extension_have_the_bits_of_the_second_build(second: Build) -> None:
+def test_bodies_of_the_extension_equal_the_second_build_bit_for_bit(second: Build) -> None:
     bodies = [each for each in second[1] if each.kind in ("body", "rolled")]
     compare(bodies, bodies_through_python(bodies), 0.0)
 
 
-def test_outcomes_of_the_installed_extension_are_those_of_the_second_build(second: Build) -> None:
+def test_outcomes_of_the_extension_equal_those_of_the_second_build(second: Build) -> None:
     outcomes = [each for each in second[1] if each.kind in ("thresholds", "classify")]
     compare(outcomes, list(outcomes_through_python(outcomes)), 0.0)

@@ -34,12 +34,12 @@ NOISE = np.array([[5e-4], [5e-4], [0.01]])
 SOLID = (0.035**2 + 0.025**2) / 4  # k^2 of its body
 USUAL = ("sign", "degrees", "DEGREES", "inertia", "friction", "angle", "small", "torque")
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
-PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # which lets nothing slip
+PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # with which nothing slips
 PLAIN |= {"torque": False}  # whether I_C omega_dot is taken for the moment about the contact
 
 
 class Given(SimpleNamespace):
-    """The data of a task, and what a scene has where it gives none."""
+    """The data of a task, with a scene's values where it gives none."""
 
     def __init__(self, number: str, **changes: Any) -> None:
         known: dict[str, Any] = PLAIN | TASKS[number].data | changes
@@ -169,7 +169,7 @@ WRONG: dict[tuple[str, str], Any] = {  # formulas: small angles, and M_C = I_C o
 
 @cache
 def film_fit(gyration2: float = SOLID) -> tuple[dict[str, float], dict[str, float], float]:
-    """Numbers that fit the film best with a k^2, their standard errors, and chi^2."""
+    """Numbers that best fit the film for a given k^2, their standard errors, and chi^2."""
     t, *tracks = course.FILM.values()
 
     def missed(numbers: Any) -> Any:
@@ -219,10 +219,10 @@ def allowed(number: str) -> float:
 
 
 @pytest.mark.parametrize("number", TASKS)
-def test_marks(number: str) -> None:
-    """A mark names the mistakes that were made, and beside them only those that lead to the same
+def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
+    """A mark names the mistakes that were made, and besides them only those that lead to the same
     number. Mistakes that change nothing are not named. Tolerances are met to 30 %: rolling discs
-    become ellipses there. They are 0.5 % at most, so that 1 % is between numbers of the same name.
+    become ellipses there. They are 0.5 % at most, so numbers of one name may differ by 1 %.
     """
     right, near, task = answer(number), allowed(number), TASKS[number]
     off = min(1.3 * near, near + 4e-3 * abs(right))
@@ -258,8 +258,8 @@ def test_marks(number: str) -> None:
                     math.isclose(v, given, rel_tol=0.01) for v in numbers), mistake  # fmt: skip
 
 
-def test_the_film_has_real_noise() -> None:
-    """It is made of known numbers; chi^2 is within three standard deviations of its 31 degrees of
+def test_the_noise_of_the_film_is_as_stated() -> None:
+    """It is made from known numbers; chi^2 is within three standard deviations of its 31 degrees of
     freedom, and the numbers within two of theirs."""
     t, *tracks = course.FILM.values()
     noise = np.random.default_rng(2).normal(0, NOISE, (3, t.size))
@@ -271,7 +271,9 @@ def test_the_film_has_real_noise() -> None:
     assert all(abs(known[name] - true) < 2 * off[name] for name, true in THROWN.items())
 
 
-def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_marks_state_which_impacts_were_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     rows, names = np.vstack(course.measured_impacts()).T, ",".join(course._DATA["impacts"])
     np.savetxt(tmp_path / "seen.csv", rows[::-2], delimiter=",", header=names, comments="")
     for ending in ("(Made impacts.)", "(Measured impacts.)"):
@@ -282,7 +284,7 @@ def test_measured_impacts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 @pytest.mark.parametrize("task", ["8.1", "8.2", "8.3", "8.4"])
 @pytest.mark.parametrize("kept", ["zero", "none", "unknown", "one"])
-def test_tables_of_impacts_without_an_answer(
+def test_tables_of_impacts_without_an_answer_are_rejected(
     kept: str, task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Rows of zeros, no row, or a NaN are refused by a sentence; a single row has an answer."""
@@ -299,7 +301,7 @@ def test_tables_of_impacts_without_an_answer(
             course.mark(task, 1.0)
 
 
-def test_the_sheets_have_the_tasks() -> None:
+def test_the_sheets_contain_the_tasks() -> None:
     make = runpy.run_path(str(ROOT / "docs/makers/course.py"))
     for path, _ in zip(make["SHEETS"], make["POINTS"], strict=True):
         assert path.read_text(encoding="utf-8") == make["with_tasks"](path), path.name

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from oracles.limits import files_of_at_most
 from oracles.programs import run
-from rolling_ellipse._motion.export.atomic import replacing  # all that writes files uses it
+from rolling_ellipse._motion.export.atomic import replacing  # everything that writes files uses it
 
 OLD, NEW = b"what was there", b"what comes"
 
@@ -27,7 +27,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_the_new_file_takes_the_place_and_the_permissions(old: Path) -> None:
+def test_a_new_file_takes_the_place_and_permissions_of_the_old_one(old: Path) -> None:
     old.chmod(0o640)
     with replacing(old) as new:
         new.write_bytes(NEW)
@@ -39,7 +39,7 @@ def test_the_new_file_takes_the_place_and_the_permissions(old: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["roll.mp4", "ROLL.GIF", "motion", "größe -i.npz", "a.tar.gz", "-x.html", "x" * 240]
 )
-def test_a_name_that_other_programs_take(name: str, tmp_path: Path) -> None:
+def test_temporary_names_are_safe_for_other_programs(name: str, tmp_path: Path) -> None:
     with replacing(tmp_path / name) as new:
         assert new.is_absolute() and new.parent == tmp_path and new.suffix == Path(name).suffix
         assert re.fullmatch(r"[A-Za-z0-9_.]{1,64}", new.name)
@@ -47,7 +47,7 @@ def test_a_name_that_other_programs_take(name: str, tmp_path: Path) -> None:
     assert names(tmp_path) == [name]
 
 
-def test_odd_suffixes_are_left_out(tmp_path: Path) -> None:
+def test_temporary_names_leave_out_odd_suffixes(tmp_path: Path) -> None:
     for name in ("a.ß", "a.b c", "a." + "b" * 240, ".npz"):
         with replacing(tmp_path / name) as new:
             assert re.fullmatch(r"[A-Za-z0-9_.]{1,64}", new.name) and new.suffix == ""
@@ -55,7 +55,7 @@ def test_odd_suffixes_are_left_out(tmp_path: Path) -> None:
         assert (tmp_path / name).read_bytes() == NEW
 
 
-def test_names_in_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_relative_path_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with replacing("motion.npz") as new:
         new.write_bytes(NEW)
@@ -72,7 +72,7 @@ def test_an_exception_leaves_the_old_file(kind: type[BaseException], old: Path) 
     assert old.read_bytes() == OLD and names(old.parent) == [old.name]
 
 
-def test_a_file_that_vanished_in_between_is_no_success(old: Path) -> None:
+def test_a_vanished_temporary_file_is_an_error(old: Path) -> None:
     with pytest.raises(FileNotFoundError), replacing(old) as new:
         new.unlink()
     assert old.read_bytes() == OLD
@@ -102,7 +102,7 @@ def permissions(path: Path) -> int:
 
 
 @pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
-def test_permissions_are_those_of_any_new_file(mask: int, tmp_path: Path) -> None:
+def test_a_new_file_gets_the_usual_permissions(mask: int, tmp_path: Path) -> None:
     before = os.umask(mask)
     try:
         with replacing(tmp_path / "motion.npz") as new:
@@ -113,15 +113,15 @@ def test_permissions_are_those_of_any_new_file(mask: int, tmp_path: Path) -> Non
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
-def test_the_owner_stays(old: Path) -> None:
+def test_a_new_file_keeps_the_owner(old: Path) -> None:
     os.chown(old, 1234, 2345)
     with replacing(old) as new:
         new.write_bytes(NEW)
     assert (old.stat().st_uid, old.stat().st_gid) == (1234, 2345)
 
 
-def test_a_file_that_is_not_to_be_written_is_not() -> None:
-    """Root may write to any file, so root tries it as user `nobody`, in a folder open to all."""
+def test_a_read_only_file_is_not_overwritten() -> None:
+    """Root may write to any file, so root runs this as user `nobody`, in a folder open to all."""
     nobody, user = 65534, os.geteuid()
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)
@@ -179,7 +179,7 @@ def test_devices_and_pipes_are_written_not_replaced(tmp_path: Path) -> None:
         ("x" * 300, OSError),
     ],
 )
-def test_wrong_places_are_refused_by_name(
+def test_unwritable_paths_are_rejected_by_name(
     name: str, kind: type[OSError], old: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The error of `open` is raised before any work, and names the given path."""

@@ -10,7 +10,7 @@ from rolling_ellipse import _core
 from rolling_ellipse.__main__ import main
 
 
-def test_they_are_those_of_the_sources(tmp_path: Path) -> None:
+def test_examples_equal_those_of_the_sources(tmp_path: Path) -> None:
     """tests/project/test_notebooks.py runs them."""
     assert main(["examples", str(tmp_path / "new")]) == 0
     for source, written in {"notebooks": "*.ipynb", "reference": "reference/*.csv"}.items():
@@ -25,7 +25,7 @@ def test_they_are_those_of_the_sources(tmp_path: Path) -> None:
     assert Path(str(_core.__file__)).with_name("examples.zip").stat().st_size <= 460_000
 
 
-def test_nothing_is_overwritten(tmp_path: Path) -> None:
+def test_examples_overwrite_nothing(tmp_path: Path) -> None:
     assert len(rl.examples(tmp_path)) > 10 and rl.examples(tmp_path) == []
     run, gone = tmp_path / "01_first_roll.ipynb", tmp_path / "reference" / "well_reference.csv"
     run.write_text("mine")
@@ -37,8 +37,8 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
     assert sorted(rl.examples(tmp_path)) == [run, gone]
 
 
-def test_no_link_is_followed(tmp_path: Path) -> None:
-    """To an equal file, or as a folder; benchmark/test_result_files.py has other links."""
+def test_examples_follow_no_link(tmp_path: Path) -> None:
+    """A link to an equal file, or as a folder; benchmark/test_result_files.py has other links."""
     away, empty = tmp_path / "away", tmp_path / "empty"
     rl.examples(away)
     empty.mkdir()

@@ -73,7 +73,7 @@ def damaged(content: bytes, rng: np.random.Generator, damage: str) -> bytes:
     return content[:start] + DAMAGES[damage](content[start:end]) + content[end:]
 
 
-def test_damage_is_refused_or_harmless(motions: Motions, contents: Contents, path: Path) -> None:
+def test_damage_is_rejected_or_harmless(motions: Motions, contents: Contents, path: Path) -> None:
     rng, harmless = np.random.default_rng(71), 0
     for i in range(2500):
         name = list(SAVED)[i % len(SAVED)]
@@ -90,7 +90,9 @@ def test_damage_is_refused_or_harmless(motions: Motions, contents: Contents, pat
 
 
 @each_model
-def test_a_whole_file_is_read(name: str, motions: Motions, contents: Contents, path: Path) -> None:
+def test_an_undamaged_file_is_read(
+    name: str, motions: Motions, contents: Contents, path: Path
+) -> None:
     path.write_bytes(put_together(*taken_apart(contents[name])))
     expected = dataclasses.replace(motions[name], kept_events=motions[name].events)
     require_same(rl.load(path), expected)
@@ -131,8 +133,8 @@ WRONG_VALUES: dict[str, Any] = {
 
 
 @each_model
-def test_wrong_values_are_refused(name: str, contents: Contents, path: Path) -> None:
-    """Each value of the text is replaced by many others; a file still read is saved unchanged."""
+def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) -> None:
+    """Each value of the text is replaced by many others; a file read anyway is saved unchanged."""
     about, arrays = taken_apart(contents[name])
     taken = set()
     about["events"] = about["events"][:1]  # the other events have the same form
@@ -156,7 +158,7 @@ def test_wrong_values_are_refused(name: str, contents: Contents, path: Path) -> 
 
 
 @each_model
-def test_no_name_is_missing_or_unknown(name: str, contents: Contents, path: Path) -> None:
+def test_missing_and_unknown_names_are_rejected(name: str, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])
     for road in places(about):
         part = about
@@ -194,14 +196,16 @@ RETYPED: dict[str, Callable[[Any], Any]] = {
 
 @pytest.mark.parametrize("change", RETYPED.values(), ids=RETYPED)
 @each_model
-def test_wrong_arrays_are_refused(name: str, change: Any, contents: Contents, path: Path) -> None:
+def test_invalid_arrays_are_rejected(
+    name: str, change: Any, contents: Contents, path: Path
+) -> None:
     about, arrays = taken_apart(contents[name])
     for array, values in arrays.items():
         require_refused(put_together(about, arrays | {array: change(values)}), path)
 
 
 @each_model
-def test_a_file_has_only_arrays_of_its_model(name: str, contents: Contents, path: Path) -> None:
+def test_arrays_from_another_model_are_rejected(name: str, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])
     for array in set(arrays) - {"start"}:
         rest = {key: values for key, values in arrays.items() if key != array}
@@ -214,7 +218,7 @@ def test_a_file_has_only_arrays_of_its_model(name: str, contents: Contents, path
             require_refused(more, path, f"model '{name}' must not have '{array}'")
 
 
-def test_samples_in_any_order_and_of_another_machine_are_read(motions: Motions, path: Path) -> None:
+def test_samples_in_any_order_or_byte_order_are_read(motions: Motions, path: Path) -> None:
     for times in ([1.0, 0.0, 0.5, 0.5], []):
         motions["multipliers"].sol(times).save(path)
         assert rl.load(path).t.tolist() == times
@@ -242,7 +246,7 @@ def test_nothing_is_unpickled(contents: Contents, path: Path, monkeypatch: Any) 
     assert not Path("harmed").exists()
 
 
-def test_a_member_is_read_once(contents: Contents, path: Path) -> None:
+def test_an_archive_with_a_repeated_member_is_rejected(contents: Contents, path: Path) -> None:
     """A directory with a million members of the same bytes would take a week."""
     path.write_bytes(contents["rolling"])
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
@@ -251,7 +255,9 @@ def test_a_member_is_read_once(contents: Contents, path: Path) -> None:
 
 
 @pytest.mark.parametrize("start", [b"", b"PK\x03\x04"])
-def test_a_huge_file_is_not_read_to_be_refused(start: bytes, path: Path, tmp_path: Path) -> None:
+def test_a_huge_file_is_rejected_without_being_read(
+    start: bytes, path: Path, tmp_path: Path
+) -> None:
     """A file of 6 GiB with two kinds of first bytes, and an endless file, are refused early."""
     (tmp_path / "many").mkdir()
     (tmp_path / "many" / "request.npz").symlink_to(path)
@@ -271,7 +277,9 @@ def test_a_huge_file_is_not_read_to_be_refused(start: bytes, path: Path, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["folder", "folder/motion.npz", "text/motion.npz"])
-def test_what_cannot_be_read_is_for_the_operating_system_to_say(name: str, tmp_path: Path) -> None:
+def test_an_unreadable_file_raises_the_error_of_the_operating_system(
+    name: str, tmp_path: Path
+) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "text").write_text("text")
     with pytest.raises(OSError) as caught:
@@ -282,7 +290,7 @@ def test_what_cannot_be_read_is_for_the_operating_system_to_say(name: str, tmp_p
 # ------------------------------------------------------------------------------------ saving
 
 
-def test_what_load_would_refuse_is_not_saved(motions: Motions, path: Path) -> None:
+def test_a_motion_that_load_would_reject_is_not_saved(motions: Motions, path: Path) -> None:
     motion = motions["contact"]
     motion.save(path)
     before, contact = path.read_bytes(), motion.contact

@@ -56,13 +56,13 @@ def test_the_dataset_holds_the_arrays(motion: rl.Trajectory) -> None:
     assert dataset["t"].attrs == {"units": "s", "long_name": "time"}
 
 
-def test_no_array_of_a_trajectory_is_left_out(motion: rl.Trajectory) -> None:
+def test_no_array_of_a_trajectory_is_missing_from_the_tables(motion: rl.Trajectory) -> None:
     public = [name for name in dir(motion) if not name.startswith("_")]
     arrays = {name for name in public if isinstance(getattr(motion, name), np.ndarray)}
     assert {*VECTORS, "mode", "multipliers", "q", "q_dot"} == arrays  # q repeats x, ..., r
 
 
-def test_the_units_are_those_of_the_numbers() -> None:
+def test_the_stated_units_match_the_values() -> None:
     """Each quantity of a scene scaled in length, time and mass grows as its unit does."""
     factors = (2, 1, 3)  # powers of two: the scaled motion has the same digits
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
@@ -76,7 +76,7 @@ def test_the_units_are_those_of_the_numbers() -> None:
         expected = scaled(one[name].to_numpy(), units[name], factors)
         largest = np.max(np.abs(expected))
         assert largest > 0 or name == "lambda4"  # lambda4 is zero while the body rolls
-        # rounding apart; a wrong unit would change a value by a factor of 2 or more
+        # apart from rounding; a wrong unit would change a value by a factor of 2 or more
         assert other[name].to_numpy() == pytest.approx(expected, rel=0, abs=1e-12 * largest), name
     shared = {"x", "z", "theta", "omega", "x_dot", "z_dot"}
     assert all(units[name] == UNITS["Scene"][name] for name in shared)
@@ -90,7 +90,7 @@ def test_the_attributes_hold_the_whole_scene(motion: rl.Trajectory) -> None:
     assert all(isinstance(value, float | str) for value in motion.to_xarray().attrs.values())
 
 
-def test_a_lost_validity_is_among_the_attributes() -> None:
+def test_the_attributes_state_when_validity_was_lost() -> None:
     with pytest.warns(rl.ValidityWarning):
         jump = rl.simulate(rl.scenes.jump, 1.0, model="rolling")
     facts = jump.to_xarray().attrs
@@ -98,7 +98,7 @@ def test_a_lost_validity_is_among_the_attributes() -> None:
     assert facts["valid_until"] == jump.valid_until < 1.0
 
 
-def test_netcdf_and_back(motion: rl.Trajectory, tmp_path: Path) -> None:
+def test_a_dataset_survives_netcdf(motion: rl.Trajectory, tmp_path: Path) -> None:
     written = motion.to_xarray()
     written.to_netcdf(tmp_path / "motion.nc")
     read = xarray.load_dataset(tmp_path / "motion.nc")
@@ -107,7 +107,7 @@ def test_netcdf_and_back(motion: rl.Trajectory, tmp_path: Path) -> None:
     assert np.array_equal(again.theta, motion.theta)
 
 
-def test_modes_have_their_names() -> None:
+def test_modes_appear_by_name_in_tables() -> None:
     motion = dataclasses.replace(rl.simulate(rl.scenes.rocking, [0.0, 1.0, 2.0, 3.0]))
     codes = [rl.Mode.FLIGHT, rl.Mode.SLIDING, rl.Mode.REST, rl.Mode.ROLLING]
     motion.__dict__["mode"] = np.array(codes, np.int8)
@@ -121,7 +121,7 @@ def test_modes_have_their_names() -> None:
     assert [names[code] for code in variable.to_numpy()] == list(column)
 
 
-def test_tables_may_be_changed_and_the_trajectory_stays(motion: rl.Trajectory) -> None:
+def test_changing_a_table_leaves_the_trajectory_unchanged(motion: rl.Trajectory) -> None:
     frame, dataset = motion.to_dataframe(), motion.to_xarray()
     before = motion.x[0]
     frame.loc[frame.index[0], "x"] = 99.0

@@ -1,4 +1,4 @@
-"""What a film says: its noise, whether its scene fits, and which reading of it does."""
+"""What a film reveals: its noise, whether its scene fits, and which reading fits instead."""
 
 import math
 from typing import Any
@@ -22,19 +22,19 @@ def fitted(tracks: dict[str, Any], **how: Any) -> Fit:
 
 
 @pytest.mark.parametrize("seed", [6, 7, 14, 23])
-def test_the_minimum_is_not_above_that_below_the_truth(seed: int) -> None:
-    """These seeds led to other minima, 9 to 30 higher."""
+def test_the_fit_is_no_worse_than_one_started_at_the_true_values(seed: int) -> None:
+    """These seeds once led to other minima, 9 to 30 higher."""
     row = judge_films.example(seed)
     assert row["over"] < 0.1 and "cannot tell" not in row["message"]
 
 
 @pytest.mark.parametrize("seed", [8, 10, 24, 33])
-def test_wild_quarter_turns_lead_to_no_other_minimum(seed: int) -> None:
+def test_quarter_turn_outliers_do_not_lead_to_another_minimum(seed: int) -> None:
     row = judge_films.wild(seed)
     assert row["over"] < 0.1 and "4 of them beyond 5 sigma" in row["message"]
 
 
-def test_sigma_is_estimated_track_by_track() -> None:
+def test_sigma_is_estimated_for_each_track() -> None:
     """The deviation of n numbers is known to 1/sqrt(2n), bounded at five of these."""
     true = {"x": 2e-4, "z": 1e-3, "theta": 0.02}
     fit = fitted(film(1, sigma=true), sigma=None)
@@ -46,7 +46,7 @@ def test_sigma_is_estimated_track_by_track() -> None:
     assert "sigma estimated: theta" in given.message
 
 
-def test_unknowns_take_their_share_of_the_data_of_a_track() -> None:
+def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
     """Two of five frames of a flight fix its start. The mean of sigma^2, of 3 degrees of freedom
     in each of 80 tracks, is known to sqrt(2/240); all five frames would make it 3/5."""
     scene, t = Scene(0.035, 0.025, z=2.0), np.arange(1, 6) / 60
@@ -60,7 +60,7 @@ def test_unknowns_take_their_share_of_the_data_of_a_track() -> None:
     assert "too few frames side by side to judge the fit" in fit.message
 
 
-def test_outliers_do_not_make_noise() -> None:
+def test_outliers_do_not_inflate_the_noise() -> None:
     """The median residual of n numbers gives sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
     (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. Bounded at four deviations of
     the mean of three tracks; the median itself would be lower by a third."""
@@ -75,16 +75,16 @@ def test_outliers_do_not_make_noise() -> None:
 
 
 @pytest.mark.parametrize("seed", range(len(KINDS)))
-def test_right_films_are_called_right(seed: int) -> None:
-    """T of a right film is a normal number or less: 3.5 once in 4000 tracks, 1 in 300 here."""
+def test_correct_films_raise_no_alarm(seed: int) -> None:
+    """T of a right film is at most a normal number: over 3.5 once in 4000 tracks; 1 in 300 here."""
     row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())
 
 
-def test_an_error_reaches_the_other_minima() -> None:
-    """Friction above all needs fits nearly as well, with a restitution that is 4.4 of its
-    linearised errors away."""
+def test_stated_errors_cover_the_other_minima() -> None:
+    """Friction above any need fits nearly as well, with a restitution that is 4.4 of its linearised
+    errors away."""
     assert abs(judge_films.right(6)["off"]["restitution"]) < 3
 
 
@@ -96,7 +96,7 @@ def test_an_error_reaches_the_other_minima() -> None:
         ("frames", SIGMA), ("slowed twice", None), ("smoothed", None),
     ],
 )  # fmt: skip
-def test_wrong_films_are_called_wrong_and_the_reading_is_named(kind: str, sigma: Any) -> None:
+def test_wrong_films_are_rejected_and_their_misreading_is_named(kind: str, sigma: Any) -> None:
     (change, reading), tracks = WRONG[kind], film(11)
     fit = fitted(tracks | change(tracks, np.random.default_rng(1)), sigma=sigma)
     assert "the scene does not fit the film" in fit.message
@@ -105,15 +105,15 @@ def test_wrong_films_are_called_wrong_and_the_reading_is_named(kind: str, sigma:
         assert fit.scene == GUESS and all(map(math.isinf, fit.errors.values()))
 
 
-def test_a_body_in_thick_air_fits_by_no_reading() -> None:
-    """Its residuals are alike: errors grow by more than the root of 3, that of c = 1/2."""
+def test_no_misreading_explains_the_film_of_a_body_in_thick_air() -> None:
+    """Its residuals are correlated: errors grow by more than the root of 3, that of c = 1/2."""
     tracks = film(11)
     fit = fitted(tracks | WRONG["in air"][0](tracks, None), sigma=None)
     assert "does not fit" in fit.message and "it fits" not in fit.message
     assert judge_films.largest(fit) > 3.5
 
 
-def test_a_track_that_stands_still_or_jumps_is_beyond_any_tracker() -> None:
+def test_a_track_that_freezes_or_jumps_is_reported_as_beyond_any_tracker() -> None:
     tracks = film(2)
     still = fitted(tracks | {"theta": np.full(80, 0.5)}, sigma=None)
     assert "theta is off by" in still.message and "beyond any tracker" in still.message
@@ -124,7 +124,7 @@ def test_a_track_that_stands_still_or_jumps_is_beyond_any_tracker() -> None:
     assert "of 80 values of z are beyond 5 sigma; the scene does not fit" in many
 
 
-def test_missing_frames_part_neighbours() -> None:
+def test_frames_on_either_side_of_a_missing_one_are_not_neighbours() -> None:
     """Rows of the film may be missing, or numbers in them."""
     off = np.arange(8.0)
     off[3] = np.nan

@@ -25,8 +25,9 @@ def filmed(scene: Scene, t: Any, seed: int = 1) -> dict[str, Any]:
 
 
 def value_of(scene: Scene, name: str) -> float:
+    """A parameter of a scene; a velocity in the air that is not given is 0."""
     of: Any = scene.impulse if name in ("dx", "dz") else scene
-    return float(getattr(of, name))
+    return float(getattr(of, name) or 0.0)
 
 
 def off(fit: Fit, scene: Scene, names: Any) -> np.ndarray:
@@ -47,7 +48,7 @@ OUTLIERS["z"][5::20] -= 0.05
 UNEVEN = np.sort(np.random.default_rng(2).uniform(0, 0.45, 90))
 
 
-def test_twelve_films_give_their_numbers_with_honest_errors() -> None:
+def test_fits_of_twelve_films_recover_their_parameters_with_honest_errors() -> None:
     """chi2 has the mean of its degrees of freedom n and the variance 2n, bounded at 5 deviations.
     Of m normal numbers 0.68 m are within 1, bounded at 4 deviations sqrt(0.22 m); errors that
     were widened bring more of them. More than one of m = 48 beyond 3 has the probability 0.8 %."""
@@ -85,14 +86,16 @@ def test_twelve_films_give_their_numbers_with_honest_errors() -> None:
     ],
     ids=["holes", "half turns", "no angle", "angle", "uneven", "no sigma", "outliers", "both"],
 )
-def test_films_as_they_are(t: Any, film: dict[str, Any], how: dict[str, Any]) -> None:
+def test_fits_of_realistic_films_recover_their_parameters(
+    t: Any, film: dict[str, Any], how: dict[str, Any]
+) -> None:
     """A normal number is beyond 4 once in 16 000; an error of restitution stays below 0.02."""
     fit = fit_motion(t, **film, scene=GUESS, free=FREE, **({"sigma": SIGMA} | how))
     assert np.all(np.abs(off(fit, DROP, FREE)) < 4) and fit.errors["restitution"] < 0.02
     assert "not fit" not in fit.message
 
 
-def test_outliers_and_a_wrong_scene_do_not_fit() -> None:
+def test_outliers_and_a_wrong_scene_are_reported_as_not_fitting() -> None:
     fit = fit_motion(TIMES, **OUTLIERS, scene=GUESS, free=FREE, sigma=SIGMA)
     wrong = fit_motion(TIMES, **FILM, scene=GUESS.replace(z=0.12), free=FREE, sigma=SIGMA)
     assert all("the scene does not fit the film" in each.message for each in (fit, wrong))
@@ -107,8 +110,8 @@ def test_outliers_and_a_wrong_scene_do_not_fit() -> None:
         {"friction": 0.0},
     ],
 )
-def test_at_the_bounds(changes: dict[str, float]) -> None:
-    """Hops of 4 sigma_z are seen: those after an impact at 1 m/s with a restitution of 0.2."""
+def test_parameters_at_their_bounds_are_fitted(changes: dict[str, float]) -> None:
+    """Hops of 4 sigma_z are detected: those after an impact at 1 m/s with a restitution of 0.2."""
     scene = DROP.replace(**changes)
     guess = GUESS.replace(theta=scene.theta)
     fit = fit_motion(TIMES, **filmed(scene, TIMES), scene=guess, free=FREE, sigma=SIGMA)
@@ -116,9 +119,10 @@ def test_at_the_bounds(changes: dict[str, float]) -> None:
     assert fit.errors["restitution"] < 0.2
 
 
-def test_what_a_film_does_not_determine_keeps_its_guess() -> None:
-    """Without an impact no film determines restitution, at rest none friction, and none the mass;
-    points on the line of a blow are one; half turns of theta stay those of the scene."""
+def test_an_undetermined_parameter_keeps_its_guess() -> None:
+    """A film without an impact does not determine restitution, one at rest not friction, and none
+    the mass; points on the line of a blow are equivalent; half turns of theta stay those of the
+    scene."""
     blow = Scene(friction=0.5, impulse=Impulse(jx=0.3, jz=-0.1, dx=-0.01, dz=0.02), **BODY)
     for scene, free, lost in (
         (ROLL, ("theta", "restitution"), ["restitution"]),
@@ -130,7 +134,7 @@ def test_what_a_film_does_not_determine_keeps_its_guess() -> None:
         assert [name for name, error in fit.errors.items() if math.isinf(error)] == lost
         assert f"cannot tell {', '.join(lost)}" in fit.message
         assert not np.isnan(fit.covariance).any()
-        if len(lost) == 1:  # of dx and dz the film determines a sum
+        if len(lost) == 1:  # of dx and dz the film determines only a sum
             kept = value_of(scene, lost[0])
             assert value_of(fit.scene, lost[0]) == pytest.approx(kept, abs=1e-8)
     turned = DROP.replace(theta=0.5 + 3 * math.pi)
@@ -138,7 +142,7 @@ def test_what_a_film_does_not_determine_keeps_its_guess() -> None:
     assert abs(fit.scene.theta - turned.theta) < 0.05
 
 
-def test_the_picture_is_the_film() -> None:
+def test_the_picture_shows_the_film() -> None:
     fit = fit_motion(TIMES, HOLES["x"], theta=HOLES["theta"], scene=GUESS, free=FREE, sigma=SIGMA)
     chart = fit.plot()
     assert list(chart.residuals) == ["x", "theta"] and len(chart.axes) == 3
@@ -150,15 +154,15 @@ def test_the_picture_is_the_film() -> None:
     pyplot.close("all")
 
 
-def test_without_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fit_without_scipy_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     with pytest.raises(ImportError, match=r"pip install 'rolling_ellipse\[fit\]'"):
         fit_motion(TIMES, **FILM, scene=DROP, free=FREE)
 
 
 @pytest.mark.parametrize("start", [0.0, 0.4])
-def test_angles_alone_roll(start: float) -> None:
-    """The centre of the angles of an equation of motion is that of rolling."""
+def test_angles_alone_determine_a_rolling_motion(start: float) -> None:
+    """Angles alone, as from an equation of motion, give the centre of a rolling body."""
     t = np.linspace(start, 1.0, 4000)
     motion = simulate(ROLL.replace(theta=start, x=7.0), t, model="rolling")
     mine = Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
@@ -167,7 +171,7 @@ def test_angles_alone_roll(start: float) -> None:
     assert (mine.mode == Mode.ROLLING).all()
 
 
-def test_samples_from_arrays(tmp_path: Any) -> None:
+def test_rates_from_sampled_arrays_converge_at_fourth_order(tmp_path: Any) -> None:
     """Rates of fourth order: halved steps leave 1/16 of their error, within a quarter."""
     errors = []
     for count in (101, 201):

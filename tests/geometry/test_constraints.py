@@ -1,4 +1,4 @@
-"""The report's constraints at states that obey or break them, and the coordinates of rolling.
+"""The report's constraints at states that obey or violate them, and the coordinates of rolling.
 
 q = (x, z, theta, psi, r). The references are f1 ... f4 in mpmath, their rates by numerical
 differentiation along q_dot, and gap and slip from the turned outline. Bounds: a few ulp of the
@@ -30,7 +30,7 @@ def digits() -> None:
 
 
 def position_terms(q: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Sizes of the terms of f2, f3, f4."""
+    """Magnitudes of the terms of f2, f3, f4."""
     _, z, theta, psi, r = q
     turned = abs(r * mp.sin(psi - theta) * (psi - theta))  # rounding of psi - theta
     angles = abs(psi - theta) + abs(lead(theta, a, b))
@@ -44,7 +44,7 @@ def residuals(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Sizes of the terms of the seven residuals: their sums without signs."""
+    """Magnitudes of the terms of the seven residuals, summed."""
     q, q_dot = y[:5], [abs(rate) for rate in y[5:]]
     x_dot, z_dot, omega, psi_dot, r_dot = q_dot
     _, _, theta, psi, r = q
@@ -64,7 +64,7 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def random_states(shape: Shape, count: int) -> np.ndarray:
-    """Random (q, q_dot) of the size of the body, which break all constraints."""
+    """Random (q, q_dot) of the size of the body, which violate all constraints."""
     generator = np.random.default_rng(20)
     size = max(shape)
     spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])
@@ -72,7 +72,7 @@ def random_states(shape: Shape, count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
-def test_residuals_of_inconsistent_states(shape: Shape) -> None:
+def test_residuals_of_inconsistent_states_equal_their_definitions(shape: Shape) -> None:
     """Residuals equal their definitions, to 16 ulp of their terms: an evaluation takes products of
     a few sines, quotients and roots, and each adds half an ulp to one."""
     a, b = map(mp.mpf, shape)
@@ -86,7 +86,7 @@ def test_residuals_of_inconsistent_states(shape: Shape) -> None:
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
-def test_residual_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
+def test_residual_gap_and_slip_agree_with_a_rotated_outline(shape: Shape) -> None:
     """Gap and slip equal the lowest point of the outline and the velocity of the material there,
     above and below the ground, to 8 ulp of the terms; psi and r have no effect."""
     a, b = map(mp.mpf, shape)
@@ -106,16 +106,17 @@ def test_residual_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
 
 
 def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """q of a rolling body at an angle."""
+    """Coordinates q of a rolling body at an angle."""
     h, slope, _ = oracles.geometry.support(theta, a, b)
     path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
     return [path, h, mp.mpf(theta), theta + lead(theta, a, b), mp.hypot(h, slope)]
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
-def test_kinematics_against_differentiation(shape: Shape) -> None:
-    """Each of the ten coordinates and rates equals its definition and d/d theta: relative, except
-    psi, which is theta plus its lead, and r and its rate, which may follow the rounding of psi."""
+def test_kinematics_agree_with_differentiation(shape: Shape) -> None:
+    """Each of the ten coordinates and rates equals its definition and d/d theta: errors are
+    relative, except for psi, which is theta plus its lead, and r and its rate, which may follow the
+    rounding of psi."""
     omega = -1.7
     for theta in (0.0, 1e-5, 0.3, 1.2, math.pi / 2, -2.5, 40.3, 9999.5):
         q, q_dot = kinematics(theta, omega, a=shape[0], b=shape[1])

@@ -26,7 +26,7 @@ def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
     return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
 
 
-def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
+def test_the_oracle_support_is_the_lowest_point(shape: Shape) -> None:
     for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
         t = oracles.geometry.lowest_point(theta, *shape)
         right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
@@ -35,7 +35,7 @@ def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
         assert abs(right - slope) < mp.mpf(10) ** -30 * max(shape)
 
 
-def test_oracle_closed_form_is_the_derivative(shape: Shape) -> None:
+def test_the_oracle_closed_form_equals_numerical_derivatives(shape: Shape) -> None:
     """The closed form of h, h', h'' in the suite equals numerical derivatives in mpf, and in long
     double to 1e-13 of the largest: h'' of a thin body near its flat position is 1e6 times its
     height."""
@@ -49,7 +49,7 @@ def test_oracle_closed_form_is_the_derivative(shape: Shape) -> None:
             assert abs(mp.mpf(str(near)) - value) <= 1e-13 * size, theta
 
 
-def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
+def test_the_oracle_lengths_equal_their_integrals(shape: Shape) -> None:
     """The closed forms of both lengths in this file equal Gauss quadrature of their definitions."""
     a, b = map(mp.mpf, shape)
     theta = 1.1
@@ -63,7 +63,7 @@ def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
     assert abs(outline - boundary_length(t, *shape)) < mp.mpf(10) ** -18 * outline
 
 
-def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
+def test_support_and_its_slope_are_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
     """h and h' are sums or products of positive terms, except a - b, which is exact near a circle.
     So errors are relative: at most 3 roundings each in sin, cos and the axes, and 3 more after
     them."""
@@ -78,7 +78,7 @@ def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
         assert ulps(actual, exact, exact) <= 8
 
 
-def test_curvatures(shape: Shape, angles: list[float]) -> None:
+def test_curvatures_are_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
     """rho = a^2 b^2 / h^3 has 3 times the error of h (4 ulp) and a few roundings; h'' = rho - h is
     a difference, whose error is relative to its terms."""
     for theta in angles:
@@ -90,9 +90,11 @@ def test_curvatures(shape: Shape, angles: list[float]) -> None:
         assert ulps(actual, curvature, radius + h) <= 16
 
 
-def test_contact_polar(shape: Shape, angles: list[float]) -> None:
+def test_polar_coordinates_of_the_contact_are_exact_to_a_few_ulp(
+    shape: Shape, angles: list[float]
+) -> None:
     """r has a relative error; psi = theta + (an angle within pi/2) has the rounding of the sum and
-    the relative error of the second term."""
+    the relative error of the angle."""
     for theta in angles:
         h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
         a, b = map(mp.mpf, shape)
@@ -105,16 +107,16 @@ def test_contact_polar(shape: Shape, angles: list[float]) -> None:
         assert abs(psi - exact) <= EPS * (abs(exact) + 8 * abs(lead))
 
 
-def test_arc_length(shape: Shape, angles: list[float]) -> None:
+def test_the_arc_length_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
     """Arc length is the outline's length up to the contact point. The integrand is positive, so the
-    error is relative: one ulp by the error of the angle, and a few by the integral."""
+    error is relative: one ulp from the error of the angle, and a few from the integral."""
     for theta in angles:
         exact = boundary_length(outline_parameter(theta, *shape), *shape)
         actual = geometry.arc_length(theta, a=shape[0], b=shape[1])
         assert ulps(actual, exact, exact) <= 16
 
 
-def test_centre_path(shape: Shape, angles: list[float]) -> None:
+def test_the_centre_path_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
     """x = integral of h is positive with a condition number near 1, so its error is relative. (The
     difference arc - h' would lose (longer/shorter)^2 near the flat position.)"""
     a, b = map(mp.mpf, shape)

@@ -81,10 +81,12 @@ def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> 
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("friction", "restitution"), [(0.1, 0.9), (0.4, 0.6), (1.1, 0.3), (0, 1)])
-def test_laws_follow_the_path_in_small_steps(law: Any, friction: float, restitution: float) -> None:
-    """The oracle is late by a step at the end of compression, which restitution at most doubles,
-    and by one at its own end. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
-    by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the approach."""
+def test_laws_agree_with_small_steps_along_the_impulse_path(
+    law: Any, friction: float, restitution: float
+) -> None:
+    """The oracle is a step late at the end of compression, which restitution at most doubles, and
+    another at its own end. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body by
+    sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the approach."""
     for state in approaching(25, seed=3).T:
         found = after(state, law, friction, restitution)
         true = walked(law, state, friction, restitution)
@@ -97,7 +99,9 @@ def test_laws_follow_the_path_in_small_steps(law: Any, friction: float, restitut
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", [0.0, 0.15, 0.8, math.inf])
-def test_an_impulse_at_the_contact_within_the_cone(law: Any, friction: float) -> None:
+def test_the_impulse_acts_at_the_contact_within_the_friction_cone(
+    law: Any, friction: float
+) -> None:
     """Velocities reach 10 m/s, with some tens of roundings each."""
     state = approaching(400)
     velocities = after(state, law, friction, 0.7)
@@ -124,7 +128,7 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
             assert np.all(speed(found, k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
 
 
-def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
+def test_a_light_thin_fast_turning_body_conserves_energy() -> None:
     """h' omega is up to 100 times z_dot: no velocity may be the difference of two such terms.
 
     Three velocities have some ten roundings each, and the energy twice as many of its own size.
@@ -147,7 +151,7 @@ def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
             assert np.min(gained) > -40 * EPS
 
 
-def test_newton_creates_energy() -> None:
+def test_newtons_law_can_create_energy() -> None:
     """The contact slips forwards behind the centre. Friction helps the approach until the slip
     stops. Its part of the approach is missing in the initial u, but all of the approach is
     returned."""
@@ -161,23 +165,23 @@ def test_newton_creates_energy() -> None:
     assert all(ratio[law] <= 1 + 100 * EPS for law in ENERGY_KEEPING)
 
 
-def test_newton_is_the_ratio_of_gap_rates() -> None:
+def test_newtons_restitution_is_the_ratio_of_gap_rates() -> None:
     state = approaching(300)
     rates = contact(state, after(state, "newton", 0.3, 0.4))[1]
     assert np.max(np.abs(rates + 0.4 * contact(state, state[1:])[1])) < 1000 * EPS
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.4, 1.1, math.inf])
-def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
+def test_poissons_restitution_is_the_ratio_of_impulses(friction: float) -> None:
     """Restitution's impulse is e times compression's, which is the whole impulse for e = 0. An
-    impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with some ten
+    impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with about ten
     roundings."""
     state = approaching(300)
     compression, whole = (after(state, "poisson", friction, e)[1] - state[2] for e in (0.0, 0.4))
     assert np.max(np.abs(whole - 1.4 * compression)) < 1000 * EPS
 
 
-def test_without_friction_or_restitution_the_laws_are_one() -> None:
+def test_the_laws_agree_without_friction_or_restitution() -> None:
     """The path without friction is straight: work, impulse and speed are in the same proportion;
     and e = 0 ends every law at the end of compression."""
     state = approaching(300)
@@ -188,7 +192,7 @@ def test_without_friction_or_restitution_the_laws_are_one() -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
+def test_unlimited_friction_is_the_limit_of_large_friction(law: Any) -> None:
     """The difference from the limit falls like 1/mu: a tenth for ten times the friction."""
     state = approaching(300)
     limit, much, more = (after(state, law, mu, 0.7) for mu in (math.inf, 1e5, 1e6))
@@ -197,7 +201,7 @@ def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_a_contact_that_leaves_is_left_alone(law: Any) -> None:
+def test_a_separating_contact_keeps_its_velocities(law: Any) -> None:
     found = impacts.collide(0.4, 1.0, 2.0, 0.5, **BODY, friction=0.3, restitution=0.5, law=law)
     assert found == (1.0, 2.0, 0.5)
 
@@ -214,7 +218,7 @@ def test_the_default_body_is_a_uniform_disc() -> None:
     assert np.array_equal(default, disc) and not np.allclose(default, ring)
 
 
-def test_kinetic_speed_is_the_energy() -> None:
+def test_kinetic_speed_follows_from_the_kinetic_energy() -> None:
     assert impacts.kinetic_speed(2.0, -3.0, 4.0, gyration2=2.25) == 7.0  # sqrt(4 + 9 + 36)
     both = impacts.kinetic_speed([[3.0], [0.0]], 4.0, [0.0, 1.0], gyration2=9.0)
     assert np.allclose(both, np.sqrt([[25, 34], [16, 25]]), rtol=4 * EPS)
@@ -235,7 +239,7 @@ def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
 @pytest.mark.parametrize("law", LAWS)
-def test_fit_finds_the_coefficients_without_noise(law: Any, minimise: Any) -> None:
+def test_the_fit_recovers_the_coefficients_from_exact_data(law: Any, minimise: Any) -> None:
     """The fit is exact to its last step, 1/10240 of the range of either coefficient."""
     fitted = impacts.fit(*series(law, 0.0, 60), **BODY, law=law, minimise=minimise)
     assert fitted.restitution == pytest.approx(E, abs=1 / 10240)
@@ -244,7 +248,7 @@ def test_fit_finds_the_coefficients_without_noise(law: Any, minimise: Any) -> No
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
+def test_the_fit_recovers_the_coefficients_from_noisy_data(law: Any) -> None:
     """The bound is four standard deviations. The impacts move by 0.96 m/s (root mean square) per
     unit of e and by 1.83 m/s per unit of mu, so noise of 0.2 m/s in 1000 impacts gives
     0.2/sqrt(1000) over those. The length of three normal numbers has the mean square 3, known to
@@ -258,7 +262,7 @@ def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
     assert fitted.median_error == pytest.approx(0.2 * 1.538, abs=4 * 0.5 * sigma / 0.578)
 
 
-def test_the_median_does_not_mind_wild_trials() -> None:
+def test_the_median_fit_ignores_outliers() -> None:
     before, found = series("stronge", 0.02)
     found[:, ::10] *= -3.0
     median, rms = (impacts.fit(before, found, **BODY, minimise=by) for by in ("median", "rms"))
@@ -268,7 +272,7 @@ def test_the_median_does_not_mind_wild_trials() -> None:
     assert median.median_error < rms.median_error and rms.rms_error < median.rms_error
 
 
-def test_errors_are_those_of_the_coefficients_found() -> None:
+def test_errors_are_those_of_the_fitted_coefficients() -> None:
     before, seen = series("newton", 0.1, 50)
     fitted, again = (impacts.fit(before, seen, **BODY, law="stronge") for _ in range(2))
     assert (again.restitution, again.friction) == (fitted.restitution, fitted.friction)
@@ -284,7 +288,7 @@ def test_errors_are_those_of_the_coefficients_found() -> None:
         assert np.median(errors(de, dmu)) > fitted.median_error
 
 
-def test_what_sticks_bounds_friction_from_below() -> None:
+def test_sticking_impacts_bound_friction_from_below() -> None:
     """Any friction above the largest |J_t|/J_n of sticking impacts gives the same velocities."""
     before: Any = approaching(200, seed=9)
     left: Any = after(before, "stronge", math.inf, 0.5)
@@ -313,7 +317,7 @@ def thrown(seed: int, count: int, law: Any = "stronge", top: float = 0.25) -> tu
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_fit_is_the_best_of_a_fine_grid(law: Any) -> None:
+def test_the_fit_is_as_good_as_the_best_of_a_fine_grid(law: Any) -> None:
     """The median has many local minima, which a search from the best of a coarse grid misses."""
     angle = np.linspace(0, math.pi / 2, 121)
     e: Any = np.linspace(0, 1, 121)
@@ -328,7 +332,7 @@ def test_fit_is_the_best_of_a_fine_grid(law: Any) -> None:
         assert impacts.fit(before, seen, **DIE, law=law, minimise="rms").rms_error <= rms
 
 
-def test_fit_of_the_sheet_with_its_own_inertia() -> None:
+def test_the_fit_to_the_course_data_finds_the_narrow_minimum() -> None:
     """A plain grid has a median of 0.0799 m/s at e = 0.5134, mu = 0.18, in a narrow valley."""
     k2 = 0.7522033542556 * (0.035**2 + 0.025**2) / 4
     before, seen = course.measured_impacts()
@@ -338,7 +342,7 @@ def test_fit_of_the_sheet_with_its_own_inertia() -> None:
 
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
-def test_errors_are_as_large_as_the_scatter_about_the_truth(minimise: Any) -> None:
+def test_errors_match_the_scatter_about_the_truth(minimise: Any) -> None:
     """Bounds are four standard deviations: of 40 pulls the root mean square is 1 to within
     1/sqrt(80) of it, and the share within one error 0.68 to within sqrt(0.68 0.32/40)."""
     pulls = []
@@ -353,7 +357,7 @@ def test_errors_are_as_large_as_the_scatter_about_the_truth(minimise: Any) -> No
 
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
-def test_neither_order_nor_side_changes_the_fit(minimise: Any) -> None:
+def test_neither_order_nor_mirroring_changes_the_fit(minimise: Any) -> None:
     _, before, seen = thrown(3, 25)
     order = np.random.default_rng(1).permutation(25)
     mirror = np.array([[-1], [-1], [1], [-1]])
@@ -367,8 +371,8 @@ def test_neither_order_nor_side_changes_the_fit(minimise: Any) -> None:
     assert np.array_equal(fitted.errors[order], shuffled.errors)
 
 
-def test_errors_of_what_is_not_determined() -> None:
-    """Where all impacts stick, infinite friction fits as well; few impacts have no halves."""
+def test_undetermined_coefficients_have_infinite_errors() -> None:
+    """Where all impacts stick, infinite friction fits as well; too few impacts cannot be halved."""
     state = approaching(200, 9)
     seen = after(state, "stronge", 0.3, 0.6) + np.random.default_rng(9).normal(0, 0.05, (3, 200))
     fitted = impacts.fit(list(state), list(seen), **BODY)

@@ -71,7 +71,7 @@ ORDER_SCENES = {
     "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
     "circle-like": (Scene(1.1, 1.0, theta=0.3, omega=2.0), 2.0, 0.25),
 }
-# Errors used for the fit: well above rounding (2e-15, an ulp of theta, in either solution), and
+# Errors used in the fit: well above rounding (2e-15, an ulp of theta, in either solution), and
 # small enough for the leading term to dominate.
 LOW_ORDER_WINDOW = (1e-12, 1e-9)
 HIGH_ORDER_WINDOW = (6e-14, 3e-11)
@@ -91,7 +91,7 @@ def errors_in_steps(scene: Scene, t_end: float, name: str, steps: int) -> tuple[
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("where", ORDER_SCENES)
 @each_method
-def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
+def test_the_measured_order_is_the_nominal_one(where: str, name: str) -> None:
     scene, t_end, largest_step = ORDER_SCENES[where]
     order = ORDERS[name]
     low, high = HIGH_ORDER_WINDOW if order == 8 else LOW_ORDER_WINDOW
@@ -133,7 +133,7 @@ PEERS = {"dop853": "DOP853", "dopri5": "RK45"}
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
+def test_methods_are_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
     """SciPy has the same pairs with the same step control: steps and evaluations agree within 10 %,
     and the mean error at the end is no larger; at loose tolerances chance changes single errors."""
     gains = []
@@ -154,7 +154,7 @@ def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["gauss2", "gauss3", "gauss4"])
-def test_gauss_undoes_itself(name: str) -> None:
+def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
     """Reversed steps return to the start at any step size, up to the rounding of 240 steps, an ulp
     each at most. Radau, which damps, does not return."""
 
@@ -170,7 +170,7 @@ def test_gauss_undoes_itself(name: str) -> None:
 
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
 @pytest.mark.parametrize("name", IMPLICIT)
-def test_stages_are_solved_as_near_an_equilibrium_as_can_be(name: str, angle: float) -> None:
+def test_stages_are_solved_even_next_to_an_equilibrium(name: str, angle: float) -> None:
     """theta'' nearly vanishes at such angles, and so does every other change of the iteration for
     the stages: that must not end it. A start moved by d moves the end by a few d, and by
     rounding."""
@@ -193,7 +193,7 @@ AWAY = {
 
 @each_method
 @pytest.mark.parametrize(("theta", "turned", "moved", "most"), AWAY.values(), ids=AWAY)
-def test_half_turns_and_distance_make_no_difference(
+def test_added_half_turns_and_distant_starts_make_no_difference(
     name: str, theta: float, turned: float, moved: float, most: float
 ) -> None:
     """The ellipse is the same after half a turn, whose double is within 4e-16; a fixed step makes
@@ -232,7 +232,7 @@ def test_steps_do_not_depend_on_units(name: str, weight: float, unit: float) -> 
 
 @pytest.mark.parametrize("unit", UNITS.values(), ids=UNITS)
 @pytest.mark.parametrize("name", PAIRS)
-def test_control_of_the_error_does_not_depend_on_units(name: str, unit: float) -> None:
+def test_error_control_does_not_depend_on_units(name: str, unit: float) -> None:
     """With relative tolerances alone only the first step, a guess, depends on seconds; it grows
     tenfold per step until it fits."""
     scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
@@ -256,7 +256,7 @@ EXTREME = {
 
 @pytest.mark.parametrize("where", EXTREME)
 @each_method
-def test_extreme_scales(name: str, where: str) -> None:
+def test_scenes_of_extreme_scale_stay_accurate(name: str, where: str) -> None:
     """The largest and smallest scenes, in steps of a thousandth of the time simulated: even order 4
     is then within 1e-9 of the size of the motion."""
     scene, time = EXTREME[where]
@@ -294,9 +294,9 @@ def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
     ids=["flat", "tip", "a < b flat", "a < b tip", "circle"],
 )  # fmt: skip
 @each_method
-def test_what_rests_stays(name: str, scene: Scene) -> None:
-    """A resting body stays at rest with every method: pi/2 is a double only within rounding, and
-    from there the equation would take half a minute to fall off the tip."""
+def test_a_resting_body_stays_at_rest(name: str, scene: Scene) -> None:
+    """A resting body stays at rest with every method: pi/2 is rounded to a double, and from there
+    the equation would take half a minute to fall off the tip."""
     for how in [{"step": 0.1}] if name not in PAIRS else [{"step": 0.1}, {}]:
         trajectory = roll(scene, 60.0, name, **how)
         assert np.all(trajectory.mode == Mode.REST)
@@ -312,7 +312,9 @@ def test_what_rests_stays(name: str, scene: Scene) -> None:
     [(0.02, 0.02, 1), (0.03, 0.02, 2), (0.06, 0.02, 3), (0.7, 0.1, 7), (1.0, 0.3, 4)],
 )
 @each_method
-def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, steps: int) -> None:
+def test_the_last_step_ends_exactly_at_the_end_time(
+    name: str, span: float, step: float, steps: int
+) -> None:
     """The last step is shorter where needed, and none is added for the rounding of 0.7/0.1. The
     error is that of even steps, which is up to (0.3/0.25)^8 = 4.3 times smaller."""
     scene = replace(rl.scenes.rocking, omega=1.0)
@@ -324,7 +326,7 @@ def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, step
 
 
 @each_method
-def test_time_zero(name: str) -> None:
+def test_a_motion_that_ends_at_time_zero_is_its_start(name: str) -> None:
     trajectory = stepped(rl.scenes.rolling, 0, name)
     assert trajectory.t.tolist() == [0.0] and trajectory.omega.tolist() == [3.2]
     assert trajectory.stats["steps"] == 0 and trajectory.status is Status.COMPLETED
@@ -332,7 +334,7 @@ def test_time_zero(name: str) -> None:
 
 @each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
-    """Samples keep their bits among others: more than a thousand, each third, and beyond any
+    """Samples keep their bits among others: more than a thousand, every third one, and beyond any
     chunk."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
@@ -342,7 +344,7 @@ def test_samples_do_not_depend_on_each_other(name: str) -> None:
 
 
 @each_method
-def test_dense_output_meets_the_steps(name: str) -> None:
+def test_dense_output_agrees_with_the_steps(name: str) -> None:
     """A motion that ends with a step has the same state there as one that continues, up to the
     rounding of its shorter last step; there is no jump between its two sides."""
     scene, step = rl.scenes.rolling, 0.02
@@ -357,7 +359,7 @@ def test_dense_output_meets_the_steps(name: str) -> None:
         assert np.all(np.diff(near.theta) > 0)
 
 
-def test_dense_output_is_as_good_after_the_steps_of_which_it_is_kept() -> None:
+def test_recomputed_dense_output_is_as_good_as_stored_dense_output() -> None:
     """Dense output is kept for the first 2**17 steps and computed again for later ones: between the
     ends of a step its error differs from theirs by 6e-11, equally before and after, where a step is
     0.01. Step sizes repeat after 350 steps, a half turn."""
@@ -383,7 +385,7 @@ def test_dense_output_is_as_good_after_the_steps_of_which_it_is_kept() -> None:
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["controlled", "fixed"])
-def test_max_steps(how: dict[str, Any]) -> None:
+def test_a_motion_stops_at_max_steps(how: dict[str, Any]) -> None:
     times = np.linspace(0, 50, 5001)
     with pytest.raises(IntegrationError, match="max_steps = 40") as caught:
         rl.simulate(rl.scenes.rolling, times, model="rolling", method="dop853", max_steps=40, **how)
@@ -401,14 +403,14 @@ def test_max_steps(how: dict[str, Any]) -> None:
     assert enough.status is Status.COMPLETED
 
 
-def test_a_motion_that_stops_before_the_first_sample() -> None:
+def test_a_motion_may_stop_before_its_first_sample() -> None:
     trajectory = roll(rl.scenes.rolling, [5.0], "rk4", step=0.01, max_steps=10)
     assert trajectory.t.size == 0 and trajectory.t_end == pytest.approx(0.1)
     assert trajectory.sol(0.05).t.size == 1
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_step_too_small(name: Any) -> None:
+def test_a_step_too_small_to_change_the_time_ends_the_motion(name: Any) -> None:
     with pytest.raises(IntegrationError, match="no step of a size that changes t"):
         rl.simulate(rl.scenes.rolling, 1.0, model="rolling", method=name, rtol=0.0, atol=1e-300)
     trajectory = roll(rl.scenes.rolling, 1.0, name, rtol=0.0, atol=1e-300)
@@ -428,7 +430,9 @@ OVERSTEPPED = {"thin": Scene(2.0, 0.002, theta=0.3, omega=1.0), "fast": Scene(2.
 @pytest.mark.parametrize("step", [0.1, 1.0, 10.0, 100.0])
 @pytest.mark.parametrize("scene", OVERSTEPPED.values(), ids=OVERSTEPPED)
 @each_method
-def test_steps_far_too_large_give_no_nonsense_numbers(name: str, scene: Scene, step: float) -> None:
+def test_steps_far_too_large_still_give_finite_numbers(
+    name: str, scene: Scene, step: float
+) -> None:
     """The steps are refused (STEP_TOO_LARGE) or inaccurate, but all samples are finite."""
     trajectory = stepped(scene, 100.0, name, step)
     refused = trajectory.status is Status.STEP_TOO_LARGE
@@ -440,7 +444,7 @@ def test_steps_far_too_large_give_no_nonsense_numbers(name: str, scene: Scene, s
 
 
 @pytest.mark.parametrize("name", IMPLICIT)
-def test_step_too_large(name: str) -> None:
+def test_a_step_too_large_for_the_stages_ends_the_motion(name: str) -> None:
     with pytest.raises(IntegrationError, match="a step of 10 s cannot be solved at t = 0 s"):
         rl.simulate(OVERSTEPPED["thin"], 100.0, model="rolling", step=10.0, **METHODS[name])
     trajectory = stepped(OVERSTEPPED["thin"], 100.0, name, 10.0)
@@ -452,7 +456,7 @@ def test_step_too_large(name: str) -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("tolerance", [1.0, 1e3, 1e300])
 @pytest.mark.parametrize("name", PAIRS)
-def test_tolerances_far_too_loose_give_no_nonsense_numbers(name: str, tolerance: float) -> None:
+def test_tolerances_far_too_loose_still_give_finite_numbers(name: str, tolerance: float) -> None:
     trajectory = roll(rl.scenes.rolling, 20.0, name, rtol=tolerance, atol=tolerance)
     for field in ARRAYS:
         assert np.all(np.isfinite(getattr(trajectory, field))), field

@@ -3,7 +3,7 @@
 Explicit methods by rooted trees: a method has order p where, for every tree of up to p nodes,
 phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 Differential Equations I, II.2). Implicit methods by the simplifying assumptions B, C, D of II.7 and
-IV.5 there. The arithmetic is long double, whose rounding is 2000 times below that of the doubles.
+IV.5 there. The arithmetic is long double, whose rounding is 2000 times finer than that of doubles.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,14 +33,14 @@ class Violation(AssertionError):
 
 def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
     """`actual` is a sum of products of up to `factors` rounded numbers, and `terms` the sum of
-    their sizes: each factor may have the error of its rounding, or twice that if computed."""
+    their magnitudes: each factor may have the error of its rounding, or twice that if computed."""
     off = np.abs(long(actual) - exact)
     allowed = 2 * factors * ROUNDING * long(terms)
     if not np.all(off <= allowed):
         raise Violation(f"off by {float(np.max(off)):.3g}, allowed {float(np.max(allowed)):.3g}")
 
 
-def test_every_tableau_is_here() -> None:
+def test_every_tableau_is_tested() -> None:
     assert {*EXPLICIT, *GAUSS, "radau"} == TABLEAUS.keys()
     assert tuple(DENSE_ORDERS) == EXPLICIT
 
@@ -95,7 +95,7 @@ def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> 
             require(phi(tree), long(s) ** nodes / gamma(tree), size(tree), nodes)
 
 
-def test_trees_are_counted_right() -> None:
+def test_rooted_trees_are_counted_correctly() -> None:
     """Counts of rooted trees are OEIS A000081; gamma has its known values for 3 and 4 nodes."""
     assert [len(trees(n)) for n in range(1, 10)] == [1, 1, 2, 4, 9, 20, 48, 115, 286]
     assert all(len(set(trees(n))) == len(trees(n)) for n in range(1, 10))
@@ -171,7 +171,7 @@ def test_explicit_methods_are_explicit(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", EXPLICIT)
-def test_no_order_is_higher_than_it_says(name: str) -> None:
+def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
     """The conditions distinguish methods: one order more is refused."""
     method = explicit(name)
     with pytest.raises(Violation):
@@ -183,7 +183,7 @@ def test_no_order_is_higher_than_it_says(name: str) -> None:
         assert any(abs(phi(tree)) > 1e-6 for tree in trees(order + 1))
 
 
-def test_the_error_estimate_of_dopri5_compares_with_its_fourth_order_weights() -> None:
+def test_the_error_estimate_of_dopri5_uses_its_fourth_order_weights() -> None:
     """Weights of J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
     lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
     method = explicit("dopri5")
@@ -267,7 +267,7 @@ def check(name: str, **changed: Long) -> None:
 
 
 def coefficients(name: str) -> Iterator[tuple[str, Long, Any]]:
-    """The name of an array, the array and a place in it, for each number that a method uses."""
+    """Name of an array, the array and an index, for each number that a method uses."""
     if name in EXPLICIT:
         arrays = {field: getattr(explicit(name), field) for field in ("c", "a", "error", "dense")}
     else:
@@ -279,7 +279,7 @@ def coefficients(name: str) -> Iterator[tuple[str, Long, Any]]:
 
 
 @pytest.mark.parametrize("name", TABLEAUS)
-def test_methods_have_their_orders_and_a_wrong_digit_is_seen(name: str) -> None:
+def test_methods_have_their_stated_orders_and_a_wrong_digit_is_detected(name: str) -> None:
     """Each coefficient in turn is changed by 1e-12, and some condition breaks."""
     check(name)
     for field, values, index in coefficients(name):
@@ -290,7 +290,7 @@ def test_methods_have_their_orders_and_a_wrong_digit_is_seen(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", GAUSS)
-def test_no_gauss_order_is_higher_than_it_says(name: str) -> None:
+def test_no_gauss_method_has_a_higher_order_than_stated(name: str) -> None:
     method = collocation(name)
     with pytest.raises(Violation):
         check_quadrature(method["b"], method["c"], 2 * len(method["c"]) + 1)

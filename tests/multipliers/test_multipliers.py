@@ -33,7 +33,7 @@ by_multipliers = partial(simulate, model="multipliers")
 
 
 def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """q and q_dot of the size of the body that break all constraints, with r > 0."""
+    """q and q_dot of the size of the body that violate all constraints, with r > 0."""
     generator = np.random.default_rng(31)
     size = max(shape)
     q = generator.normal(size=(count, 5)) * [size, size, 3.0, 3.0, size]
@@ -42,8 +42,8 @@ def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    """States that break the constraints, rolling states at quarter turns and far away, and rolling
-    states moved slightly off the constraints."""
+    """States that violate the constraints, rolling states at quarter turns and far away, and
+    rolling states moved slightly off the constraints."""
     angles = [k * QUARTER for k in (-3, -1, 0, 1, 2, 6)] + [0.3, 1e5, -1e5, 25000 * QUARTER]
     rolling = rl.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
     free = random_states(shape, 16)
@@ -74,8 +74,8 @@ def exact_drift(q: list[mp.mpf], q_dot: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> l
 
 
 def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
-    """Sizes of the terms of the drift: sums without signs, with the effect of the rounding of psi -
-    theta on its sine and cosine."""
+    """Magnitudes of the terms of the drift, with the effect of the rounding of psi - theta on its
+    sine and cosine."""
     _, _, theta, psi, r = (float(value) for value in q)
     _, _, omega, psi_dot, r_dot = (abs(float(value)) for value in q_dot)
     lean = psi - theta
@@ -95,7 +95,7 @@ def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
 
 
 @each_shape
-def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
+def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
     """Entries at any state, rolling or not, to 16 ulp of themselves or their terms (products of
     some ten factors, each with an ulp at most, and sums of few)."""
     a, b = map(mp.mpf, shape)
@@ -123,8 +123,9 @@ def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
 
 def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> float:
     """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of
-    Baumgarte's feedback), relative to the sums of their terms without signs; for the second each
-    row times the largest acceleration, with angles as lengths, as elimination can guarantee it."""
+    Baumgarte's feedback), relative to the sums of the magnitudes of their terms; for the second
+    each row times the largest acceleration, with angles as lengths, as elimination can guarantee
+    it."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     (mass, force), (q_ddot, multipliers) = forces(scene), solved
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -154,7 +155,7 @@ def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> 
 @each_shape
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
 def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
-    """Formulas independent of the core give residuals of 1e-13 (some 500 ulp; elimination has a
+    """Formulas that do not use the core give residuals of 1e-13 (some 500 ulp; elimination has a
     residual of its growth times the nine sums of each row). The ground is a slope, at states of any
     kind."""
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
@@ -165,8 +166,8 @@ def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
 
 
 @pytest.mark.parametrize("column", range(9))
-def test_back_substitution_sees_a_millionth(column: int) -> None:
-    """A change of 1e-6 in any acceleration or multiplier is seen at some state."""
+def test_back_substitution_detects_a_change_of_a_millionth(column: int) -> None:
+    """A change of 1e-6 in any acceleration or multiplier is detected at some state."""
     scene, how = Scene(2.0, 1.0), settings()
     q, q_dot = states((2.0, 1.0))
     q_ddot, multipliers = _core.multiplier_detail(scene.core, how.core, q, q_dot)
@@ -176,7 +177,7 @@ def test_back_substitution_sees_a_millionth(column: int) -> None:
 
 
 @each_shape
-def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
+def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None:
     """50 random rolling states: accelerations, N, F and all multipliers of the model "rolling", to
     1e-12 of their terms (gravity is one: z_ddot is lambda_2/m - g)."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
@@ -193,7 +194,7 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     terms = np.stack([way, way, angular[:, 0], angular[:, 1], way], axis=1)
     shares = np.abs(q_ddot - exact) / np.where(terms > 0, terms, EPS)
     push = scene.mass * way[:, None] * np.ones(4)
-    # lambda_4 = R' lambda_3 - r sin(psi - theta) lambda_2 is 0 but for the rounding of psi in
+    # lambda_4 = R' lambda_3 - r sin(psi - theta) lambda_2 is 0 to within the rounding of psi in
     # R'(psi)
     slope = np.abs(matrix(q, *shape)[:, 2, 3])
     aspect = max(shape) / min(shape)
@@ -218,7 +219,7 @@ def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
 
 
 @each_shape
-def test_projection_leaves_residuals_of_rounding_at_the_nearest_state(shape: Shape) -> None:
+def test_projection_reaches_the_nearest_state_with_residuals_of_rounding_size(shape: Shape) -> None:
     """A state some 1e-4 off is projected: residuals are of the size of rounding, and the change has
     no part along the rolling direction, in the metric of M: rounding for velocities, second order
     for positions (x, which no position constraint contains, stays)."""
@@ -260,11 +261,11 @@ FORCES = ("normal_force", "friction_force")
 
 @each_stabilization
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_motions_are_those_of_rolling(scene: Scene, stabilization: Any) -> None:
+def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> None:
     """2 s at rtol 1e-12, compared with the model "rolling" (exact where possible, dop853 at 1e-13).
-    The bound 1e-9: some 100 steps, each 1e-12 off, and errors grow by at most some exp(lambda t) =
-    e^3.4; a rounding of a far theta (1.5e-11) grows, too. With feedback the forces contain the
-    residual of velocity, times 2 alpha m = 60 kg/s at most."""
+    The bound 1e-9: some 100 steps, each 1e-12 off, and errors grow by a factor of at most about
+    exp(lambda t) = e^3.4; a rounding of a far theta (1.5e-11) grows, too. With feedback the forces
+    contain the velocity residual times 2 alpha m = 60 kg/s at most."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
@@ -280,7 +281,7 @@ def test_motions_are_those_of_rolling(scene: Scene, stabilization: Any) -> None:
 
 
 @each_stabilization
-def test_far_starts_are_as_good_as_near_ones(stabilization: Any) -> None:
+def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None:
     """theta = 1e5 has an ulp of 1.5e-11: 10 s at rtol 1e-13 end with the accuracy of a sample. A
     psi rounded like theta would break f4 by an ulp, and the 10 s would keep this error."""
     scene = Scene(2.0, 1.0, theta=1e5, omega=3.2)
@@ -290,7 +291,9 @@ def test_far_starts_are_as_good_as_near_ones(stabilization: Any) -> None:
 
 @each_stabilization
 @pytest.mark.parametrize("theta", [0.0, QUARTER])
-def test_what_rests_stays_but_for_the_rounding_of_its_tip(theta: float, stabilization: Any) -> None:
+def test_a_resting_body_stays_put_to_within_the_rounding_of_its_tip(
+    theta: float, stabilization: Any
+) -> None:
     """A flat body does not move. On the tip theta is a double, and its rounding grows like
     exp(1.674 t), 4300 times in 5 s: 8 ulp of the angle become 1.5e-11."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0)
@@ -308,7 +311,7 @@ STEPS = {"rk4": (4, (200, 400, 800)), "dopri5": (5, (160, 320, 640)), "dop853": 
 
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte", "projection"])
 @pytest.mark.parametrize("method", STEPS)
-def test_errors_fall_by_the_order_of_the_method(method: Any, stabilization: Any) -> None:
+def test_errors_shrink_at_the_order_of_the_method(method: Any, stabilization: Any) -> None:
     """Largest error of q at all knots of 3.37 half turns, as a power of the step. The terms of the
     next order still contribute: the slope lies between the two orders, closer to the method's
     own."""
@@ -326,7 +329,7 @@ def test_errors_fall_by_the_order_of_the_method(method: Any, stabilization: Any)
 
 
 @pytest.mark.parametrize("stabilization", [*EXPLICIT, "ggl"])
-def test_arrays_are_those_of_the_stored_state(stabilization: Any) -> None:
+def test_arrays_of_coordinates_equal_the_individual_fields(stabilization: Any) -> None:
     method: dict[str, Any] = {"method": "radau", "step": 0.02} if stabilization == "ggl" else {}
     times = np.linspace(0, 4, 101)
     motion = by_multipliers(GENERIC, times, stabilization=stabilization, **method)
@@ -345,7 +348,7 @@ def test_arrays_are_those_of_the_stored_state(stabilization: Any) -> None:
     assert np.allclose(motion.energy, energy + GENERIC.gravity * motion.z, rtol=8 * EPS, atol=0)
 
 
-def test_a_start_in_coordinates() -> None:
+def test_a_motion_starts_at_the_given_coordinates() -> None:
     """A motion without stabilization starts at the given q, even off the constraints."""
     q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
     q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3

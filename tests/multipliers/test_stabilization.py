@@ -23,7 +23,7 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_residuals_and_errors_of_each_stabilization() -> None:
+def test_residuals_and_errors_rank_the_stabilizations() -> None:
     """Errors of theta from 10 half turns on: largest by drift, smaller with feedback, small with
     projection, least with the energy too. Residuals: feedback bounds them, projection leaves
     rounding."""
@@ -42,7 +42,7 @@ def test_residuals_and_errors_of_each_stabilization() -> None:
     assert np.all(gaps["projection"] <= grain) and np.all(gaps["projection+energy"] <= grain)
 
 
-def test_the_path_shows_what_no_residual_does() -> None:
+def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
     """Rolling makes x a function of theta, but its constraint is one of velocities only: x leaves
     the path by the truncation of the steps, in proportion to time, with or without projection."""
     for name in ("projection", "projection+energy"):
@@ -56,7 +56,7 @@ def test_the_path_shows_what_no_residual_does() -> None:
 
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
-def test_residuals_of_projection_between_steps(scene: Scene, stabilization: Any) -> None:
+def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
     """10 half turns with dop853 at rtol 1e-10, at 10 000 times between knots: 1e-8 from exact
     rolling (some 500 steps, each 1e-10 off in theta = 30, with errors of both signs), and residuals
     of rounding: 16 ulp of theta in the constraints, times the rates for velocities."""
@@ -73,7 +73,7 @@ def test_residuals_of_projection_between_steps(scene: Scene, stabilization: Any)
 
 
 @pytest.mark.parametrize("name", ["long", *(name for name in SCENES if "far" not in name)])
-def test_energy_is_kept_at_any_time(name: str) -> None:
+def test_energy_is_conserved_at_all_times(name: str) -> None:
     """The energy of every scene, and of 1000 half turns, is kept to 8 ulp of its terms, at knots
     and between them."""
     scene, long = SCENES.get(name, FED_BACK), kept("projection+energy")
@@ -90,7 +90,7 @@ def test_energy_is_kept_at_any_time(name: str) -> None:
 ggl = partial(multipliers, method="radau", stabilization="ggl")
 
 
-def test_order_of_the_index_2_system() -> None:
+def test_the_index_2_system_has_order_5() -> None:
     """Radau IIA with three stages has order 5 in the index-2 system for positions and velocities;
     the multipliers of a trajectory are computed from these and so have it, too (E. Hairer, G.
     Wanner, Solving Ordinary Differential Equations II, VII.4)."""
@@ -108,7 +108,7 @@ def test_order_of_the_index_2_system() -> None:
 
 # the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
-def test_index_2_leaves_residuals_of_rounding_everywhere(name: str) -> None:
+def test_index_2_leaves_residuals_of_rounding_size_everywhere(name: str) -> None:
     """Residuals at knots and between, for any truncation error: 64 ulp of the size, plus the
     effect of an ulp of psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
     scene = SCENES[name]
@@ -128,7 +128,7 @@ UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
 
 
 @pytest.mark.parametrize(("name", "step"), UNSOLVABLE.items(), ids=UNSOLVABLE)
-def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
+def test_an_unsolved_step_is_not_taken(name: str, step: float) -> None:
     """If Newton's iteration fails, the motion ends at the knot before, which obeys the constraints
     like all others: a step of the index-2 system ends on them or is not taken."""
     times = np.arange(round(1 / step) + 1) * step
@@ -136,7 +136,7 @@ def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
     assert worst_residual(moving) <= 1e-10
 
 
-def test_index_2_far_from_zero() -> None:
+def test_index_2_is_accurate_far_from_zero() -> None:
     """A start 15 915 turns on (theta = 1e5, ulp 1.5e-11) turns as far in 1 s as the one near 0, to
     1e-10: this ulp twice, times e^1.7, the growth of errors."""
     near, far = (Scene(2.0, 1.0, theta=0.2 + k * 2 * math.pi, omega=3.2) for k in (0, 15_915))

@@ -9,7 +9,7 @@ Positions = Callable[[Sequence[Any], Any, Any], list[Any]]
 
 
 def lead(theta: Any, a: Any, b: Any) -> Any:
-    """psi - theta of a body on the ground, continuous (report eq 5 less theta)."""
+    """psi - theta of a body on the ground, continuous (report eq 5 minus theta)."""
     sine, cosine = mp.sin(theta), mp.cos(theta)
     return mp.atan2((a * a - b * b) * sine * cosine, (b * cosine) ** 2 + (a * sine) ** 2)
 

@@ -97,7 +97,7 @@ def energy(scene: Scene, state: InitialState) -> float:
 
 
 def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
-    """A blow of a size at any point of the body, mostly a press, half of them straight."""
+    """A blow of a given size at any point of the body, mostly a press, half of them straight."""
     push = rng.choice([0.0, rng.normal()])
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
     along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body

@@ -28,7 +28,7 @@ class Sample(NamedTuple):
     omega: Floats
 
     def motion(self, rows: Any = slice(None)) -> Motion:
-        """The rolling motions of the scenes, from exactly the doubles that the package is given."""
+        """The rolling motions of the scenes, from exactly the doubles given to the package."""
         a, b, mass, gravity, inertia, _, theta, omega = (field[rows] for field in self)
         gyration2 = gyration2_of(a, b, mass, inertia)
         return oracles.rolling.motion(a, b, gyration2, gravity, theta, omega)

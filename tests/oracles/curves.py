@@ -1,4 +1,4 @@
-"""Axes for pictures, changed motions, and data of the artists."""
+"""Axes for pictures, altered motions, and data of the artists."""
 
 import dataclasses
 

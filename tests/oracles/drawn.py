@@ -25,7 +25,7 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 def powers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Positive numbers between 10^low and 10^high, with even exponents."""
+    """Positive numbers between 10^low and 10^high, with uniformly distributed exponents."""
     return st.floats(low, high).map(lambda exponent: 10.0**exponent)
 
 

@@ -1,4 +1,4 @@
-"""A script of somebody who uses every verb, with types; the suite runs it and checks its types."""
+"""A typed script that uses every verb; the suite runs it and checks its types."""
 
 from pathlib import Path
 

@@ -100,7 +100,7 @@ def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
             if math.isnan(x) and math.isnan(y):
                 continue
             off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # more than 0 for -0 and 0
-            if not off <= worst:  # a NaN is taken, too
+            if not off <= worst:  # true for a NaN, too
                 worst, where = off, pair
     return worst, where
 

@@ -10,7 +10,7 @@ import pytest
 
 @contextmanager
 def ctrl_c_after(seconds: float) -> Iterator[None]:
-    """Require that the block ends by a KeyboardInterrupt; a negative time sets no alarm."""
+    """Require that the block ends with a KeyboardInterrupt; a negative time sets no alarm."""
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # the handler of SIGINT
     try:
         if seconds >= 0:

@@ -1,7 +1,7 @@
 """Stepped runs of all kinds, fine and much too coarse, and their losses.
 
 Runs are judged by eight samples of the trajectory per step, and by exact rolling from the start of
-each step, which reference tables judge. A loss is divided by its limit:
+each step, which reference tables verify. A loss is divided by its limit:
 
 * the energy: its largest change at any time, over the largest kinetic + |potential| energy
   (x from the start), over 1e-2 or ten rtol;

@@ -1,4 +1,4 @@
-"""The model "multipliers": matrix, slopes and forces independent of the core; scenes, settings."""
+"""The model "multipliers": matrix, slopes and forces without the core; scenes, settings."""
 
 import dataclasses
 import math

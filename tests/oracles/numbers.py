@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import NDArray
 
-Long = NDArray[Any]  # arrays of np.longdouble, a type that NumPy's annotations lose in sums
+Long = NDArray[Any]  # arrays of np.longdouble, whose type NumPy's annotations lose in sums
 EPS = 2.0**-52  # one ulp of 1.0 in double
 PI = np.longdouble("3.14159265358979323846264338327950288")
 DIGITS = 40

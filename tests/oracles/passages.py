@@ -28,14 +28,14 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
-    """A motion by each model and method, some on a slope; one that must roll has no other start."""
+    """A motion by each model and method, some on a slope; one that must roll starts rolling."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     level = settings.get("method") == "exact" or rng.random() < 0.6
     given: dict[str, Any] = {"x": rng.normal(), "slope": 0.0 if level else rng.uniform(-0.3, 0.3)}
     if settings["model"] != "contact":
         given |= {"friction": math.inf, "inertia": None, "z": None, "x_dot": None, "z_dot": None}
     drawn = random_scenes(99, int(rng.integers(2**31)), **given)
-    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # the steps are not for thin ones
+    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # the steps suit no thin body
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         warnings.simplefilter("ignore", StabilityWarning)

@@ -84,7 +84,8 @@ def luminance(colour: Any) -> float:
 def shows_something(figure: Figure) -> bool:
     """True if each axes has a point of a curve, a body or a text inside its frame.
 
-    Lines and grounds across the whole axes, whose places are shares of it, do not count.
+    Lines and grounds across the whole axes, which are placed in fractions of the axes, do not
+    count.
     """
     figure.draw_without_rendering()
     for ax in figure.axes:
@@ -99,7 +100,7 @@ def shows_something(figure: Figure) -> bool:
 
 
 def texts_of(figure: Figure) -> Iterator[Bbox]:
-    """Boxes of titles, legends, labels of axes and ticks, and texts in them, less a pixel."""
+    """Boxes of titles, legends, labels of axes and ticks, and texts in them, shrunk by a pixel."""
     for ax in figure.axes:
         parts: list[Any] = [ax.title, ax._left_title, *ax.texts]  # type: ignore[attr-defined]
         for axis in (ax.xaxis, ax.yaxis):

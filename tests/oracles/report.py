@@ -39,5 +39,5 @@ def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
 
 
 def lifted(t: Any, **options: Any) -> rl.Trajectory:
-    """A motion that rolls on the ground but for 1e-6 m/s away from it."""
+    """A motion that rolls except for a speed of 1e-6 m/s off the ground."""
     return as_given(Q, Q_DOT + 1e-6 * np.eye(5)[1], t, **options)

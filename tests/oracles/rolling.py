@@ -120,7 +120,7 @@ def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
 
 # ------------------------------------------------------------ extremes over a motion
 
-COLUMN = (slice(None), None)  # index that stands motions below each other
+COLUMN = (slice(None), None)  # index that stacks motions
 
 
 class Chart(NamedTuple):

@@ -1,4 +1,4 @@
-"""Bounds of the difference of two answers that are equal but for rounding.
+"""Bounds of the difference of two answers that are equal to within rounding.
 
 They are computed from answers of the package at inputs changed by their rounding. So they bound
 differences between answers of the package, never an error.

@@ -1,4 +1,4 @@
-"""Work of several threads that start together and take turns as often as they can."""
+"""Tasks in several threads that start together and take turns as often as possible."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def at_once(works: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Results of the works, each in a thread of its own; they switch a thousand times as often as
+    """Results of the tasks, each in its own thread; threads switch a thousand times as often as
     usual."""
     start, usual = Barrier(len(works)), sys.getswitchinterval()
 

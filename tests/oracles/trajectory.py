@@ -1,4 +1,4 @@
-"""Scenes whose motions are compared sample by sample, and motions of every kind."""
+"""Scenes whose motions are compared sample by sample, and one motion of every kind."""
 
 from collections.abc import Callable
 

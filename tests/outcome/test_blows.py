@@ -28,7 +28,7 @@ REPORT = rl.scenes.report
 # ----------------------------------------------------------------------------------------- outcome
 
 
-def test_the_reports_blow() -> None:
+def test_the_reports_blow_rolls_the_body_over() -> None:
     """A press 1.5 m beside the centre rolls the body over from F = m (k^2 + b^2) omega_R/d = 44.3 N
     s on. The blow needs a friction of 2/3, and N vanishes from 4.8432 rad/s, 72.65 N s, on."""
     assert outcome(REPORT) is Outcome.ROLLS_OVER
@@ -41,7 +41,7 @@ def test_the_reports_blow() -> None:
     assert set(np.asarray(outcome(rough, Impulse.press(F[:5], 1.5))).tolist()) == {Outcome.SLIPS}
 
 
-def test_starts_without_rolling() -> None:
+def test_starts_without_rolling_have_the_expected_outcome() -> None:
     """A slide at 56.6 degrees to the front jams if the friction is more than 1.3527."""
     jams: dict[str, Any] = {"theta": math.radians(56.636), "x_dot": 5.0}
     for scene, expected in (
@@ -61,7 +61,7 @@ def test_starts_without_rolling() -> None:
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_on_a_slope(side: int) -> None:
+def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
     """A circle rolls down the slope or, against it, turns back after a path of omega^2 (a^2 +
     k^2)/(2 g sin(slope)): more than half a turn or not. Equilibrium at h' = h tan(slope) rests with
     the friction tan(slope). The 2:1 disc on 0.1 rocks, and rolls over from flat at 3 rad/s
@@ -83,7 +83,7 @@ def test_on_a_slope(side: int) -> None:
     assert outcome(replace(lying, omega=-3.0 * side)) is Outcome.ROCKS
 
 
-def test_on_a_hardly_sloping_ground_it_is_given_up() -> None:
+def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
     """A start near the tip, 1e-15 off equilibrium, would fall in 21 growth times of 0.6 s."""
     slope = 1e-3
     incline = math.tan(slope)
@@ -111,7 +111,9 @@ def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 1.5), (1.0, 1.0)])
-def test_lying_still_needs_the_tangent_of_the_slope(a: float, b: float) -> None:
+def test_to_lie_still_a_body_needs_friction_equal_to_the_tangent_of_the_slope(
+    a: float, b: float
+) -> None:
     """The weight acts through the contact if that leads the centre by h tan(slope). The maximum of
     lead/h is flat, so that the largest of 1e5 angles misses it by some 1e-9."""
     theta = np.linspace(0.0, math.pi, 100_001)
@@ -124,7 +126,7 @@ def test_lying_still_needs_the_tangent_of_the_slope(a: float, b: float) -> None:
     assert math.isinf(required_friction(steep, to="rest"))
 
 
-def test_required_friction_is_what_blow_and_motion_need() -> None:
+def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
     """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
     (1e-12 of the forces). Below it the certificate finds the end of rolling, with a little more it
     proves rolling: its squared polynomials leave some 1e-6 between these undecided."""
@@ -156,7 +158,7 @@ def test_required_friction_is_what_blow_and_motion_need() -> None:
 
 
 @pytest.mark.parametrize("to", ["roll", "rest"])
-def test_required_friction_of_arrays_has_the_bits_of_scenes(to: Any) -> None:
+def test_required_friction_of_arrays_equals_that_of_scenes_bit_for_bit(to: Any) -> None:
     """Bodies that roll, slide or fly, struck or not, on slopes or not; any layout and workers."""
     rng = np.random.default_rng(4)
     for start in ({}, {"x_dot": rng.normal(size=7)}, {"z": 4.0}, {"impulse": 1}):
@@ -184,7 +186,7 @@ def test_required_friction_of_arrays_has_the_bits_of_scenes(to: Any) -> None:
     assert type(alone) is float and required_friction({"a": [], "b": 1.0}).shape == (0,)  # type: ignore[union-attr]
 
 
-def test_required_friction_where_it_is_known() -> None:
+def test_required_friction_equals_known_values() -> None:
     incline, disc = math.tan(0.3), 1 / 3  # k^2/(k^2 + a^2)
     tangent = 2 * incline / (3 + math.sqrt(9 - 16 * incline**2))
     for scene, expected in (
@@ -204,7 +206,7 @@ def test_required_friction_where_it_is_known() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_required_friction_in_a_well(seed: int) -> None:
+def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> None:
     """A body that rocks on a slope rolls on with this friction in the computed motion, and slips
     with 1e-8 less. A body whose required friction is infinite rolls down and away."""
     rng = np.random.default_rng(seed)
@@ -233,7 +235,7 @@ def test_required_friction_in_a_well(seed: int) -> None:
 @pytest.mark.parametrize("before", [0.0, -1.0, 0.7])
 @pytest.mark.parametrize("distance", [1.2, -0.4])
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
-def test_the_speed_that_was_asked_for(theta: float, distance: float, before: float) -> None:
+def test_a_blow_gives_the_requested_speed(theta: float, distance: float, before: float) -> None:
     """The blow law gives omega from F within the rounding of the gain and of both speeds."""
     scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(jx=3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
@@ -245,7 +247,7 @@ def test_the_speed_that_was_asked_for(theta: float, distance: float, before: flo
     assert after.omega == pytest.approx(wanted, abs=1e-14)
 
 
-def test_to_stop_a_body() -> None:
+def test_a_blow_can_stop_a_body() -> None:
     blow = blow_to(Scene(2.0, 1.0, mass=10.0, omega=-1.0), 1.5, omega=0.0)
     assert -blow.jz == pytest.approx(10.0 * 2.25 / 1.5, rel=1e-15)
     assert replace(REPORT, omega=-1.0, impulse=blow).initial_state.mode is Mode.REST
@@ -253,7 +255,9 @@ def test_to_stop_a_body() -> None:
 
 @pytest.mark.parametrize("distance", [1.5, -1.5, 0.6])
 @pytest.mark.parametrize("theta", [0.0, 0.25])
-def test_the_least_that_rolls_over(theta: float, distance: float) -> None:
+def test_blow_to_gives_the_weakest_press_that_rolls_the_body_over(
+    theta: float, distance: float
+) -> None:
     """A press at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion passes
     the tip with 1e-12 more, and turns back with 1e-12 less."""
     scene = replace(REPORT, theta=theta)
@@ -284,7 +288,7 @@ def test_a_harder_press_may_need_less_friction() -> None:
     assert 1.1 < after.initial_state.omega / rl.thresholds(1.1, 1.0).roll_over_speed < 2
 
 
-def test_blow_to_where_presses_are_as_large_as_they_may_be() -> None:
+def test_blow_to_allows_presses_up_to_their_limit() -> None:
     """A lever a thousand times shorter would need a larger press than allowed; F d gives the speed,
     as with a longer lever."""
     usual, huge = (

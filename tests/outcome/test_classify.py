@@ -29,11 +29,13 @@ from rolling_ellipse import Outcome, Scene, Validity, certify, classify, thresho
     ],
     ids=["flat", "flat standing", "flat turned", "tip", "tip standing", "circle", "circle turned"],
 )
-def test_it_rests(a: float, b: float, theta: float, friction: float) -> None:
+def test_a_body_at_rest_in_equilibrium_rests(
+    a: float, b: float, theta: float, friction: float
+) -> None:
     assert classify(a=a, b=b, omega=0.0, theta=theta, friction=friction) is Outcome.RESTS
 
 
-def test_at_rest_beside_an_equilibrium_it_falls() -> None:
+def test_a_body_released_away_from_equilibrium_rocks_or_slips() -> None:
     """A body at rest falls and returns if friction holds it, even from 1e-9 beside the tip."""
     for theta in (0.3, -0.3, 1e-9, math.pi / 2 - 1e-6, math.pi / 2 + 1e-6):
         assert classify(a=1.5, b=1.0, omega=0.0, theta=theta) is Outcome.ROCKS
@@ -42,7 +44,7 @@ def test_at_rest_beside_an_equilibrium_it_falls() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
 @pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
-def test_a_circle_rolls_for_ever_on_any_friction(omega: float, friction: float) -> None:
+def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float) -> None:
     """A circle without friction moves in the same way, but its contact slides."""
     for theta in (0.0, 0.7, 500.0):
         found = classify(a=0.7, b=0.7, omega=omega, theta=theta, friction=friction)
@@ -58,7 +60,9 @@ def separatrix_speed(a: float, b: float, gravity: float) -> Any:
 
 @pytest.mark.parametrize("gravity", [9.81, 1.62])
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.5, 1.0), (0.3, 0.9), (9.5, 1.0), (1.0, 9.5)])
-def test_beside_the_separatrix(a: float, b: float, gravity: float) -> None:
+def test_starts_near_the_separatrix_are_called_edge_or_judged_correctly(
+    a: float, b: float, gravity: float
+) -> None:
     """Friction is infinite, and the shape (below 9.75) keeps N > 0 a little beyond the separatrix.
     A few ulp off the separatrix the answer is EDGE or the truth; at the nearest double, EDGE. Every
     start is flat: theta = pi/2 is off by 6e-17, whose square has no effect."""
@@ -85,8 +89,10 @@ def test_beside_the_separatrix(a: float, b: float, gravity: float) -> None:
     ("a", "b", "omega"),
     [(2.0, 1.0, 2.5), (2.0, 1.0, 3.2), (2.0, 1.0, 4.5), (0.7, 1.9, 1.0), (20.0, 1.0, 1.0)],
 )
-def test_the_friction_that_the_certificate_asks_for(a: float, b: float, omega: float) -> None:
-    """The motion from flat up passes every height; |F|/N is known to 1e-13 or so, as the forces are
+def test_the_outcome_changes_at_the_friction_of_the_certificate(
+    a: float, b: float, omega: float
+) -> None:
+    """The motion up from flat passes every height; |F|/N is known to 1e-13 or so, as the forces are
     rounded at 1e-14 or so of the weight, and N is a tenth of it or more."""
     theta = 0.0 if a > b else math.pi / 2
     needed = certify(Scene(a, b, omega=omega, theta=theta)).largest_friction_needed
@@ -99,7 +105,7 @@ def test_the_friction_that_the_certificate_asks_for(a: float, b: float, omega: f
         assert classify(**at, friction=needed * (1 - 1e-11)) is Outcome.SLIPS
 
 
-def test_beyond_the_slip_it_rolls_over_first() -> None:
+def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
     """The 2:1 disc at 4.5 rad/s in flat needs 0.647 at 48.6 degrees and hardly any friction near
     the tip. A start of the same motion above that angle passes the tip if it rises, and slips if it
     falls."""
@@ -121,10 +127,10 @@ def test_beyond_the_slip_it_rolls_over_first() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
-def test_too_fast_for_the_ground(friction: float) -> None:
+def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: float) -> None:
     """The free body on its tip leaves the ground from omega^2 = g L/(L^2 - S^2) on. At 1:1.5, below
     root three, N of rolling first vanishes there, too: at lower speeds the body rolls over if
-    friction is infinite. 1e-11 of the speed, 2e-11 of c, is far above rounding."""
+    friction is infinite. A change of 1e-11 in speed, 2e-11 in c, is far above rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))
     at: dict[str, Any] = {"a": 1.0, "b": 1.5, "friction": friction}
     below = Outcome.ROLLS_OVER if math.isinf(friction) else Outcome.SLIPS
@@ -137,10 +143,10 @@ def test_too_fast_for_the_ground(friction: float) -> None:
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_from_exactly_on_the_tip_either_way(side: int) -> None:
-    """theta = 0 with b the longer axis is the tip exactly. In either direction the half turn to the
-    next tip lies ahead, with the flat position, where omega is largest: at 1 rad/s the body needs
-    more than 0.1 on its fall."""
+def test_a_body_exactly_on_its_tip_falls_the_same_in_either_direction(side: int) -> None:
+    """With b the longer axis, theta = 0 is exactly the tip. In either direction the half turn to
+    the next tip lies ahead, with the flat position, where omega is largest: at 1 rad/s the body
+    needs more than 0.1 on its fall."""
     at: dict[str, Any] = {"a": 1.0, "b": 2.0, "omega": float(side)}
     assert classify(**at, friction=0.1) is Outcome.SLIPS
     assert classify(**at) is Outcome.ROLLS_OVER
@@ -148,7 +154,7 @@ def test_from_exactly_on_the_tip_either_way(side: int) -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1.0, 1e3), (1.0, 1e-3), (1e-3, 1.0)])
-def test_the_thinnest(a: float, b: float) -> None:
+def test_the_thinnest_body_rocks_if_slow_and_slips_if_fast(a: float, b: float) -> None:
     """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e4 rad/s
     rolling would need a pull of the ground as soon as the body rises."""
     flat = 0.0 if a > b else math.pi / 2
@@ -182,7 +188,7 @@ def test_the_default_is_a_disc_on_earth_with_unlimited_friction_lying_on_its_sid
     assert len(np.unique(explicit)) >= 3
 
 
-def test_workers() -> None:
+def test_the_number_of_workers_does_not_change_the_answers() -> None:
     """20,000 scenes have the same answers for any number of workers."""
     sample, _ = random_sample(400, 21)
     big = Sample(*(np.tile(field, 50) for field in sample))

@@ -51,9 +51,9 @@ def at_rest(sample: Sample) -> NDArray[np.bool_]:
 
 
 def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
-    """Margin of rolling at a tangent of the reduced angle: 1 when all of the forces would have to
-    vanish. The oracle's errors are 1e-12 of their terms, and more where the energy, or a - b,
-    consists of rounding."""
+    """Margin of rolling at a tangent of the reduced angle: 1 if all forces had to vanish. The
+    oracle's errors are 1e-12 of their terms, and more where the energy, or a - b, consists of
+    rounding."""
     cosine = 1 / np.sqrt(1 + tangent**2)
     found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
     return 1e-12 * np.minimum(*found.margins(friction))
@@ -61,7 +61,7 @@ def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
 
 def least_slack(sample: Sample) -> Long:
     """Smallest margin from the start up to the tip or the turning point: steps even in v, tan =
-    waist sinh v, fine near flat and tip; dips towards zero are refined by golden section."""
+    waist sinh v, finer near flat and tip; dips towards zero are refined by golden section."""
     moving, angle = sample.motion(), start_of(sample).angle
     on = oracles.rolling.chart(moving)
     highest = on.waist * np.sinh(on.top)
@@ -132,7 +132,7 @@ def walked() -> list[Walked]:
     return chunks
 
 
-def test_the_random_scenes_meet_every_case(walked: list[Walked]) -> None:
+def test_the_random_scenes_cover_every_case(walked: list[Walked]) -> None:
     """The scenes have every outcome, rise and fall, and include bodies that would slip only at
     heights out of reach."""
     counts: Counter[int] = Counter()
@@ -157,7 +157,7 @@ def test_the_random_scenes_meet_every_case(walked: list[Walked]) -> None:
     assert beyond >= 5
 
 
-def test_what_comes_first_on_the_walk(walked: list[Walked]) -> None:
+def test_classify_gives_the_first_event_as_the_angle_advances(walked: list[Walked]) -> None:
     for sample, truth in walked:
         wrong = np.flatnonzero(np.asarray(classify(**sample.arguments())) != truth)
         assert wrong.size == 0, [
@@ -165,7 +165,7 @@ def test_what_comes_first_on_the_walk(walked: list[Walked]) -> None:
         ]
 
 
-def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
+def test_a_wrong_direction_is_detected(walked: list[Walked]) -> None:
     """The opposite direction changes the first event of some scenes, so the test above is sharp."""
     differ = 0
     for sample, truth in walked:
@@ -177,7 +177,7 @@ def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
 # -------------------------------------------------------------------------------------- many scenes
 
 
-def test_a_crowd_never_jams_and_is_hardly_ever_undecided() -> None:
+def test_random_scenes_never_jam_and_are_rarely_undecided() -> None:
     """Among 1e5 scenes rounding changes the margins by 1e-12 or so of their largest value, so that
     even many scenes near the thresholds leave far fewer than one in a thousand undecided."""
     rng = np.random.default_rng(31)

@@ -167,7 +167,7 @@ def contradictions(scene: Scene) -> list[str]:
     return [rule for rule, holds in rules.items() if not holds]
 
 
-def test_no_two_words_contradict_each_other() -> None:
+def test_no_two_statements_contradict_each_other() -> None:
     met: Counter[Outcome] = Counter()
     for scene in random_scenes(2000, 7, struck=0.25):
         assert not contradictions(scene), scene
@@ -177,7 +177,7 @@ def test_no_two_words_contradict_each_other() -> None:
         assert each is Outcome.EDGE or met[each] >= 10, met
 
 
-def test_scenes_of_which_two_things_were_said() -> None:
+def test_scenes_that_once_had_contradictory_outcomes_have_only_one() -> None:
     for scene, said in (
         (Scene(1.3, 1.0, slope=1.2e-5, theta=-0.92381, omega=6.3787), Outcome.SLIPS),
         (
@@ -228,7 +228,7 @@ def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
         yield Scene(a, b, slope=slope, theta=theta, omega=omega), needed
 
 
-def test_where_a_body_may_roll_and_fly_both_are_told() -> None:
+def test_both_motions_are_reported_where_a_body_may_roll_or_fly() -> None:
     """The body rolls with enough friction, and flies with less; the message says that both are
     possible."""
     told = "Two motions are possible"
@@ -245,7 +245,7 @@ def test_where_a_body_may_roll_and_fly_both_are_told() -> None:
         assert not contradictions(flies), flies
 
 
-def test_what_infinite_friction_does_to_a_slip_is_told() -> None:
+def test_the_effect_of_infinite_friction_on_a_slip_is_stated() -> None:
     scene = Scene(2.0, 1.0, theta=0.5, x_dot=3.0)
     told = (
         "Infinite friction stops the slip at once: the ground gives -1.69449 N s along and "
@@ -259,7 +259,7 @@ def test_what_infinite_friction_does_to_a_slip_is_told() -> None:
     assert other_way.reason == "There is no blow. It slides."
 
 
-def test_a_blow_in_the_air_lifts_nothing() -> None:
+def test_a_blow_in_the_air_is_not_said_to_lift_the_body() -> None:
     pressed = scenes.drop.replace(impulse=Impulse.press(6.17, 1.36)).initial_state
     told = "It is in the air: the blow changes its flight only. It flies."
     assert pressed.reason == told

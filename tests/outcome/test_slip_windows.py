@@ -1,4 +1,5 @@
-"""`slip_windows` are the speeds at which rolling needs more than the friction: all, and only these.
+"""`slip_windows` are the speeds at which rolling needs more than the friction: all of them and no
+others.
 
 The oracle samples |F|/N over the angles in long doubles; the package takes ends of windows from a
 scan over the angles at which the law is linear in omega^2, and proves them by polynomials.
@@ -65,8 +66,8 @@ def is_inside(windows: Windows, omega: Any) -> Any:
     return np.any([(low < omega) & (omega < high) for low, high in windows], axis=0)
 
 
-def test_windows_by_samples_of_the_needed_friction() -> None:
-    """At 150 speeds, to 1e-8 from the ends, rolling needs too much friction inside windows only."""
+def test_windows_agree_with_samples_of_the_needed_friction() -> None:
+    """At 150 speeds, to 1e-8 from the ends, rolling needs too much friction only inside windows."""
     two = 0
     for body in bodies(60, 11, decades=1.5):
         windows = body.windows()
@@ -114,7 +115,7 @@ def test_there_are_at_most_two_windows_and_the_last_is_unbounded() -> None:
             assert body.friction < friction_at_rest(*body[:3]) * (1 + 1e-5)
 
 
-def test_a_body_between_its_windows_rolls_for_ever() -> None:
+def test_a_body_between_its_slip_windows_rolls_forever() -> None:
     """A 2:1 disc with friction 0.4 slips at 1.8 and at 4.6 rad/s, and not at 2.5 (it rocks) or 3.5
     rad/s (it rolls over and over): the contact model confirms it by its events."""
     (low, high), (again, _) = thresholds(2.0, 1.0, friction=0.4).slip_windows
@@ -125,7 +126,7 @@ def test_a_body_between_its_windows_rolls_for_ever() -> None:
         assert bool(motion.events) == slips, omega
 
 
-def test_windows_at_the_limits_of_friction() -> None:
+def test_windows_are_right_at_the_limits_of_friction() -> None:
     """Without friction any moving body slips, a circle, too; a circle needs none if it has some."""
     for a, b in ((2.0, 1.0), (1.0, 2.0), (1.3, 1.3)):
         found = thresholds(a, b, friction=0.0)

@@ -54,7 +54,7 @@ inertias = pytest.mark.parametrize("kind", ["disc", "hoop", "core"])
 
 @both
 @inertias
-def test_closed_forms(shape: Shape, kind: str) -> None:
+def test_thresholds_agree_with_closed_forms(shape: Shape, kind: str) -> None:
     """The potential g h alone gives the closed forms: its barrier and its curvatures."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
@@ -71,14 +71,14 @@ def test_closed_forms(shape: Shape, kind: str) -> None:
         assert abs(actual - exact) <= 1e-13 * exact
 
 
-def test_defaults_are_the_disc_on_earth_without_limit_of_friction() -> None:
+def test_the_defaults_are_a_disc_on_earth_with_unlimited_friction() -> None:
     explicit = thresholds(2.0, 1.0, gravity=9.81, gyration2=1.25, friction=math.inf)
     assert thresholds(2.0, 1.0) == explicit
 
 
 @both
 @inertias
-def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
+def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str) -> None:
     """N stays positive in the whole turn below the speed, and not just above it; at the speed it
     vanishes at the angle."""
     gyration2 = gyration2_of(shape, kind)
@@ -96,7 +96,7 @@ def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
 @both
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
-def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> None:
+def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: float) -> None:
     """The slip speed is the smallest speed at flat whose motion needs the given friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
@@ -111,7 +111,7 @@ def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> Non
 
 
 @both
-def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
+def test_the_slip_speed_is_right_at_the_limits_of_friction(shape: Shape) -> None:
     """Every rocking body slips without friction; unlimited friction prevents slip while N > 0."""
     assert thresholds(*shape, friction=0.0).slip_speed == 0
     found = thresholds(*shape)
@@ -122,7 +122,9 @@ def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
 
 @both
 @inertias
-def test_friction_to_roll_over(shape: Shape, kind: str) -> None:
+def test_friction_to_roll_over_is_the_largest_needed_while_rolling_over(
+    shape: Shape, kind: str
+) -> None:
     """The largest friction needed at the energy of the barrier; inf if N vanishes before."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
@@ -154,8 +156,8 @@ def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
 
 @both
 @inertias
-def test_painleve(shape: Shape, kind: str) -> None:
-    """The least friction is exact to 1e-13; the angle of a minimum to the root of that."""
+def test_painleves_friction_agrees_with_its_definition(shape: Shape, kind: str) -> None:
+    """The least friction is exact to 1e-13, the angle of its minimum to the square root of that."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     friction, angle = painleve(shape, gyration2)
@@ -168,7 +170,7 @@ def test_painleve(shape: Shape, kind: str) -> None:
     assert reduced == pytest.approx(angle, rel=1e-6)
 
 
-def test_a_circle_has_no_threshold() -> None:
+def test_a_circle_has_no_thresholds() -> None:
     found = thresholds(1.3, 1.3, friction=0.2)
     assert found.roll_over_speed == found.rocking_rate == found.tip_rate == 0
     assert math.isinf(found.contact_loss_speed) and math.isinf(found.slip_speed)
@@ -179,8 +181,8 @@ def test_a_circle_has_no_threshold() -> None:
 
 #
 # At the threshold c = g + h'' omega^2 vanishes on the tip. Where c = 0 while the body slides, N = F
-# = 0 and omega stands still, so that the slope of c is omega^2 times that of h'', which falls up to
-# the tip: c cannot touch zero there, only cross it; on the tip h'' is least, and so can c be.
+# = 0 and omega is stationary, so that the slope of c is omega^2 times that of h'', which falls up
+# to the tip: c cannot touch zero there, only cross it; on the tip h'' is least, and so can c be.
 
 
 def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
@@ -198,10 +200,10 @@ def tip_speed2(shape: Shape) -> float:
     ("shape", "kind"),
     [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
 )
-def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
+def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: str) -> None:
     """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre falls freely, with
     contact, and just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations give the
-    angle and the speed at which the slide begins, to 30 digits. The package solves the first by the
+    angle and the speed at which the slide starts, to 30 digits. The package solves the first by the
     root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces that cancel to
     N = 0 a hundredfold."""
     mp.mp.dps = DIGITS
@@ -241,7 +243,7 @@ def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
 
 @both
 @inertias
-def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
+def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -> None:
     """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground; h' = 0 in flat and
     on the tip. The package integrates, to 1e-13 per step; one slide from flat to tip takes some ten
     steps, whose errors do not grow here: 1e-12."""
@@ -259,7 +261,9 @@ def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
         ((9.0, 1.0), "disc"), ((1.0, 1.05), "disc"),
     ],
 )  # fmt: skip
-def test_lift_off_is_a_threshold(shape: Shape, kind: str, friction: float) -> None:
+def test_a_body_leaves_the_ground_only_above_the_lift_off_speed(
+    shape: Shape, kind: str, friction: float
+) -> None:
     """A slower body stays on the ground up to the tip; a faster body leaves it before. This holds
     near the threshold, where 1e-10 of the speed moves the zero of c from the tip by some 1e-5 rad,
     and far from it. test_contact_reference.py judges slides in 30 digits."""
@@ -291,7 +295,7 @@ def on_its_way_up(event: Event) -> bool:
 
 
 @pytest.mark.parametrize("friction", [0.25, 0.3, 0.45, 0.505])
-def test_jams_between_speeds_of_leaving(friction: float) -> None:
+def test_a_body_jams_only_between_its_jam_speeds(friction: float) -> None:
     """A body with its mass near the centre, above Painleve's friction: the contact model confirms
     the jam speeds, even near the ends of the ranges. The distance from an end is 1e-4 at least:
     where c and B vanish together, the last digits of a slide decide between a jam and leaving."""
@@ -311,10 +315,10 @@ def test_jams_between_speeds_of_leaving(friction: float) -> None:
         assert leaves == (speed >= found.lift_off_speed and not jams), speed
 
 
-def test_jams_far_above_the_speed_that_slips_at_rest() -> None:
+def test_a_body_may_jam_far_above_its_slip_speed() -> None:
     """A body that slips from rest at 0.24 rad/s jams at 16 to 17 rad/s, after it has left the
-    ground at lower speeds: the scan for jams goes on while weight matters, not to 50 times the slip
-    speed."""
+    ground at lower speeds: the scan for jams continues while weight matters, not to 50 times the
+    slip speed."""
     body: dict[str, Any] = {"a": 10.0, "b": 1.0}
     gyration2, friction = 0.108, 0.72
     found = thresholds(**body, gyration2=gyration2, friction=friction)
@@ -328,14 +332,14 @@ def test_jams_far_above_the_speed_that_slips_at_rest() -> None:
         assert kinds == {EventKind.JAM if low < speed < high else EventKind.LIFT_OFF}, speed
 
 
-def test_discs_do_not_jam_before_they_leave() -> None:
+def test_uniform_discs_never_jam() -> None:
     for aspect in (1.2, 2.0, 5.0, 20.0):
         for friction in (1.3, 2.0, 50.0):
             assert thresholds(aspect, 1.0, friction=friction).jam_speeds == ()
 
 
-def test_it_slips_before_it_lifts_off() -> None:
-    """The slip speed is at most the lift-off speed; they are equal where slip begins on the tip."""
+def test_a_body_slips_at_a_speed_no_higher_than_its_lift_off_speed() -> None:
+    """The slip speed is at most the lift-off speed; they are equal where slip starts on the tip."""
     rng = np.random.default_rng(41)
     for _ in range(150):
         long, short = 10 ** rng.uniform(0.05, 2.9), 10 ** rng.uniform(-1, 1)
@@ -346,7 +350,7 @@ def test_it_slips_before_it_lifts_off() -> None:
         assert 0 <= known(found.slip_speed) <= found.lift_off_speed < math.inf
 
 
-def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
+def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction() -> None:
     """Up to a/b = root three N of rolling vanishes on the tip first, with omega^2 = g a/(a^2 - b^2)
     and N = c = 0: slip and lift-off are one event."""
     for k in range(60):
@@ -361,8 +365,8 @@ def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
         assert known(found.slip_speed) <= found.lift_off_speed
 
 
-def test_what_takes_long_is_found_when_asked_for() -> None:
-    """Slow fields are computed on first access, and then are fields as any other, in copies and
+def test_slow_fields_are_computed_on_first_access() -> None:
+    """Slow fields are computed on first access, then act like any other field, in copies and
     comparisons, too."""
     found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
     assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)

@@ -58,7 +58,7 @@ def only(animation: RollingAnimation) -> Strip:
 # ------------------------------------------------------------------------------------ artists
 
 
-def test_frames_are_the_trajectory_in_true_time(trajectory: rl.Trajectory) -> None:
+def test_frames_show_the_trajectory_in_true_time(trajectory: rl.Trajectory) -> None:
     animation = rl.animate(trajectory, fps=20, speed=0.5, t_end=1.0, width=160)
     strip = only(animation)
     assert len(frames(animation)) == 41
@@ -86,7 +86,7 @@ def test_frames_are_the_trajectory_in_true_time(trajectory: rl.Trajectory) -> No
         (25, 1e-7, "t = 0.000000004 s   speed × 1e-07"),
     ],
 )
-def test_the_clock_has_the_digits_that_tell_frames_apart(
+def test_the_clock_has_enough_digits_to_tell_frames_apart(
     report: rl.Trajectory, fps: float, speed: float, second: str
 ) -> None:
     animation = rl.animate(report, fps=fps, speed=speed, t_end=1.5 * speed / fps)
@@ -94,7 +94,7 @@ def test_the_clock_has_the_digits_that_tell_frames_apart(
     assert animation.clock.get_text() == second
 
 
-def test_axes_tip_and_traces_belong_to_the_body(report: rl.Trajectory) -> None:
+def test_axes_tip_and_traces_follow_the_body(report: rl.Trajectory) -> None:
     animation = rl.animate(report, fps=25, width=160)
     strip = only(animation)
     ends: list[np.ndarray] = []
@@ -136,7 +136,7 @@ def view_of(animation: RollingAnimation) -> tuple[tuple[float, float], tuple[flo
 @pytest.mark.parametrize(
     ("t_end", "follows"), [(4.0, False), (12.0, False), (40.0, True)], ids=["1", "3", "9 turns"]
 )
-def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
+def test_the_camera_stands_still_for_three_turns_and_then_follows(
     t_end: float, follows: bool
 ) -> None:
     animation = rl.animate(rl.simulate(rl.scenes.report, 40.0), t_end=t_end, fps=5)
@@ -153,7 +153,7 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
     assert len(views) == (len(frames(animation)) if follows else 1)
 
 
-def test_the_ground_is_ruled_where_the_body_is() -> None:
+def test_the_ground_has_ticks_where_the_body_is() -> None:
     animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), fps=25, width=160)
     strip = only(animation)
     for i in (0, 100, 200):  # about 4e6 m
@@ -170,7 +170,7 @@ def test_the_ground_is_ruled_where_the_body_is() -> None:
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.report, rl.scenes.slope, rl.scenes.drop])
-def test_arrows_are_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> None:
+def test_arrows_show_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> None:
     film = rl.animate(rl.simulate(scene, 1.5), forces=True, blow=True, fps=25)
     strip, weight, turn = only(film), scene.mass * scene.gravity, np.exp(-1j * scene.slope)
     for i in frames(film):
@@ -188,7 +188,9 @@ def test_arrows_are_the_forces_of_the_ground_and_the_blow(scene: rl.Scene) -> No
 
 
 @pytest.mark.parametrize("panel", ["phase", "forces", "energy"])
-def test_a_panel_runs_along_below_strips_side_by_side(report: rl.Trajectory, panel: Any) -> None:
+def test_a_panel_below_side_by_side_strips_follows_the_motion(
+    report: rl.Trajectory, panel: Any
+) -> None:
     motions = [report, rl.simulate(rl.scenes.rocking, 6.0)]
     film = rl.animate(motions, layout="side by side", panel=panel, width=320)
     boxes = [strip.ax.get_position().bounds for strip in film.strips]
@@ -208,8 +210,8 @@ def test_a_panel_runs_along_below_strips_side_by_side(report: rl.Trajectory, pan
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.slope, rl.scenes.drop])
-def test_written_frames_are_those_of_matplotlib(scene: rl.Scene, tmp_path: Path) -> None:
-    """What stands still is drawn once, and what moves over it, with the same pixels."""
+def test_written_frames_equal_those_of_matplotlib(scene: rl.Scene, tmp_path: Path) -> None:
+    """Still parts are drawn once and moving parts over them, with the same pixels."""
     film = rl.animate(rl.simulate(scene, 20.0), forces=True, width=320, fps=10)
     for i, pixels in zip((3, 9), film._pixels((3, 9)), strict=True):
         film.frame(float(film.t[i]) + 1e-3, tmp_path / "frame.png")
@@ -219,8 +221,8 @@ def test_written_frames_are_those_of_matplotlib(scene: rl.Scene, tmp_path: Path)
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("slope", [0.4, 1.2, -1.5])
-def test_a_slope_is_ruled_where_it_is_seen(slope: float) -> None:
-    """The ticks reach the rims of the view, and the labels stay where matplotlib can draw them."""
+def test_a_slope_has_ticks_where_it_is_visible(slope: float) -> None:
+    """The ticks reach the edges of the view, and the labels stay where matplotlib can draw them."""
     scene = rl.Scene(2.0, 1.0, theta=0.3, omega=1.0, slope=slope)
     animation = rl.animate(rl.simulate(scene, 1.0, model="rolling"), fps=25, width=160)
     strip = only(animation)
@@ -246,7 +248,7 @@ def gif_frames(data: bytes) -> tuple[list[np.ndarray], list[int]]:
     return pictures, durations
 
 
-def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) -> None:
+def test_a_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) -> None:
     short.save(tmp_path / "roll.gif")
     pictures, _ = gif_frames((tmp_path / "roll.gif").read_bytes())
     drawn = np.array([pixels[..., :3].astype(float) for pixels in short._pixels(frames(short))])
@@ -259,7 +261,7 @@ def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) 
     assert np.abs(pictures[-1] - orange).max(axis=2).min() < 20
 
 
-def test_html_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -> None:
+def test_an_html_film_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -> None:
     path = tmp_path / "roll.html"
     short.save(path)
     text = path.read_text(encoding="utf-8")
@@ -269,14 +271,14 @@ def test_html_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -
         short.save(path, bitrate=1)
 
 
-def test_html_by_matplotlib_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
+def test_the_html_of_matplotlib_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
     path = tmp_path / "roll.html"
     short.save(path, writer=HTMLWriter(fps=25, embed_frames=True))
     embedded = re.findall(r'frames\[(\d+)\] = "data:image/png;base64,', path.read_text("utf-8"))
     assert embedded == [str(i) for i in frames(short)]
 
 
-def test_saving_shows_progress_when_asked(
+def test_saving_shows_progress_on_request(
     short: RollingAnimation,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
@@ -307,7 +309,7 @@ def test_a_notebook_shows_the_player(short: RollingAnimation) -> None:
 @pytest.mark.parametrize(
     ("wanted", "marks"), [("jshtml", "data:image/png;base64,"), ("html5", "<video")]
 )
-def test_a_notebook_shows_what_matplotlib_is_told_to(
+def test_a_notebook_follows_the_html_setting_of_matplotlib(
     short: RollingAnimation, wanted: str, marks: str
 ) -> None:
     with matplotlib.rc_context({"animation.html": wanted}):
@@ -315,7 +317,7 @@ def test_a_notebook_shows_what_matplotlib_is_told_to(
     assert marks in html and "rolling-ellipse" not in html
 
 
-def test_a_notebook_is_not_flooded(tmp_path: Path) -> None:
+def test_a_film_too_long_for_a_notebook_is_not_embedded(tmp_path: Path) -> None:
     film = rl.animate(rl.simulate(rl.scenes.rolling, 1e4), speed=10.0, width=64)  # 5e4 frames
     said = "t_end must be shown by a player in at most 20000 samples, got "
     assert film._repr_html_().startswith(f"<p>{said}") and len(film._repr_html_()) < 300
@@ -330,7 +332,7 @@ MINUTE = rl.simulate(rl.scenes.report, 100.0)
 @pytest.mark.parametrize(
     ("options", "count", "last"),
     [
-        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # a request of less than a quarter of the motion
+        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # fewer than a quarter of the motion is requested
         ({"t_end": 20.0}, 1001, 20.0),
         ({"t_end": 60.0, "fps": 10}, 601, 60.0),
         ({"fps": 10}, 363, 100.0),  # longest film by default: a minute, so three parts of 12 s
@@ -341,7 +343,9 @@ MINUTE = rl.simulate(rl.scenes.report, 100.0)
         ({"t_end": 0.0}, 1, 0.0),
     ],
 )
-def test_the_whole_motion_is_shown(options: dict[str, Any], count: int, last: float) -> None:
+def test_an_animation_shows_the_whole_motion(
+    options: dict[str, Any], count: int, last: float
+) -> None:
     animation = rl.animate(MINUTE, width=160, **options)
     assert animation.t.size == count
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
@@ -375,7 +379,7 @@ def test_a_film_is_as_long_as_its_motion(
 @pytest.mark.parametrize(
     ("path", "fps"), [(None, 50), ("roll.gif", 50), ("roll.mp4", 60), ("ROLL.HTML", 60)]
 )
-def test_frames_a_second_are_what_a_format_can_hold(
+def test_the_frame_rate_fits_the_format(
     report: rl.Trajectory, tmp_path: Path, path: str | None, fps: float
 ) -> None:
     where = None if path is None else tmp_path / path
@@ -393,7 +397,7 @@ LONG = {
 
 
 @pytest.mark.parametrize("name", LONG)
-def test_a_long_film_shows_parts_of_the_motion_as_they_are(name: str) -> None:
+def test_a_long_film_shows_unaltered_excerpts_of_the_motion(name: str) -> None:
     """Beginning, middle, end, and events, at the time on the clock; never rolling backwards."""
     motion, places = LONG[name]
     film = rl.animate(motion, width=64)
@@ -414,14 +418,14 @@ def test_a_long_film_shows_parts_of_the_motion_as_they_are(name: str) -> None:
     assert len(data["track"]["starts"]) == len(places)
 
 
-def test_the_last_frame_never_leaves_the_trajectory() -> None:
+def test_the_last_frame_is_never_after_the_end() -> None:
     for k in range(1, 60):
         end = k * 0.04  # the end may be an ulp below k / 25
         animation = rl.animate(rl.simulate(rl.scenes.report, end), fps=25, width=64)
         assert animation.t[-1] <= end and animation.t.size == k + 1
 
 
-def test_size_and_resolution_are_what_was_asked_for(report: rl.Trajectory, tmp_path: Path) -> None:
+def test_size_and_resolution_are_as_requested(report: rl.Trajectory, tmp_path: Path) -> None:
     with matplotlib.rc_context({"savefig.dpi": 37, "savefig.bbox": "tight"}):
         rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=322, dpi=80)
     with Image.open(tmp_path / "roll.gif") as gif:
@@ -429,7 +433,7 @@ def test_size_and_resolution_are_what_was_asked_for(report: rl.Trajectory, tmp_p
         assert gif.size[1] % 2 == 0
 
 
-def test_nothing_is_written_and_nothing_left_open(
+def test_an_unsaved_animation_writes_nothing_and_leaves_nothing_open(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -440,7 +444,7 @@ def test_nothing_is_written_and_nothing_left_open(
     assert plt.get_fignums() == []
 
 
-def test_it_draws_into_a_part_of_a_figure(report: rl.Trajectory) -> None:
+def test_an_animation_draws_into_a_subfigure(report: rl.Trajectory) -> None:
     parts: Any = Figure(figsize=(8, 3)).subfigures(1, 2, width_ratios=[3, 1])
     left, right = parts
     animation = rl.animate(report, t_end=0.2, figure=left)
@@ -450,7 +454,7 @@ def test_it_draws_into_a_part_of_a_figure(report: rl.Trajectory) -> None:
     assert (x1 - x0) / width == pytest.approx((y1 - y0) / height, rel=1e-12)
 
 
-def test_it_draws_into_axes_it_is_given(report: rl.Trajectory, tmp_path: Path) -> None:
+def test_an_animation_draws_into_given_axes(report: rl.Trajectory, tmp_path: Path) -> None:
     figure = Figure(figsize=(8, 3), dpi=40)
     ax, other = figure.subplots(1, 2)
     animation = rl.animate(report, tmp_path / "roll.gif", t_end=0.2, ax=ax)
@@ -475,7 +479,7 @@ def test_the_figure_keeps_the_animation_alive(report: rl.Trajectory) -> None:
 @pytest.mark.parametrize(
     ("framework", "windows"), [("tk", 1), ("qt", 1), ("nbagg", 0), ("webagg", 0), (None, 0)]
 )
-def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
+def test_a_window_shows_an_animation_and_a_notebook_shows_it_only_once(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     framework: str | None, windows: int,
 ) -> None:  # fmt: skip
@@ -492,7 +496,7 @@ def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
     assert plt.get_fignums() == []
 
 
-def test_a_page_leaves_nothing_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
+def test_a_page_leaves_no_garbage_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
     """A written film has no reference cycles: Ctrl-C is lost while they are collected."""
     rl.animate(report, tmp_path / "roll.html")  # loads all modules
     gc.collect()
@@ -505,9 +509,7 @@ def test_a_page_leaves_nothing_to_collect(report: rl.Trajectory, tmp_path: Path)
         gc.enable()
 
 
-def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
-    report: rl.Trajectory, tmp_path: Path
-) -> None:
+def test_a_film_written_as_a_page_is_drawn_on_demand(report: rl.Trajectory, tmp_path: Path) -> None:
     """Its pixels equal those of a film drawn at once, and matplotlib has the same animation."""
     page = rl.animate(report, tmp_path / "roll.html", width=200)
     drawn = rl.animate(report, width=200, fps=60)
@@ -519,7 +521,7 @@ def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
     assert np.array_equal(one, other)
 
 
-def test_a_page_whose_picture_fails_tries_again(
+def test_a_page_whose_drawing_failed_can_be_drawn_again(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An interrupted drawing leaves no trace: Ctrl-C may come at any time."""

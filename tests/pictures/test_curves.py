@@ -20,7 +20,7 @@ OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 # ------------------------------------------------------------------------------------ every picture
 
 
-def test_every_motion_has_its_name_unless_it_is_alone(
+def test_every_motion_is_named_unless_it_is_the_only_one(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
     ax, alone = new_axes(), new_axes()
@@ -32,7 +32,7 @@ def test_every_motion_has_its_name_unless_it_is_alone(
         picture(several, ax=new_axes(), labels=["one"])
 
 
-def test_many_motions_are_named_now_and_then(
+def test_only_some_of_many_motions_are_named(
     picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     ax = new_axes()
@@ -50,7 +50,7 @@ def crowd(
 
 
 @pytest.mark.parametrize("panels", [1, 2])
-def test_nothing_overlaps_at_320_by_240(
+def test_nothing_overlaps_at_320_by_240_pixels(
     picture: Callable[..., Any], crowd: list[rl.Trajectory], panels: int
 ) -> None:
     if panels == 2 and picture not in TWO_PANELS:
@@ -88,7 +88,7 @@ def lightness(colour: str) -> float:
 
 
 @pytest.mark.parametrize("picture", OVER_TIME)
-def test_time_that_is_not_valid_has_grey_ground(
+def test_invalid_times_have_a_grey_background(
     picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     assert picture(report, ax=new_axes()).marks == ()
@@ -100,7 +100,7 @@ def test_time_that_is_not_valid_has_grey_ground(
 
 
 @pytest.mark.parametrize("picture", [rl.plot_phase, rl.plot_paths])
-def test_paths_that_are_not_valid_have_grey_ground(
+def test_the_ground_is_grey_where_a_path_is_invalid(
     picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     (ground,) = picture(dataclasses.replace(report, valid_until=2.5), ax=new_axes()).marks
@@ -150,19 +150,19 @@ def test_scenes_are_named_by_the_fields_that_differ(
 
 
 @pytest.mark.parametrize("difference", [1e-3, 1e-9, 2**-52])
-def test_values_have_the_digits_that_tell_them_apart(difference: float) -> None:
+def test_values_have_enough_digits_to_tell_them_apart(difference: float) -> None:
     other = 3.2 * (1 + difference)
     names = labels_of(motions(varied(), varied(omega=other)), None)
     shown = [float(name.removeprefix("omega = ").removesuffix(" rad/s")) for name in names]
     assert shown == pytest.approx([3.2, other], rel=difference / 2, abs=0)
 
 
-def test_a_label_has_no_digits_that_tell_nothing_apart() -> None:
+def test_a_label_has_no_needless_digits() -> None:
     names = labels_of(motions(varied(friction=5 / 14), varied(friction=0.7)), None)
     assert names == ["friction = 0.3571", "friction = 0.7"]
 
 
-def test_methods_come_first() -> None:
+def test_methods_come_first_in_labels() -> None:
     other = dataclasses.replace(ROLLING, method="rk4")
     assert labels_of([ROLLING, other], None) == ["exact", "rk4"]
     faster = dataclasses.replace(other, scene=varied(omega=4.0))
@@ -174,7 +174,7 @@ def test_methods_come_first() -> None:
     assert labels_of([ROLLING, model], None) == ["rolling", "multipliers"]
 
 
-def test_what_nothing_tells_apart_is_numbered() -> None:
+def test_indistinguishable_motions_are_numbered() -> None:
     assert labels_of([ROLLING] * 3, None) == ["1", "2", "3"]
     two_alike = [ROLLING, ROLLING, dataclasses.replace(ROLLING, method="rk4")]
     assert labels_of(two_alike, None) == ["1", "2", "3"]

@@ -33,14 +33,14 @@ def no_figure_stays() -> Iterator[None]:
     assert opened == []
 
 
-def test_places_in_rows() -> None:
+def test_axes_may_be_given_as_arrays_lists_or_tuples() -> None:
     figure = Figure()
     two: Any = figure.subplots(1, 2, squeeze=False)
     for given in (two, two.tolist(), list(two), (two[0, 0], two[0, 1])):
         assert len(rl.plot_forces(MOTION, ax=given).axes) == 2
 
 
-def test_a_given_figure_stays_as_it_is() -> None:
+def test_a_rejected_call_leaves_a_given_figure_empty() -> None:
     figure = Figure()
     with pytest.raises(ValueError, match="count must be from 1 to"):
         rl.plot(MOTION, figure=figure, count=0)
@@ -48,7 +48,7 @@ def test_a_given_figure_stays_as_it_is() -> None:
 
 
 @pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *CURVES])
-def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
+def test_a_failing_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
     mine = plt.figure()
     monkeypatch.setattr(Axes, "plot", lambda *args, **options: 1 / 0)
     with pytest.raises(ZeroDivisionError):
@@ -58,8 +58,8 @@ def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> 
 
 
 @pytest.mark.parametrize("units", [1, 512, 749])
-def test_a_motion_of_next_to_no_time(units: int) -> None:
-    """No frame is after the end, though the last frame's share of it is rounded up."""
+def test_an_extremely_short_motion_is_animated(units: int) -> None:
+    """No frame is after the end, though its share of the last frame is rounded up."""
     end = units * 5e-324
     assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
     motion = rl.simulate(rl.scenes.rocking, [0.0, end])
@@ -73,7 +73,9 @@ def test_a_motion_of_next_to_no_time(units: int) -> None:
 @pytest.mark.parametrize(
     "name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "file:ß.gif", "ä.html"]
 )
-def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
+def test_file_names_with_a_special_meaning_to_ffmpeg_are_taken_literally(
+    tmp_path: Path, name: str, monkeypatch: Any
+) -> None:
     monkeypatch.chdir(tmp_path)
     rl.animate(MOTION, name, **SMALL)
     assert [path.name for path in tmp_path.iterdir()] == [name]
@@ -83,7 +85,7 @@ def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypat
 
 @pytest.mark.parametrize("suffix", FRAMES)
 @pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError, OSError])
-def test_an_old_film_stays_until_the_new_one_is_whole(
+def test_an_old_film_stays_until_the_new_one_is_complete(
     tmp_path: Path, monkeypatch: Any, suffix: str, error: type[BaseException]
 ) -> None:
     path = tmp_path / f"roll{suffix}"
@@ -105,7 +107,7 @@ def test_an_old_film_stays_until_the_new_one_is_whole(
 
 
 @pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])
-def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
+def test_a_body_too_far_away_to_be_seen_is_rejected(draw: Any) -> None:
     """Doubles at 7.8e23 m are 1.3e8 m apart; at 1e12 m they are 0.1 mm apart, enough to draw."""
     with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
         draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))

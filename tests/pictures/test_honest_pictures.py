@@ -1,4 +1,4 @@
-"""Pictures show the motion itself for any samples, and name what they leave out."""
+"""Pictures show the motion itself whatever its samples, and state what they leave out."""
 
 import dataclasses
 from collections.abc import Callable
@@ -34,7 +34,7 @@ MOTIONS: dict[str, rl.Trajectory] = {
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
-def test_curves_of_three_samples_are_those_of_the_motion(motion: rl.Trajectory) -> None:
+def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Trajectory) -> None:
     """The motion between the points of a curve stays within the width of a line, or 0.3 %."""
     shown = rl.plot(motion, figure=Figure())
     for line, name in (
@@ -49,15 +49,15 @@ def test_curves_of_three_samples_are_those_of_the_motion(motion: rl.Trajectory) 
         assert np.max(off) <= 3e-3 * np.ptp(values), name
 
 
-def test_an_even_grid_of_as_many_points_would_miss_it() -> None:
-    """An even grid of as many points misses the spikes of a thin body: the check above is sharp."""
+def test_a_uniform_grid_of_as_many_points_would_miss_spikes() -> None:
+    """A uniform grid of as many points misses a thin body's spikes: the check above is sharp."""
     motion = MOTIONS["very thin"]
     values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
     even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force
     assert np.max(even) < 0.7 * np.max(values)
 
 
-def test_the_phase_curve_of_1000_turns_is_that_of_its_energy() -> None:
+def test_the_phase_curve_of_1000_turns_follows_its_energy() -> None:
     ax = new_axes()
     shown = rl.plot_phase(ROLLING, ax=ax)
     theta, omega = data(shown.motions[0])
@@ -81,7 +81,7 @@ def inches(ax: Any, axis: int) -> float:
     return float(np.diff(corners[:, axis])[0] / ax.figure.dpi)
 
 
-def test_the_path_and_the_forces_of_1000_turns_are_no_straight_lines() -> None:
+def test_the_path_and_the_forces_of_1000_turns_are_not_straight_lines() -> None:
     """The samples of the trajectory, at whole turns, are all equal."""
     assert np.ptp(ROLLING.z) < 1e-6
     x, z = data(rl.plot_paths(ROLLING, ax=new_axes()).centres[0])
@@ -97,7 +97,7 @@ def test_the_path_and_the_forces_of_1000_turns_are_no_straight_lines() -> None:
     assert np.all(in_each.min(axis=1) < 1.05 * one.min())
 
 
-def test_a_long_way_down_a_slope_is_shown_as_far_as_its_title_says() -> None:
+def test_a_long_downhill_path_is_drawn_only_as_far_as_its_title_says() -> None:
     motion = MOTIONS["slope"]
     ax = new_axes(10.0, 3.0)
     shown = rl.plot_paths(motion, ax=ax)
@@ -111,7 +111,7 @@ def test_a_long_way_down_a_slope_is_shown_as_far_as_its_title_says() -> None:
 
 
 @pytest.mark.parametrize("draw", [rl.plot_phase, rl.plot_forces, rl.plot_paths, rl.plot_strobe])
-def test_samples_of_ones_own_are_drawn_as_they_are_with_a_warning(
+def test_user_samples_are_drawn_unchanged_with_a_warning(
     draw: Callable[..., Any],
 ) -> None:
     motion = rl.simulate(rl.scenes.report, 6.0)
@@ -124,7 +124,7 @@ def test_samples_of_ones_own_are_drawn_as_they_are_with_a_warning(
         assert np.array_equal(data(shown.normal[0])[0], own.t)
 
 
-def test_unsorted_samples_are_drawn_in_the_order_of_time() -> None:
+def test_unsorted_samples_are_drawn_in_order_of_time() -> None:
     motion = rl.simulate(rl.scenes.report, 6.0)
     mixed = motion.sol([5.0, 0.0, 6.0, 2.0])
     for one, other in (
@@ -134,7 +134,7 @@ def test_unsorted_samples_are_drawn_in_the_order_of_time() -> None:
         assert np.array_equal(np.asarray(one[0].get_xydata()), np.asarray(other[0].get_xydata()))
 
 
-def test_the_axis_of_forces_says_that_it_is_logarithmic_beyond_and_wastes_no_space() -> None:
+def test_the_force_axis_labels_its_logarithmic_part_and_wastes_no_space() -> None:
     motion = rl.simulate(rl.Scene(2.0, 0.02, theta=0.3, friction=0.9), 2.0)
     ax = rl.plot_forces(motion, ax=new_axes()).axes[0]
     assert ax.get_ylabel() == "force [N]\nlog beyond 10"
@@ -150,7 +150,7 @@ def pile(shown: Any) -> Array:
     return np.array([body.get_facecolor()[3] for body in shown.bodies])
 
 
-def test_bodies_in_one_place_do_not_pile_up_to_an_opaque_heap() -> None:
+def test_overlapping_bodies_do_not_add_up_to_an_opaque_blot() -> None:
     for motion in (MOTIONS["rocking"], MOTIONS["bounce"], MOTIONS["slip"]):
         for count in (13, 60):
             alphas = pile(rl.plot_strobe(motion, ax=new_axes(4.0, 4.0), count=count))
@@ -158,7 +158,7 @@ def test_bodies_in_one_place_do_not_pile_up_to_an_opaque_heap() -> None:
     assert np.all(pile(rl.plot_strobe(MOTIONS["report"], ax=new_axes())) > 0.09)
 
 
-def test_errors_that_only_the_rounding_of_the_angle_makes_are_under_its_line() -> None:
+def test_errors_from_rounding_the_angle_lie_below_the_line_for_this_rounding() -> None:
     """Within two roundings: psi is a sum of two angles; the energy changes less with the angle."""
     later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
     panel = figure_of(later.ax).axes[-1]
@@ -176,7 +176,7 @@ def test_errors_that_only_the_rounding_of_the_angle_makes_are_under_its_line() -
     ("size", "unit"),
     [(1000.0, "km"), (1.0, "m"), (0.1, "m"), (0.01, "mm"), (1e-3, "mm"), (1e-6, "µm")],
 )
-def test_all_lengths_have_the_unit_of_the_body(size: float, unit: str) -> None:
+def test_all_lengths_are_shown_in_the_unit_that_suits_the_body(size: float, unit: str) -> None:
     body = rl.Scene(size, size / 2, omega=1.2 * rl.thresholds(size, size / 2).roll_over_speed)
     motion = rl.simulate(body, 3 * rl.period(body))
     overview = rl.plot(motion, figure=Figure(figsize=(8.6, 8.0)))

@@ -76,7 +76,7 @@ def lines_of(marks: tuple[Any, ...]) -> list[list[float]]:
 # ------------------------------------------------------------------------------ over time
 
 
-def test_every_sample_lies_in_the_shade_of_its_mode(motion: rl.Trajectory) -> None:
+def test_every_sample_lies_in_the_shading_of_its_mode(motion: rl.Trajectory) -> None:
     shown = rl.plot_energy(motion, ax=new_axes())
     looks = {}
     for shade in shades_of(shown.marks):
@@ -95,7 +95,7 @@ def test_every_sample_lies_in_the_shade_of_its_mode(motion: rl.Trajectory) -> No
     assert legend_of(shown.ax)[3:] == names + COUNTED.get(motion.scene, [])
 
 
-def test_modes_are_told_apart_in_grey(jump: rl.Trajectory) -> None:
+def test_modes_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
     settling = rl.simulate(SCENES["settling"], 6.0)
     shades = [
         *shades_of(rl.plot_energy(jump, ax=new_axes()).marks),
@@ -109,7 +109,7 @@ def test_modes_are_told_apart_in_grey(jump: rl.Trajectory) -> None:
 
 
 @pytest.mark.parametrize("picture", [rl.plot_energy, rl.plot_forces, rl.plot_constraints])
-def test_events_are_lines_with_names(picture: Any, motion: rl.Trajectory) -> None:
+def test_events_are_drawn_as_named_lines(picture: Any, motion: rl.Trajectory) -> None:
     axes = [new_axes()] if picture is rl.plot_energy else two_axes()
     shown = picture(motion, ax=axes if len(axes) > 1 else axes[0])
     moments = [event.t for event in motion.events]
@@ -123,7 +123,7 @@ def test_events_are_lines_with_names(picture: Any, motion: rl.Trajectory) -> Non
 
 
 @pytest.mark.parametrize("name", ["jump", "slope", "slip", "backwards"])
-def test_names_are_clear_of_one_another_and_of_the_curves(name: str) -> None:
+def test_names_overlap_neither_one_another_nor_the_curves(name: str) -> None:
     motion = rl.simulate(SCENES[name], 6.0)
     ax = drawn(rl.plot_forces(motion, ax=two_axes()).axes[0])
     names, window = event_names(ax), ax.get_window_extent()
@@ -137,7 +137,7 @@ def test_names_are_clear_of_one_another_and_of_the_curves(name: str) -> None:
     assert min(box.y0 for box in boxes) > highest
 
 
-def test_many_events_are_marks_only() -> None:
+def test_many_events_are_marked_without_names() -> None:
     bouncing = rl.simulate(rl.scenes.bounce, 60.0)
     shown = rl.plot_energy(bouncing, ax=new_axes())
     assert len(lines_of(shown.marks)[0]) == len(bouncing.events) > 80
@@ -160,7 +160,7 @@ def test_only_events_among_the_samples_are_marked(jump: rl.Trajectory) -> None:
     assert boxes_of(flight)[0][:2] == pytest.approx((lift_off, part.t[-1]), abs=1e-15)
 
 
-def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
+def test_each_of_several_motions_has_a_row(jump: rl.Trajectory) -> None:
     slip = rl.simulate(rl.scenes.slip, 3.0)
     report = rl.simulate(rl.scenes.report, 3.0)
     shown = rl.plot_forces([jump, report, slip], ax=two_axes(), labels=["one", "two", "three"])
@@ -176,13 +176,15 @@ def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
     assert [len(times) for times in lines_of(shown.marks)] == [3, 1] * 2
 
 
-def test_what_rolls_has_no_shade() -> None:
+def test_rolling_and_rest_have_no_shading() -> None:
     for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):  # a rolling and a resting body
         shown = rl.plot_forces(rl.simulate(scene, 2.0), ax=two_axes())
         assert shown.marks == () and legend_of(shown.axes[0]) == ["normal", "friction"]
 
 
-def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Trajectory) -> None:
+def test_forces_are_zero_in_flight_and_at_the_friction_limit_in_slides(
+    motion: rl.Trajectory,
+) -> None:
     shown = rl.plot_forces(motion, ax=two_axes())
     normal, friction = (
         np.asarray(line.get_ydata()) for line in (shown.normal[0], shown.friction[0])
@@ -198,7 +200,7 @@ def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Tra
     assert shown.axes[0].get_ylim()[1] > 0
 
 
-def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> None:
+def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Trajectory) -> None:
     upper, lower = rl.plot_constraints(motion, ax=two_axes()).lines
     values = {
         str(line.get_label()).split()[0]: np.asarray(line.get_ydata()) for line in (*upper, *lower)
@@ -215,8 +217,8 @@ def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> N
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
-def test_energy_lost_to_the_ground_is_no_error(motion: rl.Trajectory) -> None:
-    """Errors of energy are some roundings of its largest share; friction has none of its own."""
+def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Trajectory) -> None:
+    """Errors of energy are some roundings of its largest part; work of friction does not count."""
     (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
     error, slides = np.asarray(line.get_ydata()), seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
@@ -225,7 +227,7 @@ def test_energy_lost_to_the_ground_is_no_error(motion: rl.Trajectory) -> None:
         assert motion.energy[0] - motion.energy[-1] > 1e-3 * motion.energy[0]
 
 
-def test_a_loss_in_elastic_impacts_is_an_error() -> None:
+def test_a_loss_in_elastic_impacts_counts_as_an_error() -> None:
     dull = rl.simulate(SCENES["bounce"].replace(friction=0.0, restitution=0.9), 6.0)
     elastic = dataclasses.replace(dull, scene=dull.scene.replace(restitution=1.0))
     for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 at once
@@ -233,13 +235,13 @@ def test_a_loss_in_elastic_impacts_is_an_error() -> None:
         assert least <= np.max(np.asarray(line.get_ydata())) <= most
 
 
-def test_what_motions_lose_is_drawn_unless_they_keep_it(jump: rl.Trajectory) -> None:
+def test_the_energy_itself_is_drawn_if_any_motion_loses_some(jump: rl.Trajectory) -> None:
     report = rl.simulate(rl.scenes.report, 3.0)
     for motions, label in (([report] * 2, "relative energy error"), ([report, jump], "energy [J]")):
         assert rl.plot_energy(motions, ax=new_axes()).ax.get_ylabel() == label
 
 
-def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -> None:
+def test_the_overview_marks_changes_of_contact(motion: rl.Trajectory) -> None:
     shown = rl.plot(motion, figure=Figure(figsize=(10, 8.5), layout="constrained"))
     modes = len(set(motion.mode) - {rl.Mode.ROLLING})
     assert len(shades_of(shown.marks)) == 6 * modes
@@ -251,7 +253,9 @@ def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -
 # ------------------------------------------------------------------------ over the ground
 
 
-def test_strobe_shows_the_paths_and_the_contact_where_there_is_one(motion: rl.Trajectory) -> None:
+def test_the_strobe_shows_the_paths_and_any_contact(
+    motion: rl.Trajectory,
+) -> None:
     shown = rl.plot_strobe(motion, ax=new_axes(), count=37, t_end=3.0)
     at = motion.sol(np.linspace(0.0, 3.0, 37))
     contacts, slides = (
@@ -284,13 +288,13 @@ def test_strobe_shows_the_paths_and_the_contact_where_there_is_one(motion: rl.Tr
 
 
 @pytest.mark.parametrize("width", [3.2, 6.0, 10.0])
-def test_the_strobes_title_is_clear_of_its_legend(jump: rl.Trajectory, width: float) -> None:
+def test_the_strobe_title_does_not_overlap_its_legend(jump: rl.Trajectory, width: float) -> None:
     ax = drawn(rl.plot_strobe(jump, ax=new_axes(width, 2.4), t_end=2.0).ax)
     (title,) = ax.findobj(lambda artist: "positions" in getattr(artist, "get_text", str)())
     assert not title.get_window_extent().overlaps(legend_in(ax).get_window_extent().padded(-1))
 
 
-def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None:
+def test_paths_mark_events_where_the_body_touches_the_ground(motion: rl.Trajectory) -> None:
     shown = rl.plot_paths(motion, ax=new_axes())
     (lines,) = shown.events
     found = {str(line.get_label()).removeprefix("_"): line for line in lines}
@@ -313,7 +317,7 @@ def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None
     assert np.array_equal(touching, drawn.mode != rl.Mode.FLIGHT)
 
 
-def test_paths_of_several_motions_have_events_in_their_colours(jump: rl.Trajectory) -> None:
+def test_paths_of_several_motions_mark_events_in_their_own_colours(jump: rl.Trajectory) -> None:
     slip = rl.simulate(rl.scenes.slip, 3.0)
     shown = rl.plot_paths([jump, slip], ax=new_axes(), labels=["one", "other"])
     assert [len(lines) for lines in shown.events] == [3, 1]
@@ -325,7 +329,7 @@ def test_paths_of_several_motions_have_events_in_their_colours(jump: rl.Trajecto
 # ------------------------------------------------------------------------------ animation
 
 
-def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
+def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
     animation = rl.animate(motion, width=320)
     (strip,) = animation.strips
     slip = strip.motion.constraint_residuals().slip
@@ -351,10 +355,10 @@ def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
         assert np.array_equal(skidded, strip.motion.mode[: i + 1] == rl.Mode.SLIDING)
 
 
-def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
+def test_the_slip_mark_lies_along_the_slope() -> None:
     sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
     (strip,) = rl.animate(sliding).strips
-    # matplotlib has no public access to its shape
+    # matplotlib gives no public access to its shape
     marker = strip.slip._marker  # type: ignore[attr-defined]
     head, *base = marker.get_transform().transform(marker.get_path().vertices[:3])
     pointing = head - np.mean(base, axis=0)
@@ -362,7 +366,7 @@ def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
     assert pointing / np.linalg.norm(pointing) == pytest.approx(downhill, abs=1e-12)
 
 
-def test_grey_frames_tell_contact_slip_and_flight_apart(jump: rl.Trajectory) -> None:
+def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
     """White, black and a grey between: a fifth of the scale is distinguished at a glance."""
     (strip,) = rl.animate(jump).strips
     rolling, sliding, shadow = (

@@ -40,7 +40,7 @@ def test_no_picture_is_empty_and_no_text_covers_another(name: str) -> None:
         plt.close(figure)
 
 
-def test_an_empty_picture_is_seen() -> None:
+def test_an_empty_picture_is_detected() -> None:
     for values, shown in (([0.0, 1.0], True), ([0.0, np.nan], True), ([2.0, 3.0], False)):
         ax = new_axes()
         ax.plot([0.0, 1.0], values)
@@ -63,7 +63,7 @@ def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout() -> Non
     assert not overlapping(texts_of(figure))
 
 
-def test_a_body_in_one_place_fills_its_figure() -> None:
+def test_a_body_that_stays_near_one_point_fills_its_figure() -> None:
     for scene in (rl.scenes.rocking, rl.scenes.bounce, rl.Scene(2.0, 1.0)):
         for draw in (rl.plot_strobe, rl.plot_paths):
             shown = draw(rl.simulate(scene, 3.0))
@@ -73,7 +73,7 @@ def test_a_body_in_one_place_fills_its_figure() -> None:
             plt.close(shown.figure)
 
 
-def test_impulses_are_mean_forces_over_the_time_that_their_name_tells() -> None:
+def test_impulses_are_drawn_as_mean_forces_over_the_stated_time() -> None:
     drop = rl.simulate(rl.scenes.drop, 3.0)
     shown = rl.plot_forces(drop, ax=new_axes())
     (hit,) = drop.events
@@ -86,7 +86,7 @@ def test_impulses_are_mean_forces_over_the_time_that_their_name_tells() -> None:
         assert heights[:2] == pytest.approx([0.0, impulse / float(seconds.removesuffix(" s"))])
 
 
-def test_pictures_name_their_artists_and_are_written_with_the_size_asked_for(
+def test_pictures_name_their_artists_and_have_the_requested_size(
     tmp_path: Path,
 ) -> None:
     motion = rl.simulate(rl.scenes.jump, 1.0)

@@ -71,7 +71,7 @@ def energy_of(found: rl.Thresholds, speed: float) -> float:
 
 @pairs
 @pytest.mark.parametrize("swapped", [False, True], ids=["long axis a", "long axis b"])
-def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: bool) -> None:
+def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: bool) -> None:
     """Cells agree with `classify` of single discs, also with swapped axes from a quarter turn."""
     shown = phase_map(x, y, b=0.7, gravity=3.7)
     columns, rows = (middles_of(n, e) for n, e in zip((x, y), edges_of(shown), strict=True))
@@ -98,7 +98,9 @@ def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: 
         ({"y": "friction", "energy": 1.0, "x_range": (1.1, 1.3), "y_range": (1, 2)}, ["edge"]),
     ],
 )
-def test_the_legend_names_what_occurs(options: dict[str, Any], expected: list[str]) -> None:
+def test_the_legend_names_only_outcomes_that_occur(
+    options: dict[str, Any], expected: list[str]
+) -> None:
     shown = phase_map(**options)
     assert legend_of(shown.ax) == expected
     present = [rl.Outcome(code) for code in np.unique(codes_of(shown))]
@@ -107,7 +109,7 @@ def test_the_legend_names_what_occurs(options: dict[str, Any], expected: list[st
         assert to_hex(colour_of(shown, outcome)) == to_hex(entry.get_facecolor())
 
 
-def test_regions_are_told_apart_in_grey() -> None:
+def test_regions_can_be_told_apart_in_grey() -> None:
     shown = phase_map()
     regions = [o for o in rl.Outcome if o not in (rl.Outcome.RESTS, rl.Outcome.EDGE)]
     colours = [to_rgb(colour_of(shown, outcome)) for outcome in regions]
@@ -120,7 +122,7 @@ def test_regions_are_told_apart_in_grey() -> None:
 
 
 @pairs
-def test_every_pair_of_axes_has_its_marks(x: str, y: str) -> None:
+def test_every_pair_of_axes_has_the_right_marks(x: str, y: str) -> None:
     shown = phase_map(x, y)
     expected = LEVEL_MARKS if {x, y} & {"energy", "speed"} else set()
     expected = expected | ({"Painlevé"} if "friction" in (x, y) else set())
@@ -133,7 +135,7 @@ def test_every_pair_of_axes_has_its_marks(x: str, y: str) -> None:
         assert line.get_data()[0] == pytest.approx(swapped.marks[key].get_data()[1], nan_ok=True)
 
 
-def test_the_two_ratios() -> None:
+def test_the_two_critical_ratios_are_marked() -> None:
     for friction in (math.inf, 0.4):
         shown = phase_map(friction=friction)
         assert constant(at(shown, "tip")[0]) == pytest.approx(math.sqrt(3), rel=1e-15)
@@ -143,7 +145,7 @@ def test_the_two_ratios() -> None:
     assert shown.names["last to roll over"].get_text() == "beyond 9.753 none rolls over"
 
 
-def test_painleve() -> None:
+def test_painleves_critical_friction_is_marked() -> None:
     straight = constant(at(phase_map("friction", "energy"), "Painlevé")[0])
     assert straight == pytest.approx(1.352698667647026, rel=1e-14)
     aspects, frictions = at(phase_map("aspect", "friction", x_range=(2, 8)), "Painlevé")
@@ -152,7 +154,7 @@ def test_painleve() -> None:
         assert friction == rl.thresholds(aspect, 1.0).painleve_friction
 
 
-def test_curves_over_the_aspect() -> None:
+def test_curves_over_the_aspect_agree_with_thresholds() -> None:
     shown = phase_map(friction=0.5)
     assert constant(at(shown, "separatrix")[1]) == 1
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
@@ -163,7 +165,7 @@ def test_curves_over_the_aspect() -> None:
         assert flight[1][i] == pytest.approx(energy_of(found, known(lift_off)), rel=1e-9)
 
 
-def test_speeds_over_the_friction() -> None:
+def test_speeds_over_the_friction_agree_with_thresholds() -> None:
     shown = phase_map("friction", "speed", b=2.0, gravity=3.0, aspect=3.0)
     for key, name in (
         ("separatrix", "roll_over_speed"),
@@ -209,7 +211,9 @@ def test_only_what_is_in_view_is_marked() -> None:
 
 @pairs
 @pytest.mark.parametrize("size", [(6.4, 4.4), (3.2, 2.6)], ids=["640 px", "320 px"])
-def test_names_are_in_the_axes_and_apart(x: str, y: str, size: tuple[float, float]) -> None:
+def test_names_lie_within_the_axes_without_overlap(
+    x: str, y: str, size: tuple[float, float]
+) -> None:
     shown = plot_phase_map(x, y, ax=new_axes(*size), resolution=COARSE)
     FigureCanvasAgg(figure_of(shown.ax)).draw()
     window = shown.ax.get_window_extent()
@@ -229,7 +233,7 @@ def is_straight(text: Any) -> bool:
     return abs(text.get_rotation() % 90) < 1e-6
 
 
-def test_nothing_is_written_where_there_is_no_room() -> None:
+def test_no_name_is_written_where_there_is_too_little_room() -> None:
     tiny = plot_phase_map(ax=new_axes(0.9, 0.8), resolution=COARSE)
     assert len(tiny.marks) == 5 and len(tiny.names) <= 2
 
@@ -249,7 +253,7 @@ def test_axes_show_the_whole_map(x: str, y: str) -> None:
 
 
 @pytest.mark.parametrize("wide", [(1.5, 3.0), (1.0, 1000.0)])
-def test_ranges(wide: tuple[float, float]) -> None:
+def test_ranges_set_the_limits_of_the_axes(wide: tuple[float, float]) -> None:
     shown = phase_map(x_range=wide, y_range=(0.5, 2.5), friction=0.5)
     assert shown.ax.get_xlim() == wide and shown.ax.get_ylim() == (0.5, 2.5)
     FigureCanvasAgg(figure_of(shown.ax)).draw()
@@ -257,7 +261,7 @@ def test_ranges(wide: tuple[float, float]) -> None:
     assert len(ticks) >= 3 and ("1000" in ticks) == (wide[1] == 1000)
 
 
-def test_limits_set_before_stay() -> None:
+def test_limits_set_before_drawing_are_kept() -> None:
     ax = new_axes()
     ax.set_xlim(2, 4)
     plot_phase_map(ax=ax, resolution=COARSE)
@@ -265,7 +269,7 @@ def test_limits_set_before_stay() -> None:
 
 
 @pytest.mark.parametrize("resolution", [1, 2, np.int64(7)])
-def test_any_resolution(resolution: int) -> None:
+def test_a_map_may_have_any_resolution(resolution: int) -> None:
     shown = phase_map("friction", "energy", resolution=resolution)
     assert codes_of(shown).shape == (resolution, resolution)
     if resolution == 1:
@@ -273,7 +277,7 @@ def test_any_resolution(resolution: int) -> None:
         assert codes_of(shown)[0, 0] == rl.classify(a=2.0, b=1.0, omega=middle, friction=1.0)
 
 
-def test_without_axes_it_opens_a_figure_with_an_image_also_in_vector_files() -> None:
+def test_a_map_without_axes_opens_a_figure_with_rasterized_cells() -> None:
     shown = rl.plot_phase_map(resolution=4)
     assert shown.cells.get_rasterized() and shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"

@@ -41,7 +41,7 @@ OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # curves by
 
 
 @pytest.mark.parametrize("name", OVER_TIME)
-def test_curves_over_time_are_the_trajectory(name: str, trajectory: rl.Trajectory) -> None:
+def test_curves_over_time_equal_the_trajectory(name: str, trajectory: rl.Trajectory) -> None:
     draw, curves = OVER_TIME[name]
     shown = draw(trajectory)
     for artist, quantity in curves.items():
@@ -70,7 +70,7 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     return other
 
 
-def test_constraints_have_a_line_each(trajectory: rl.Trajectory) -> None:
+def test_each_constraint_has_its_own_line(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_constraints(trajectory, ax=two_axes())
     names = [[text.removesuffix(" = 0") for text in legend_of(ax)] for ax in shown.axes]
     assert names == [
@@ -84,7 +84,7 @@ def test_constraints_have_a_line_each(trajectory: rl.Trajectory) -> None:
 
 
 @own_samples
-def test_errors_of_constraints_have_no_unit(report: rl.Trajectory) -> None:
+def test_errors_of_constraints_are_dimensionless(report: rl.Trajectory) -> None:
     position = {"f2": -1e-3, "f3": 2e-5, "f4": -1e-7, "gap": -4e-3}
     velocity = {"f1": 3e-3, "df2": 1e-4, "df3": -1e-6, "df4": 1e-5, "slip": -7e-3}
     shown = rl.plot_constraints(missing(report, **position, **velocity), ax=two_axes())
@@ -110,7 +110,9 @@ def test_several_motions_show_the_worst_of_their_constraints(report: rl.Trajecto
 
 
 @own_samples
-def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: rl.Trajectory) -> None:
+def test_one_motion_in_one_panel_shows_the_worst_position_and_velocity_errors(
+    report: rl.Trajectory,
+) -> None:
     shown = rl.plot_constraints(missing(report, f1=1e-2, f3=1e-3), ax=new_axes())
     assert legend_of(shown.axes[0]) == ["positions", "velocities"]
     position, velocity = (data(line)[1] for line in shown.lines[0])
@@ -121,7 +123,7 @@ def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: rl.Trajecto
 # ------------------------------------------------------------------------------------ energy
 
 
-def test_several_motions_show_the_error_of_their_energies(several: list[rl.Trajectory]) -> None:
+def test_several_motions_show_the_errors_in_their_energies(several: list[rl.Trajectory]) -> None:
     shown = rl.plot_energy(several, ax=new_axes())
     assert shown.total == shown.kinetic == shown.potential == ()
     assert shown.ax.get_yscale() == "log"
@@ -135,7 +137,7 @@ def test_several_motions_show_the_error_of_their_energies(several: list[rl.Traje
     assert shown.ax.get_ylim()[0] < 1e-16 and shown.ax.get_ylim()[1] > max(largest)
 
 
-def test_the_kind_of_energy_picture_is_a_choice(several: list[rl.Trajectory]) -> None:
+def test_the_kind_of_energy_picture_can_be_chosen(several: list[rl.Trajectory]) -> None:
     energies = rl.plot_energy(several, ax=new_axes(), kind="energies")
     assert len(energies.total) == len(energies.potential) == 3 and energies.error == ()
     assert legend_of(energies.ax)[3:] == ["total", "kinetic", "potential"]
@@ -150,7 +152,7 @@ def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
         jump = rl.simulate(rl.scenes.jump, 2.0, model="rolling")
     assert np.isinf(jump.friction_needed).any()
     upper, lower = rl.plot_forces(jump, ax=two_axes()).axes
-    assert lower.get_ylim() == pytest.approx((-0.03 * 3.45, 3.45))  # 0 is seen above the frame
+    assert lower.get_ylim() == pytest.approx((-0.03 * 3.45, 3.45))  # 0 is visible above the frame
     assert upper.get_ylim()[0] < jump.normal_force.min() < 0
     assert legend_of(lower) == ["μ"]
 
@@ -174,7 +176,7 @@ def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
     assert rl.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
 
 
-def test_the_band_of_friction_is_that_of_its_coefficient(report: rl.Trajectory) -> None:
+def test_the_friction_band_matches_the_coefficient(report: rl.Trajectory) -> None:
     shown = rl.plot_forces([report, rough(report, 0.7)], ax=two_axes())
     assert shown.limits[0] is None and shown.available[0] is None
     corners = points_of(shown.limits[1])[:, 1]
@@ -187,7 +189,7 @@ def test_the_band_of_friction_is_that_of_its_coefficient(report: rl.Trajectory) 
 # ------------------------------------------------------------------------------------- paths
 
 
-def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+def test_paths_equal_the_trajectory(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_paths(trajectory, ax=new_axes())
     until = sampling.turned_until(trajectory, 3.0, "x_dot")
     trajectory = sampling.between(trajectory, 0.0, until, 6.0)
@@ -220,7 +222,7 @@ def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
 
 
 @pytest.mark.parametrize("span", [20, 1000])
-def test_a_long_way_is_shown_over_three_turns(report: rl.Trajectory, span: int) -> None:
+def test_only_three_turns_of_a_long_path_are_shown(report: rl.Trajectory, span: int) -> None:
     rolling = rl.simulate(rl.scenes.rolling, np.linspace(0.0, span, 20_001))
     ax = rl.plot_paths(rolling, ax=new_axes()).ax
     assert ax.get_title(loc="left") == f"the first 13.1 s of {span} s"
@@ -241,7 +243,7 @@ def test_paths_on_a_slope_are_tilted() -> None:
 # ------------------------------------------------------------------------------------- phase
 
 
-def test_phase_is_the_trajectory(trajectory: rl.Trajectory) -> None:
+def test_the_phase_curve_equals_the_trajectory(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_phase(trajectory, ax=new_axes(), fold=False)
     theta, omega = data(shown.motions[0])
     drawn = sampling.between(trajectory, 0.0, 4.0, sampling.half_turns(trajectory))
@@ -250,7 +252,7 @@ def test_phase_is_the_trajectory(trajectory: rl.Trajectory) -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9), (2.0, 0.02)])
-def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> None:
+def test_the_separatrix_lies_between_rocking_and_rolling_over(a: float, b: float) -> None:
     shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     flat = 0.0 if a > b else math.pi / 2
@@ -264,7 +266,7 @@ def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> N
         assert np.all((np.abs(later - flat) > math.pi / 2) == over)
 
 
-def test_separatrix_goes_through_the_tips(report: rl.Trajectory) -> None:
+def test_the_separatrix_passes_through_the_tips(report: rl.Trajectory) -> None:
     shown = rl.plot_phase(report, ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     centres, saddles = shown.equilibria
@@ -275,7 +277,7 @@ def test_separatrix_goes_through_the_tips(report: rl.Trajectory) -> None:
     assert omega.max() == pytest.approx(rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-12)
 
 
-def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
+def test_the_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     shown = rl.plot_phase(rl.simulate(rl.Scene(1.0, 1e-3, theta=0.3), 1.0), ax=new_axes())
     _, omega = data(shown.separatrices[0])
     peak = rl.thresholds(1.0, 1e-3).roll_over_speed
@@ -284,7 +286,7 @@ def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
-def test_one_separatrix_for_each_body_but_none_for_a_circle_or_on_a_slope(
+def test_each_body_has_a_separatrix_unless_it_is_a_circle_or_on_a_slope(
     report: rl.Trajectory,
 ) -> None:
     for scene in (rl.scenes.circle, rl.scenes.slope):
@@ -315,7 +317,7 @@ def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float
     half_turns = np.floor((motion.theta - flat) / math.pi + 0.5)
     assert breaks.size == np.count_nonzero(np.diff(half_turns)) > 10
     assert np.array_equal(np.isnan(omega), np.isnan(theta))
-    # the line leaves at one side and returns at the other with the same speed
+    # the line leaves on one side and returns on the other with the same speed
     assert theta[breaks - 1] == pytest.approx(np.full(breaks.size, flat + sign * math.pi / 2))
     assert theta[breaks + 1] == pytest.approx(np.full(breaks.size, flat - sign * math.pi / 2))
     assert omega[breaks - 1] == pytest.approx(omega[breaks + 1], rel=1e-12)
@@ -326,7 +328,7 @@ def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float
     assert turned == pytest.approx(np.round(turned), abs=1e-12)
 
 
-def test_folding_is_a_choice(report: rl.Trajectory) -> None:
+def test_folding_can_be_requested(report: rl.Trajectory) -> None:
     folded = data(rl.plot_phase(report, ax=new_axes(), fold=True).motions[0])[0]
     assert np.nanmax(np.abs(folded)) <= math.pi / 2 < report.theta.max()
 
@@ -345,7 +347,9 @@ def curves(ax: Axes) -> list[matplotlib.lines.Line2D]:
 # ------------------------------------------------------------------------------- plot_strobe
 
 
-def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajectory) -> None:
+def test_strobe_bodies_stand_on_the_ground_at_equally_spaced_times(
+    trajectory: rl.Trajectory,
+) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes(), count=9, t_end=3.0)
     at = trajectory.sol(np.linspace(0.0, 3.0, 9))
     size = max(trajectory.scene.a, trajectory.scene.b)
@@ -369,7 +373,9 @@ def test_strobe_bodies_darken_evenly_from_early_to_late(report: rl.Trajectory) -
     assert np.all(steps > 0.1) and steps.max() < 3 * steps.min()
 
 
-def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Trajectory) -> None:
+def test_the_strobe_hand_ends_on_the_outline_at_the_end_of_semi_axis_a(
+    trajectory: rl.Trajectory,
+) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
         end = np.asarray(hand.get_xydata())[1]
@@ -379,7 +385,7 @@ def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Tra
         assert np.allclose(end, expected, rtol=1e-13, atol=1e-12 * trajectory.scene.a)
 
 
-def test_strobe_stops_a_long_roll_after_three_turns() -> None:
+def test_the_strobe_stops_a_long_roll_after_three_turns() -> None:
     trajectory = rl.simulate(rl.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     turned = math.radians(shown.bodies[0].angle - shown.bodies[-1].angle) / (2 * math.pi)
@@ -389,7 +395,7 @@ def test_strobe_stops_a_long_roll_after_three_turns() -> None:
 
 
 @pytest.mark.parametrize("start", [rl.scenes.rocking, rl.Scene(2.0, 1.0, omega=1.0)])
-def test_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
+def test_the_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
     shown = rl.plot_strobe(rl.simulate(start, 50.0), ax=new_axes(), count=600)
     angles = [body.angle for body in shown.bodies]
     # one way only, so that no outline lies on another; the angle is stationary at both ends
@@ -398,13 +404,13 @@ def test_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
     assert (angles[0] == min(angles)) == (start.omega == 0)
 
 
-def test_strobe_dots_what_the_model_is_not_valid_for(report: rl.Trajectory) -> None:
+def test_the_strobe_draws_bodies_dotted_where_the_model_is_invalid(report: rl.Trajectory) -> None:
     half = dataclasses.replace(report, valid_until=3.0)
     styles = [body.get_linestyle() for body in rl.plot_strobe(half, ax=new_axes()).bodies]
     assert styles == ["-"] * 6 + [":"] * 7
 
 
-def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajectory) -> None:
+def test_the_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     figure_of(shown.ax).draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
@@ -421,7 +427,7 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajector
 # -------------------------------------------------------------------------------------- plot
 
 
-def test_overview_errors_are_those_of_the_single_pictures(trajectory: rl.Trajectory) -> None:
+def test_overview_errors_equal_those_of_the_single_pictures(trajectory: rl.Trajectory) -> None:
     shown = rl.plot(trajectory, figure=Figure(layout="constrained"))
     ((position, velocity),) = rl.plot_constraints(trajectory, ax=Figure().add_subplot()).lines
     (energy,) = rl.plot_energy(trajectory, ax=Figure().add_subplot(), kind="error").error
@@ -433,7 +439,7 @@ def test_overview_errors_are_those_of_the_single_pictures(trajectory: rl.Traject
         assert np.array_equal(np.asarray(line.get_xydata()), np.asarray(single.get_xydata()))
 
 
-def test_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> None:
+def test_the_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> None:
     figure = rl.plot(report, figure=Figure(layout="constrained")).figure
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert len(set(labels)) == len(figure.axes) - 1 == 7  # omega over theta and over time
@@ -455,7 +461,7 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> N
             assert len(styles) == 2 or abs(values[0] - values[1]) > 0.3
 
 
-def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:
+def test_the_overview_marks_where_the_model_is_invalid(report: rl.Trajectory) -> None:
     figure = Figure()
     whole = rl.plot(report, figure=figure)
     assert whole.figure is figure
@@ -471,7 +477,7 @@ def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> N
 # ---------------------------------------------------------------------------------- errors
 
 
-def test_the_error_is_that_beside_the_exact_motion() -> None:
+def test_the_plotted_error_is_the_difference_from_the_exact_motion() -> None:
     scene = rl.scenes.rolling
     coarse = rl.simulate(scene, 6.0, method="rk4", step=0.02)
     exact = rl.simulate(scene, 6.0, method="exact")
@@ -485,7 +491,7 @@ def test_the_error_is_that_beside_the_exact_motion() -> None:
     assert shown.errors[1].get_label() == "exact = 0"
 
 
-def test_the_error_has_a_reference_for_every_model() -> None:
+def test_the_plotted_error_has_a_reference_for_every_model() -> None:
     scene = rl.Scene(2.0, 1.0, slope=0.1, omega=1.0)
     slope = rl.simulate(scene, 1.0, rtol=1e-6, model="rolling", method="dop853")
     ours = rl.simulate(rl.scenes.rolling, 3.0, model="multipliers", rtol=1e-7)
@@ -495,7 +501,7 @@ def test_the_error_has_a_reference_for_every_model() -> None:
         assert least <= np.asarray(line.get_ydata()).max() <= most
 
 
-def test_a_reference_may_be_given() -> None:
+def test_the_reference_of_the_error_can_be_given() -> None:
     one = rl.simulate(rl.scenes.rolling, 2.0)
     other = rl.simulate(rl.Scene(2.0, 1.0, omega=3.3), 2.0)
     shown = rl.plot_error(one, "x", other, ax=new_axes())

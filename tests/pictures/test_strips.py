@@ -59,7 +59,7 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
 
 
-def test_every_body_is_seen_whole_on_its_ground(motions: list[rl.Trajectory]) -> None:
+def test_every_body_is_fully_visible_on_its_ground(motions: list[rl.Trajectory]) -> None:
     animation = compared(motions)
     for i in frames(animation):
         animation.draw(i)
@@ -72,7 +72,7 @@ def test_every_body_is_seen_whole_on_its_ground(motions: list[rl.Trajectory]) ->
             assert ticks[0] < left and right < ticks[-1]
 
 
-def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[rl.Trajectory]) -> None:
+def test_the_strips_share_one_scale_and_fill_the_picture(motions: list[rl.Trajectory]) -> None:
     animation = compared(motions)
     boxes = [strip.ax.get_position() for strip in animation.strips]
     edges = [1.0, *(box.y0 for box in boxes)]
@@ -92,7 +92,7 @@ def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[rl.Traject
     [(STILL, True, 1), (FOLLOWED, True, 141), (PARTED, False, 201)],
     ids=["still", "followed", "parted"],
 )
-def test_the_strips_show_the_same_ground_unless_the_motions_part(
+def test_the_strips_show_the_same_ground_unless_the_motions_separate(
     motions: list[rl.Trajectory], same_ground: bool, views: int
 ) -> None:
     animation = compared(motions)
@@ -105,7 +105,7 @@ def test_the_strips_show_the_same_ground_unless_the_motions_part(
     assert len(seen) == views
 
 
-def test_parted_motions_say_where_they_are() -> None:
+def test_captions_of_separated_motions_state_their_positions() -> None:
     animation = rl.animate(PARTED, labels=["slow", "fast", "back"], t_end=20.0, fps=4)
     animation.draw(80)
     captions = [strip.caption.get_text() for strip in animation.strips]
@@ -137,7 +137,7 @@ def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
 
 
 @pytest.mark.parametrize("width", [320, 640])
-def test_texts_are_clear_of_one_another_and_of_the_bodies(
+def test_texts_overlap_neither_one_another_nor_the_bodies(
     motions: list[rl.Trajectory], width: int
 ) -> None:
     animation = compared(motions, width)
@@ -156,7 +156,7 @@ def test_texts_are_clear_of_one_another_and_of_the_bodies(
 
 @pytest.mark.parametrize("size", [0.01, 1.0, 1000.0])
 @pytest.mark.parametrize("slope", [0.0, 0.2])
-def test_three_motions_side_by_side_can_be_read(size: float, slope: float) -> None:
+def test_three_motions_side_by_side_are_readable(size: float, slope: float) -> None:
     """At 640 pixels no letters are smaller than 7 points, and no text lies on another or is cut."""
     rate = math.sqrt(9.81 / size)
     scenes = [
@@ -179,7 +179,7 @@ def test_three_motions_side_by_side_can_be_read(size: float, slope: float) -> No
         assert not any(one.overlaps(two) for one, two in combinations(texts, 2))
 
 
-def test_it_draws_into_a_figure_it_is_given() -> None:
+def test_strips_are_drawn_into_a_given_figure() -> None:
     for size in ((5, 5), (10, 1), (2, 8)):
         animation = rl.animate(STILL, t_end=1.0, fps=4, figure=Figure(figsize=size))
         assert tuple(animation.figure.get_size_inches()) == size
@@ -192,7 +192,7 @@ def test_it_draws_into_a_figure_it_is_given() -> None:
             assert left < points[:, 0].min() and points[:, 0].max() < right
 
 
-def test_the_user_s_layout_is_left_alone() -> None:
+def test_the_layout_setting_of_the_user_is_left_alone() -> None:
     with matplotlib.rc_context({"figure.constrained_layout.use": True}):
         animation = rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error
     assert shows_something(animation.figure)

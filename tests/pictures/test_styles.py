@@ -34,7 +34,7 @@ def contrast(one: Any, other: Any) -> float:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_curves_are_seen_before_the_background(
+def test_curves_stand_out_from_the_background(
     picture: Callable[..., Any], several: list[rl.Trajectory], style: str
 ) -> None:
     with plt.style.context(style):
@@ -52,7 +52,7 @@ def test_curves_are_seen_before_the_background(
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_the_first_two_colours_of_a_style_are_told_apart(style: str) -> None:
+def test_the_first_two_colours_of_a_style_can_be_told_apart(style: str) -> None:
     with plt.style.context(style):
         palette = palette_of()
         ink, second = palette.curves[:2]
@@ -60,7 +60,7 @@ def test_the_first_two_colours_of_a_style_are_told_apart(style: str) -> None:
         assert max(abs(np.subtract(to_rgb(ink), to_rgb(second)))) > 0.25
 
 
-def test_a_style_with_colours_of_its_own_gives_them() -> None:
+def test_the_colours_of_a_style_are_used() -> None:
     with plt.style.context("dark_background"):
         own = [look["color"] for look in plt.rcParams["axes.prop_cycle"]]
         drawn = {palette_of().blue, palette_of().orange}
@@ -69,13 +69,13 @@ def test_a_style_with_colours_of_its_own_gives_them() -> None:
         assert contrast(palette_of().blue, "black") > 4.5
 
 
-def test_colours_of_a_style_that_are_nearly_its_background_or_its_text_are_left_out() -> None:
+def test_style_colours_close_to_the_background_or_text_are_left_out() -> None:
     with plt.style.context({"axes.prop_cycle": cycler(color=["#fefefe", "#020202", "red"])}):
         palette = palette_of()
         assert {palette.blue, palette.orange, palette.sky, palette.plum} == {"#ff0000"}
 
 
-def test_axes_made_in_another_style_are_drawn_in_by_their_own_background() -> None:
+def test_colours_suit_the_background_of_axes_created_in_another_style() -> None:
     with plt.style.context("dark_background"):
         dark = Figure().add_subplot()
     motion = rl.simulate(rl.scenes.report, 2.0)
@@ -106,7 +106,7 @@ def curves_of(shown: Any) -> list[Line2D]:
     return [line for lines in found for line in np.ravel(np.array(lines, dtype=object)).tolist()]
 
 
-def test_colors_are_those_of_the_motions(
+def test_given_colors_are_used_for_the_motions(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
     colours: list[Any] = ["red", (0.0, 0.5, 0.0), "C4"]
@@ -122,7 +122,7 @@ def test_colors_are_those_of_the_motions(
     assert {to_rgb(line.get_color()) for line in curves_of(one)} == {to_rgb("red")}
 
 
-def test_properties_of_lines_are_taken(
+def test_line_properties_are_accepted(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
     for motions in (several, several[0]):
@@ -133,7 +133,7 @@ def test_properties_of_lines_are_taken(
         picture(several[0], ax=new_axes(), nonsense=1)
 
 
-def test_the_size_of_the_style_is_taken_where_none_is_given() -> None:
+def test_the_figure_size_of_the_style_is_the_default() -> None:
     motion = rl.simulate(rl.scenes.report, 2.0)
     for draw in (rl.plot, rl.plot_forces, rl.plot_phase, rl.plot_strobe, rl.plot_error):
         sizes = []
@@ -145,7 +145,7 @@ def test_the_size_of_the_style_is_taken_where_none_is_given() -> None:
         assert sizes[1] == (5.0, 2.5) != sizes[0]
 
 
-def test_a_figure_or_a_part_of_one_is_laid_out() -> None:
+def test_a_figure_or_subfigure_is_laid_out() -> None:
     motion = rl.simulate(rl.scenes.report, 2.0)
     bare = Figure(figsize=(9, 8))
     whole = Figure(figsize=(14, 8), layout="constrained")

@@ -1,4 +1,4 @@
-"""The work-precision chart: fronts, factors and names agree with made runs, and can be read."""
+"""The work-precision chart: fronts, factors and names agree with made-up runs and are readable."""
 
 import itertools
 import math
@@ -66,7 +66,7 @@ def height(line: Any, error: float) -> float:
     return float(next(value for at, value in zip(x, y, strict=True) if at <= error))
 
 
-def test_the_fronts_are_the_least_times_of_the_camps_and_the_factors_their_ratios() -> None:
+def test_fronts_are_the_least_times_of_each_camp_and_factors_their_ratios() -> None:
     chart: Any = FOUND.plot(ax=Figure(figsize=(8, 5)).add_subplot())
     for decade in DECADES[:11]:
         least = FOUND.least(decade)
@@ -83,7 +83,7 @@ def test_the_fronts_are_the_least_times_of_the_camps_and_the_factors_their_ratio
     assert list(chart.factors) == [1e-2, 1e-6, 1e-10] and len(chart.names) <= 8
 
 
-def test_who_is_ahead_is_told_either_way_and_a_tie_is_one() -> None:
+def test_the_chart_says_which_camp_is_ahead_or_that_they_tie() -> None:
     slow = next(name for name in FOUND.names if name not in OWN)
     chart: Any = FOUND.plot(highlight=slow, ax=Figure(figsize=(8, 5)).add_subplot())
     assert {text.get_text().split()[2] for text in chart.factors.values()} == {"slower"}
@@ -92,7 +92,7 @@ def test_who_is_ahead_is_told_either_way_and_a_tie_is_one() -> None:
     assert {text.get_text() for text in tie.factors.values()} == {"equal"}
 
 
-def test_highlights_are_names_or_tags_that_are_there() -> None:
+def test_highlights_are_names_or_tags_of_the_race() -> None:
     def camp(**how: Any) -> Any:
         found = how.pop("found", FOUND)
         chart: Any = found.plot(ax=Figure().add_subplot(), **how)
@@ -108,7 +108,7 @@ def test_highlights_are_names_or_tags_that_are_there() -> None:
     assert camp(tags="own", highlight="method2") == {"method2"}
 
 
-def test_errors_go_from_ten_to_what_can_be_attained_without_a_pile_at_the_rim(chart: Any) -> None:
+def test_errors_range_from_ten_to_the_attainable_limit_without_piling_up(chart: Any) -> None:
     first, last = chart.ax.get_xlim()
     assert first == 10 and LIMIT / 10 < last < LIMIT == chart.limit.get_xdata()[0]
     for line in chart.lines.values():
@@ -133,8 +133,8 @@ def test_camps_differ_in_grey(chart: Any) -> None:
 
 @pytest.mark.parametrize("found", READ.values(), ids=READ)
 @pytest.mark.parametrize("width", [3.4, 5.0, 8.0, 12.0])
-def test_no_text_lies_on_another(width: float, found: WorkPrecision) -> None:
-    """The boxes of all texts are apart and in the figure: of a column, 500 px, 800 px, a slide."""
+def test_no_text_overlaps_another(width: float, found: WorkPrecision) -> None:
+    """No text overlaps or leaves the figure, in a column, at 500 px, at 800 px or on a slide."""
     with plt.rc_context({"figure.figsize": (width, 0.7 * width), "figure.dpi": 100}):
         chart: Any = found.plot()
     figure = chart.ax.figure
@@ -166,7 +166,7 @@ FAILED = replace(run("method2", 1e-3, 1.0), **LOST, reason="singular")
 LACKING = replace(FOUND, runs=(*FOUND.runs, FAILED))
 
 
-def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
+def test_the_table_of_gaps_is_drawn_below_where_there_is_room() -> None:
     table = str(LACKING.gaps())
     assert table.splitlines()[1] == "method2       1e-03       FAILED, singular"
     for width, drawn in ((8.0, True), (3.4, False)):
@@ -178,7 +178,7 @@ def test_the_table_of_gaps_is_below_where_it_has_room() -> None:
     assert LACKING.plot(ax=Figure().add_subplot()).below is None
 
 
-def test_a_chart_without_an_answer_still_says_why() -> None:
+def test_a_chart_without_any_result_still_says_why() -> None:
     runs = tuple(replace(each, **LOST, reason="too many") for each in FOUND.runs)
     chart: Any = replace(FOUND, runs=runs).plot(ax=Figure().add_subplot())
     assert not chart.lines and {gap.name for gap in chart.gaps} == set(FOUND.names)
@@ -188,7 +188,7 @@ def test_a_chart_without_an_answer_still_says_why() -> None:
 # ------------------------------------------------------------------- other charts, result
 
 
-def test_small_multiples_have_a_library_each_and_the_same_axes() -> None:
+def test_each_small_multiple_shows_one_library_on_the_same_axes() -> None:
     chart: Any = FOUND.plot(by="library")
     titles = [ax.get_title(loc="left") for ax in chart.axes]
     assert sorted(titles) == sorted([*LIBRARIES, "rolling_ellipse"])
@@ -202,14 +202,14 @@ def test_small_multiples_have_a_library_each_and_the_same_axes() -> None:
 
 
 @pytest.mark.parametrize(("x", "y"), [("linf", "samples_time"), ("gap", "evaluations")])
-def test_any_cost_goes_over_any_error(x: str, y: str) -> None:
+def test_any_cost_can_be_plotted_over_any_error(x: str, y: str) -> None:
     found = replace(FOUND, runs=(run("method2", 1e-3, 2.0, evaluations=7),))
     found = replace(found, runs=(replace(found.runs[0], errors=Errors(*[1e-3] * 6)),))
     line: Any = found.plot(x, y, ax=Figure().add_subplot()).lines["method2"]
     assert line.get_xydata()[-1].tolist() == [1e-3, found.runs[0].value(y)]
 
 
-def test_the_result_has_axes_and_writes_its_file(chart: Any, tmp_path: Path) -> None:
+def test_the_chart_has_axes_and_can_be_saved(chart: Any, tmp_path: Path) -> None:
     chart.savefig(tmp_path / "chart.svg", transparent=True)
     assert (tmp_path / "chart.svg").stat().st_size > 1000
     assert chart.axes == (chart.ax,) and "23 lines, 2 fronts" in repr(chart)

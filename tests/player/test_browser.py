@@ -1,4 +1,4 @@
-"""The player and the explorer in a real browser: their drawings and their reactions."""
+"""The player and the explorer in a real browser: what they draw and how they react."""
 
 import base64
 import html
@@ -110,7 +110,7 @@ def edge_distance(
 # -------------------------------------------------------------------------------------- films
 
 
-def test_it_plays_by_itself_from_a_file(opened: Opened) -> None:
+def test_a_film_plays_by_itself_from_a_file(opened: Opened) -> None:
     page = opened(film(rl.scenes.report))
     page.wait_for_function(f"{HOST}.player.t > 0.3")
     told(page, "player => player.pause()")
@@ -121,14 +121,14 @@ def test_it_plays_by_itself_from_a_file(opened: Opened) -> None:
     page.get_by_role("button", name="Pause").click()
 
 
-def test_it_waits_for_those_who_want_less_motion(opened: Opened) -> None:
+def test_a_film_waits_if_reduced_motion_is_preferred(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), reduced_motion="reduce")
     page.wait_for_function(f"{HOST}.dataset.time === '0'")
     assert told(page, "player => [player.playing, player.t]") == [False, 0]
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_body_is_drawn_where_the_motion_has_it(opened: Opened, name: str) -> None:
+def test_the_body_is_drawn_where_the_motion_puts_it(opened: Opened, name: str) -> None:
     motion = rl.simulate(SCENES[name], 4.0)
     page = opened(film(SCENES[name]), reduced_motion="reduce")
     times = [0.0, 0.123, 1.0, 2.345, 4.0]
@@ -143,7 +143,7 @@ def test_the_body_is_drawn_where_the_motion_has_it(opened: Opened, name: str) ->
         assert math.dist(seen, where) < 1, f"{t} s: {seen}, not {where}"
 
 
-def test_the_check_of_pixels_sees_two_pixels(opened: Opened) -> None:
+def test_the_pixel_check_detects_a_shift_of_two_pixels(opened: Opened) -> None:
     motion = rl.simulate(rl.scenes.report, 4.0)
     page = opened(film(rl.scenes.report), reduced_motion="reduce")
     told(page, "player => player.seek(1.0)")
@@ -166,7 +166,7 @@ def test_several_motions_run_on_one_clock(opened: Opened, layout: str, along: st
     assert places == sorted(places)
 
 
-def test_players_on_one_page_do_not_meddle(opened: Opened) -> None:
+def test_players_on_one_page_do_not_interfere(opened: Opened) -> None:
     fragment = rl.animate(rl.simulate(rl.scenes.report, 4.0))._repr_html_()
     other = rl.explore(rl.scenes.report, t_end=2.0)._repr_html_()
     page = opened(document("three", fragment + fragment + other), reduced_motion="reduce")
@@ -178,7 +178,7 @@ def test_players_on_one_page_do_not_meddle(opened: Opened) -> None:
     assert times == [0, 1.5, 0]
 
 
-def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> None:
+def test_keys_work_only_where_the_player_has_the_focus(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), reduced_motion="reduce")
     page.wait_for_function(f"{HOST}.dataset.time === '0'")
     page.keyboard.press("End")
@@ -199,7 +199,7 @@ def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> Non
     page.keyboard.press("Space")
     assert not told(page, "player => player.playing")
     page.keyboard.press("d")
-    assert page.title() == "An ellipse in motion"  # a notebook around it would obey, too
+    assert page.title() == "An ellipse in motion"  # a surrounding notebook would react, too
     assert page.locator("[data-lm-suppress-shortcuts]").count() == 1
     page.keyboard.press("Home")
     assert told(page, "p => p.canvas.getAttribute('aria-label')") == (
@@ -207,7 +207,7 @@ def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> Non
     )
 
 
-def test_the_slider_seeks_and_events_are_marked_on_it(opened: Opened) -> None:
+def test_the_slider_seeks_and_marks_the_events(opened: Opened) -> None:
     page = opened(film(rl.scenes.drop), reduced_motion="reduce")
     page.locator("input[type=range]").fill("0.5")
     assert told(page, "player => player.t") == pytest.approx(2.0)
@@ -215,7 +215,7 @@ def test_the_slider_seeks_and_events_are_marked_on_it(opened: Opened) -> None:
     assert titles[0] == "impact at 0.4515 s"  # sqrt(2 · 1 m / 9.81 m/s²)
 
 
-def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
+def test_forces_are_shown_on_request(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), reduced_motion="reduce")
     told(page, "player => player.seek(2.0)")
     without = drawn(page)
@@ -232,7 +232,9 @@ def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
      ({"color_scheme": "dark", "class": "light"}, False)],
     ids=["light", "dark system", "dark page", "light page"],
 )  # fmt: skip
-def test_paper_is_as_dark_as_the_page(opened: Opened, options: dict[str, Any], dark: bool) -> None:
+def test_the_canvas_is_as_dark_as_the_page(
+    opened: Opened, options: dict[str, Any], dark: bool
+) -> None:
     marked = options.pop("class", "")
     page = opened(film(rl.scenes.report).replace("<body>", f'<body class="{marked}">'), **options)
     page.wait_for_function(f"{HOST}.player.t > 0.1")
@@ -244,7 +246,7 @@ def test_paper_is_as_dark_as_the_page(opened: Opened, options: dict[str, Any], d
 
 
 @pytest.mark.parametrize("dots", [1, 2, 3])
-def test_it_is_sharp_and_takes_the_width_it_is_given(opened: Opened, dots: int) -> None:
+def test_a_film_is_sharp_and_takes_the_given_width(opened: Opened, dots: int) -> None:
     page = opened(film(rl.scenes.report), device_scale_factor=dots, reduced_motion="reduce")
     widths = []
     for width in (1000, 500):
@@ -254,7 +256,7 @@ def test_it_is_sharp_and_takes_the_width_it_is_given(opened: Opened, dots: int) 
     assert widths == [968, 468]
 
 
-def test_without_scripts_a_picture_stays(opened: Opened) -> None:
+def test_a_picture_is_shown_without_scripts(opened: Opened) -> None:
     page = opened(film(rl.scenes.report), java_script_enabled=False)
     image = page.locator("img")
     assert image.is_visible() and image.bounding_box()["width"] > 900
@@ -290,7 +292,7 @@ def drag(page: Page, by: tuple[float, float], steps: int) -> None:
 
 
 @pytest.mark.parametrize("name", ["report", "slope", "drop", "jump"])
-def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str) -> None:
+def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -> None:
     """Places, turns and forces are drawn within a pixel; a plot has 540 by 168 pixels."""
     scene = SCENES[name]
     explorer = rl.explore(scene)
@@ -320,7 +322,7 @@ def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str)
         assert over.max() * 168 / np.ptp([-0.5, 1.5, *true]) < 1
 
 
-def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
+def test_the_map_the_sliders_and_the_text_follow_the_blow(opened: Opened) -> None:
     page = opened(document("", rl.explore(rl.scenes.report)._repr_html_()))
     box = page.locator(".map canvas").bounding_box()
     page.mouse.click(box["x"] + 52 + 3, box["y"] + 10 + 3)  # the corner: far left, strongest
@@ -349,7 +351,7 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
         (".player", "ArrowRight Space Space d d", (210, 107)),
     ],
 )  # fmt: skip
-def test_keys_move_the_blow_and_none_reaches_the_page(
+def test_keys_move_the_blow_without_reaching_the_page(
     opened: Opened, part: str, keys: str, parts: tuple[int, int]
 ) -> None:
     page = opened(rl.explore(rl.scenes.report, t_end=1.0).to_html(), reduced_motion="reduce")
@@ -362,7 +364,7 @@ def test_keys_move_the_blow_and_none_reaches_the_page(
     assert (t == 0) == (part != ".player")
 
 
-def test_the_reason_is_spoken_when_another_one_holds(opened: Opened) -> None:
+def test_the_reason_is_announced_when_it_changes(opened: Opened) -> None:
     page = opened(rl.explore(rl.scenes.report, t_end=1.0, language="de").to_html())
     page.locator(".hard").press("End")
     blow(page)
@@ -374,14 +376,14 @@ def test_the_reason_is_spoken_when_another_one_holds(opened: Opened) -> None:
     assert page.locator(".spoken").inner_text() == heard
 
 
-def test_the_lines_of_the_docstring_fit_a_frame_to_its_page(opened: Opened) -> None:
+def test_the_script_in_the_docstring_fits_a_frame_to_its_page(opened: Opened) -> None:
     lines = str(rl.explore.__doc__).split("::\n\n")[1].split("</script>")[0] + "</script>"
     text = html.escape(rl.explore(rl.scenes.report, t_end=1.0).to_html())
     frame = opened(lines.replace('src="strike.html"', f'srcdoc="{text}"')).frames[1]
     frame.wait_for_function("innerHeight > 600 && document.body.offsetHeight === innerHeight")
 
 
-def test_a_swipe_scrolls_the_page_except_on_the_hand(opened: Opened) -> None:
+def test_a_swipe_scrolls_the_page_unless_it_starts_on_the_hand(opened: Opened) -> None:
     page = opened(rl.explore(rl.scenes.report, t_end=1.0).to_html(), has_touch=True,
                   viewport={"width": 390, "height": 700}, reduced_motion="reduce")  # fmt: skip
     touch = page.context.new_cdp_session(page)

@@ -1,4 +1,4 @@
-"""The blows of a page lie on the body, its words are whole tables, and it is one file."""
+"""A page's blows hit the body, its texts are complete tables, and it is a single file."""
 
 import json
 import math
@@ -26,7 +26,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_blows_are_on_the_body_and_the_scenes_own_comes_first(name: str) -> None:
+def test_the_blows_hit_the_body_and_the_blow_of_the_scene_comes_first(name: str) -> None:
     scene = SCENES[name]
     place, strength = blows.axes(scene)
     reach = rl.geometry.support(scene.theta + math.pi / 2, a=scene.a, b=scene.b)
@@ -37,14 +37,14 @@ def test_the_blows_are_on_the_body_and_the_scenes_own_comes_first(name: str) -> 
     assert blows.first_blow(scene.replace(impulse=None), place, strength).dx == 0.75 * reach
 
 
-def test_the_strongest_blow_on_the_report_goes_three_times_beyond() -> None:
+def test_the_strongest_blow_reaches_three_times_the_roll_over_speed() -> None:
     F = blows.axes(rl.scenes.report)[1]["most"]
     speed = replace(rl.scenes.report, impulse=rl.Impulse.press(F, 2.0)).initial_state.omega
     # F is rounded to three digits
     assert speed == pytest.approx(3 * rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-2)
 
 
-def test_pages(tmp_path: Path) -> None:
+def test_an_explorer_is_one_small_page(tmp_path: Path) -> None:
     explorer = rl.explore(rl.scenes.report, t_end=1.0)
     explorer.to_html(tmp_path / "one.html")
     text = (tmp_path / "one.html").read_text(encoding="utf-8")
@@ -54,7 +54,7 @@ def test_pages(tmp_path: Path) -> None:
         assert rl.explore(rl.scenes.report, t_end=1.0, live=False) == explorer
 
 
-def test_a_language_is_a_whole_table() -> None:
+def test_each_language_has_a_complete_table_of_texts() -> None:
     german = rl.explore(rl.scenes.drop, language="de").words
     assert rl.explore(rl.scenes.drop, language=german).words == german
     assert {each.name for each in Outcome} < german.keys()
@@ -68,7 +68,7 @@ def test_a_language_is_a_whole_table() -> None:
             assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(german[key])), key
 
 
-def test_every_sentence_of_the_core_has_its_words() -> None:
+def test_every_sentence_of_the_core_is_translated() -> None:
     source = (ROOT / "src" / "describe.cpp").read_text(encoding="utf-8")
     words = rl.explore(rl.scenes.report).words
     numbers = {name[1:-1] for text in words.values() for name in BRACES.findall(text)}

@@ -39,8 +39,10 @@ console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, tim
 """
 
 
-def test_300_scenes_have_the_numbers_and_the_words_of_python(tmp_path: Path) -> None:
-    """Roundings of another C library, magnified by the bounces of a short motion, stay below."""
+def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
+    tmp_path: Path,
+) -> None:
+    """Roundings of another C library, magnified by a short motion's bounces, stay in bounds."""
     if NODE is None:
         pytest.skip("there is no node (apt-get install nodejs)")
     how, times = replace(DEFAULTS, max_steps=20_000, max_events=200), np.linspace(0.0, 1.5, 31)
@@ -80,7 +82,7 @@ def test_300_scenes_have_the_numbers_and_the_words_of_python(tmp_path: Path) -> 
                     "friction", "blow_needs", "stopped", "thrown", "slides_off"}, keys  # fmt: skip
 
 
-def test_the_file_is_small_and_what_its_script_builds(tmp_path: Path) -> None:
+def test_the_wasm_file_is_small_and_matches_its_script(tmp_path: Path) -> None:
     known = gzip.decompress(WASM.read_bytes())
     assert len(known) <= 0.8e6 and WASM.stat().st_size <= 0.3e6
     if EMCC is None or b" 3.1.6 " not in subprocess.check_output([EMCC, "--version"]):
@@ -104,14 +106,14 @@ def repeated(page: Any) -> float:
     return max(errors)
 
 
-def test_any_blow_is_computed_where_it_is_given(opened: Opened) -> None:
+def test_any_blow_is_computed_in_the_page(opened: Opened) -> None:
     page = opened(rl.explore(rl.scenes.slope).to_html(), reduced_motion="reduce")
     page.locator(".where").fill("203")
     page.wait_for_function(f"!{PLAYER}.stale")
     assert "exactly this blow" in page.locator(".said").inner_text() and repeated(page) < 1e-10
 
 
-def test_the_map_has_the_first_outcome_of_each_blow(opened: Opened) -> None:
+def test_the_map_shows_the_first_outcome_of_each_blow(opened: Opened) -> None:
     scene = rl.Scene(2.0, 1.0, slope=0.05, friction=0.5)
     page = opened(rl.explore(scene, t_end=1.0).to_html(), reduced_motion="reduce")
     colours, met = page.evaluate(f"{PLAYER}.film.outcomes"), set()
@@ -125,7 +127,7 @@ def test_the_map_has_the_first_outcome_of_each_blow(opened: Opened) -> None:
     assert len(met) > 1 and met <= {*names}
 
 
-def test_sliders_move_the_motion_and_code_and_link_repeat_it(opened: Opened) -> None:
+def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened) -> None:
     write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
     page = opened(write(rl.explore(rl.scenes.jump)), reduced_motion="reduce")
     for name in page.evaluate(f"{PLAYER}.rows.map(({{ name }}) => name)"):
@@ -158,7 +160,7 @@ def test_sliders_move_the_motion_and_code_and_link_repeat_it(opened: Opened) -> 
 @pytest.mark.parametrize("policy", [
     "<meta http-equiv=Content-Security-Policy content=\"script-src 'unsafe-inline'\">", "",
 ], ids=["forbidden", "missing"])  # fmt: skip
-def test_without_webassembly_the_film_of_the_first_blow_plays(
+def test_the_film_of_the_first_blow_plays_without_webassembly(
     opened: Opened, monkeypatch: pytest.MonkeyPatch, policy: str
 ) -> None:
     if not policy:

@@ -32,7 +32,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_every_public_name_has_its_place_in_the_api(site: Path) -> None:
+def test_every_public_name_is_on_an_api_page(site: Path) -> None:
     from sphinx.util.inventory import InventoryFile
 
     known = InventoryFile.loads((site / "objects.inv").read_bytes(), uri="").data
@@ -52,7 +52,7 @@ def pages(site: Path) -> dict[Path, str]:
     return {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
 
 
-def test_no_page_asks_for_another_address(pages: dict[Path, str]) -> None:
+def test_no_page_requests_an_external_address(pages: dict[Path, str]) -> None:
     assert len(pages) > 50 and not [page for page, text in pages.items() if ADDRESS.search(text)]
 
 
@@ -63,12 +63,12 @@ def test_no_page_shows_the_source_of_a_formula(pages: dict[Path, str]) -> None:
         assert re.findall(r".{,40}[$\\].{,40}", html) == [], page
 
 
-def test_no_page_shows_a_path_of_the_machine(pages: dict[Path, str]) -> None:
+def test_no_page_shows_a_path_on_the_build_machine(pages: dict[Path, str]) -> None:
     told = {page.name for page, html in pages.items() if "site-packages" in html}
     assert told == set()
 
 
-def test_no_line_of_code_or_output_is_cut(site: Path, chromium: Any) -> None:
+def test_no_line_of_code_or_output_is_cut_off(site: Path, chromium: Any) -> None:
     names = ("architecture", "api/benchmark", "api/pictures", "notebooks/06_speed_and_accuracy")
     wider = (
         "[...document.querySelectorAll('article pre')].filter(e => e.scrollWidth > e.clientWidth)"
@@ -82,7 +82,7 @@ def test_no_line_of_code_or_output_is_cut(site: Path, chromium: Any) -> None:
         page.close()
 
 
-def test_no_page_leads_on_to_its_own_title(pages: dict[Path, str]) -> None:
+def test_no_page_links_to_its_own_title(pages: dict[Path, str]) -> None:
     for page, html in pages.items():
         for title in re.findall(r'<div class="title">(.*?)</div>', html):
             assert f"<title>{title} - " not in html, page

@@ -1,4 +1,4 @@
-"""The player's data, unpacked: as near to the motion as their tolerance promises."""
+"""The player's data, unpacked: as close to the motion as their tolerance promises."""
 
 import base64
 import json
@@ -48,7 +48,7 @@ def read_back(found: dict[str, Any], times: np.ndarray) -> dict[str, np.ndarray]
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_between_the_samples_the_motion_is_as_near_as_promised(name: str) -> None:
+def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> None:
     scene = SCENES[name]
     motion = rl.simulate(scene, 4.0 if name != "kilometres" else 200.0)
     size, end = max(scene.a, scene.b), motion.t_end
@@ -66,7 +66,7 @@ def test_between_the_samples_the_motion_is_as_near_as_promised(name: str) -> Non
         assert missed <= 4 * tolerance, column
 
 
-def test_an_impact_stays_a_jump() -> None:
+def test_an_impact_remains_a_jump() -> None:
     motion = rl.simulate(rl.scenes.drop, 1.0)
     (impact,) = [event for event in motion.events if event.kind is rl.EventKind.IMPACT]
     times = sample_times(motion, 1.0, 1e-4)
@@ -79,7 +79,7 @@ def test_an_impact_stays_a_jump() -> None:
     assert abs(at.z_dot[1]) < 0.5 * abs(at.z_dot[0])
 
 
-def test_a_motion_whose_period_divides_the_samples_is_still_seen() -> None:
+def test_a_motion_whose_period_divides_the_sample_spacing_is_still_resolved() -> None:
     """The motion stands at the same angle, modulo half turns, at 17 or 34 evenly spaced times."""
     turn = rl.period(rl.scenes.rolling)
     motion = rl.simulate(rl.scenes.rolling, 34 * turn)
@@ -88,7 +88,7 @@ def test_a_motion_whose_period_divides_the_samples_is_still_seen() -> None:
     assert np.max(np.abs(read_back(found, times)["z"] - motion.sol(times).z)) < 4e-3
 
 
-def test_parts_of_a_long_motion_are_as_near_as_the_whole_of_a_short_one() -> None:
+def test_parts_of_a_long_motion_are_as_accurate_as_a_short_motion() -> None:
     motion, parts = (
         rl.simulate(rl.scenes.rolling, 1e5),
         [(0.0, 9.0), (5e4, 50_009.0), (99_990.0, 1e5)],
@@ -106,7 +106,7 @@ def test_parts_of_a_long_motion_are_as_near_as_the_whole_of_a_short_one() -> Non
 @pytest.mark.parametrize(
     "values", [[0.0], [3.0, 3.0], [-1e9, 1e9], [0.1, 0.2, 0.3], [1e-30, 2e-30], [0.0, 1.0, 3.0]]
 )
-def test_packing_keeps_to_its_error(values: list[float], error: float) -> None:
+def test_packing_stays_within_its_stated_error(values: list[float], error: float) -> None:
     column = packed(np.array(values), error)
     # "error" of the numbers, and two roundings of a double in unpacking
     allowed = error + 4e-16 * np.max(np.abs(values))
@@ -114,18 +114,18 @@ def test_packing_keeps_to_its_error(values: list[float], error: float) -> None:
     assert column == json.loads(json.dumps(column))
 
 
-def test_packing_takes_few_bytes_where_that_is_enough() -> None:
+def test_packing_uses_no_more_bytes_than_needed() -> None:
     values = np.linspace(-3.0, 5.0, 100)
     sizes = [len(packed(values, error)["data"]) for error in (1e-3, 1e-6, 0.0)]
     assert sizes == [268, 536, 1068]  # two, four and eight bytes a value, times 4/3 for base64
 
 
-def test_forces_that_are_not_finite_are_refused() -> None:
+def test_forces_that_are_not_finite_are_rejected() -> None:
     with pytest.raises(ValueError, match="trajectory must have finite samples"):
         packed(np.array([0.0, np.nan]), 1.0)
 
 
-def test_no_text_ends_the_script() -> None:
+def test_no_text_can_end_the_script() -> None:
     motion, label = rl.simulate(rl.scenes.report, 1.0), "</script><b> & \u2028"
     html = fragment({"label": label}, [motion], 'a "quoted" <text>')
     assert html.count("</script>") == 1 and "</script></div>" in html
@@ -133,7 +133,7 @@ def test_no_text_ends_the_script() -> None:
     assert 'alt="a &quot;quoted&quot; &lt;text&gt;"' in html
 
 
-def test_the_page_asks_for_nothing_else() -> None:
+def test_the_page_requests_no_other_file() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         html = rl.simulate(rl.scenes.report, 2.0).animate()._repr_html_()
@@ -156,7 +156,7 @@ def test_the_page_asks_for_nothing_else() -> None:
     ],
     ids=["instant", "rest", "turns", "flat", "tall", "tiny", "huge", "bounces"],
 )
-def test_films_at_the_limits(scene: rl.Scene, seconds: float) -> None:
+def test_films_at_the_limits_stay_small(scene: rl.Scene, seconds: float) -> None:
     html = rl.animate(rl.simulate(scene, seconds), width=64)._repr_html_()
     assert html.startswith('<div class="rolling-ellipse"') and len(html) < 1_500_000
     data = carried(html)

@@ -26,7 +26,7 @@ def disassembled(*options: str) -> str:
     return done.stdout
 
 
-def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
+def test_only_exact_products_in_vector_lanes_are_fused() -> None:
     """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
 
     A compiler that fuses a product and a sum by itself would also fuse additions, and single
@@ -43,7 +43,7 @@ def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     assert fused or "sse2" not in _core.flow_levels()  # a failed search finds none
 
 
-def test_it_calls_nothing_that_differs_between_systems() -> None:
+def test_the_extension_calls_no_function_that_differs_between_systems() -> None:
     symbols = re.findall(r"\*UND\*.*?(\w+)$", disassembled("-T"), re.MULTILINE)
     assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # a failed search finds none
     assert not set(symbols) & set(UNWANTED)

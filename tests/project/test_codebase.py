@@ -1,6 +1,6 @@
 """The sources: linters, formatters, type checker, generated files, one version, order of imports.
 
-All paths begin at this file: the suite runs from a source checkout with an installed package.
+All paths start from this file: the suite runs from a source checkout with an installed package.
 """
 
 import ast
@@ -102,7 +102,7 @@ def test_the_tools_accept_the_sources(
 
 
 @each_tool
-def test_the_tools_refuse_what_is_wrong(
+def test_the_tools_reject_faulty_sources(
     command: list[str], sources: list[str], name: str, text: str, tmp_path: Path
 ) -> None:
     (tmp_path / name).write_text(text)
@@ -110,7 +110,7 @@ def test_the_tools_refuse_what_is_wrong(
     assert done.returncode == 1, done.stderr
 
 
-def test_contributors_are_told_to_format_every_source() -> None:
+def test_the_contributing_page_formats_every_source() -> None:
     if not (ROOT / ".git").exists():
         pytest.skip("no checkout, whose files git could list")
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -122,11 +122,11 @@ def test_contributors_are_told_to_format_every_source() -> None:
 
 
 @pytest.mark.parametrize(("table", "script"), GENERATED.items(), ids=lambda path: path.stem)
-def test_tables_are_what_their_scripts_print(table: Path, script: Path) -> None:
+def test_tables_match_the_output_of_their_scripts(table: Path, script: Path) -> None:
     assert table.read_text(encoding="utf-8") == run(sys.executable, script)
 
 
-def test_one_version() -> None:
+def test_the_version_is_the_same_everywhere() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     version = settings["project"]["version"]
     for name in ("CITATION.cff", "recipe/recipe.yaml"):
@@ -134,13 +134,13 @@ def test_one_version() -> None:
         assert re.findall(r"^ *version: ([\w.]+)$", text, re.MULTILINE) == [version], name
     assert f"\n## {version}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert rolling_ellipse.__version__ == version
-    # the version is written in no other source
+    # no other source contains the version
     literal = f'"{version}"'
     for path in (*SOURCES, *(ROOT / "python").rglob("*.py"), ROOT / "CMakeLists.txt"):
         assert literal not in path.read_text(encoding="utf-8"), path
 
 
-def test_the_recipe_for_conda_needs_what_the_package_needs() -> None:
+def test_the_conda_recipe_requires_what_the_package_requires() -> None:
     rattler = pytest.importorskip("rattler_build", reason="there is no py-rattler-build")
     variant = rattler.VariantConfig({"c_stdlib": ["sysroot"], "cxx_compiler": ["gxx"]})
     (made,) = rattler.Stage0Recipe.from_file(ROOT / "recipe" / "recipe.yaml").render(variant)
@@ -178,7 +178,7 @@ def test_quick_tests_come_from_every_folder() -> None:
     assert {name.partition("/")[0] for name in QUICK} == folders
 
 
-def test_wheels_are_tried_by_tests_of_the_suite() -> None:
+def test_wheels_are_tested_with_existing_tests_of_the_suite() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     words = settings["tool"]["cibuildwheel"]["test-command"].split()
     names = [word.partition("}/")[2] for word in words if word.startswith("{project}/")]
@@ -196,7 +196,7 @@ def included(path: Path) -> list[str]:
     return re.findall(r"^\s*#\s*include\s*[<\"]([^>\"]+)[>\"]", text, re.MULTILINE)
 
 
-def test_only_the_bindings_know_python() -> None:
+def test_only_the_bindings_depend_on_python() -> None:
     assert any(name.startswith("pybind11/") for name in included(BINDINGS / "arrays.hpp"))
     assert len(CORE) > 20
     for path in CORE:
@@ -268,8 +268,8 @@ def test_the_architecture_page_names_every_room() -> None:
         assert f"`{room}" in page or not room, room
 
 
-def test_no_files_import_each_other_in_a_circle() -> None:
-    """Imports have no circle, neither at load time nor in functions, except for type checkers."""
+def test_no_files_import_each_other_circularly() -> None:
+    """Imports form no circle at load time or in functions, except for type checkers."""
     graph = {
         path.relative_to(PACKAGE).as_posix(): {other for other, _ in imported(path)}
         for path in PACKAGE.rglob("*.py")
@@ -280,7 +280,7 @@ def test_no_files_import_each_other_in_a_circle() -> None:
         TopologicalSorter(graph).prepare()
 
 
-def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
+def test_no_flag_lets_the_compiler_change_the_arithmetic() -> None:
     """-ffast-math breaks the compensated sums; -march=native would not run on other machines."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     for setting in ("-ffp-contract=off", "-fno-tree-vectorize", "EIGEN_DONT_VECTORIZE"):
@@ -309,7 +309,9 @@ def fused(tmp_path: Path) -> Callable[..., list[str]]:
     return instructions
 
 
-def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_path: Path) -> None:
+def test_the_compiler_fuses_only_what_is_written_as_fused(
+    fused: Callable[..., list[str]], tmp_path: Path
+) -> None:
     product = tmp_path / "product.cpp"
     product.write_text(COMPLEX_PRODUCTS)
     assert fused(product) == []
@@ -318,8 +320,9 @@ def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_pa
     assert len(fused(written)) == 1
 
 
-def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., list[str]]) -> None:
-    """A compiler would fuse packed numbers; what is fused without its vectors is written so."""
+def test_the_compiler_fuses_nothing_in_vectorized_sources(fused: Callable[..., list[str]]) -> None:
+    """A compiler would fuse packed numbers; what is fused without vectors is fused in the
+    source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"
     vectorized = [(name, flag) for names, flag in re.findall(properties, build)
@@ -333,7 +336,7 @@ def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., 
         assert packed == written and not any("addsub" in each for each in packed), name
 
 
-def test_every_source_is_built_and_included_once() -> None:
+def test_every_source_is_built_and_included_only_once() -> None:
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     build = "".join(re.findall(r"(?:add_library|add_module|target_sources)\([^)]*\)", build))
     for path in SOURCES:

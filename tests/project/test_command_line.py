@@ -84,14 +84,14 @@ def strict_json(text: str) -> dict[str, Any]:
 
 
 def named(text: str) -> dict[str, str]:
-    """Names and texts of the lines of a summary; texts begin in column 18."""
+    """Names and texts of the lines of a summary; texts start in column 18."""
     return {line[:17].rstrip(): line[18:] for line in text.splitlines()}
 
 
 # -------------------------------------------------------------------------------- summaries
 
 
-def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
+def test_the_command_without_options_runs_the_report_scene(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path)
     assert (code, err) == (0, "")
     lines = named(out)
@@ -112,7 +112,7 @@ def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
-def test_a_console_of_any_encoding_is_written_to(encoding: str, tmp_path: Path) -> None:
+def test_a_console_of_any_encoding_gets_the_output(encoding: str, tmp_path: Path) -> None:
     """Eleven events, a name that no such console knows, a problem with an accent, and a refusal."""
     told = {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
     falls = ["--theta", "0.4", "--friction", "0.2", "--omega", "4", "--slope", "0.1"]
@@ -124,7 +124,7 @@ def test_a_console_of_any_encoding_is_written_to(encoding: str, tmp_path: Path) 
     assert code == 2 and out == "" and "Traceback" not in err
 
 
-def test_json_on_stdout(tmp_path: Path) -> None:
+def test_json_is_printed_on_stdout(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path, "--json")
     assert (code, err) == (0, "")
     found = strict_json(out)
@@ -158,7 +158,7 @@ def test_options_change_the_scene_of_the_report(command: Any) -> None:
     assert " m in 1.5 s, " in command("--time", "1.5").out and command("--time", "0").code == 0
 
 
-def test_the_blow_stays_unless_the_start_is_given(command: Any) -> None:
+def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) -> None:
     """A lighter body gets the same blow; a speed replaces the blow, and so does another blow."""
     lighter = rl.scenes.report.replace(mass=8.0)
     found = strict_json(command("--mass", "8", "--json").out)
@@ -177,7 +177,7 @@ def test_the_blow_stays_unless_the_start_is_given(command: Any) -> None:
     assert both["distance"] == rl.simulate(pressed, 6.0).x[-1]
 
 
-def test_a_blow_beside_the_body_says_what_to_do(command: Any) -> None:
+def test_a_blow_that_misses_the_body_is_rejected_with_advice(command: Any) -> None:
     for options in (["--a", "1"], ["--theta", "1.5"]):
         code, out, err = command(*options)
         assert (code, out) == (2, "") and len(err.splitlines()) == 1
@@ -187,7 +187,7 @@ def test_a_blow_beside_the_body_says_what_to_do(command: Any) -> None:
     assert "--omega for" not in command("--press", "20", "2.5").err
 
 
-def test_model_and_method(command: Any) -> None:
+def test_model_and_method_can_be_chosen(command: Any) -> None:
     options = ["--model", "multipliers", "--method", "rk4", "--step", "0.01", "--time", "1"]
     found = strict_json(command(*options, "--json").out)
     assert (found["model"], found["method"]) == ("multipliers", "rk4")
@@ -200,7 +200,7 @@ def test_model_and_method(command: Any) -> None:
     assert (found["model"], found["period"]) == ("contact", rl.period(rl.scenes.report))
 
 
-def test_how_long_until_it_repeats(command: Any) -> None:
+def test_the_summary_states_when_the_motion_repeats(command: Any) -> None:
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     slides = "none: it slides, leaves the ground or hits it"
     for options, name, said in (
@@ -217,7 +217,7 @@ def test_how_long_until_it_repeats(command: Any) -> None:
         assert len({"full turn", "full swing", "swing or turn"} & set(lines)) == 1
 
 
-def test_what_is_written_is_said(command: Any, tmp_path: Path) -> None:
+def test_written_files_are_listed(command: Any, tmp_path: Path) -> None:
     """A figure whose path has no suffix is a PNG."""
     options = ["--plot", "overview", "--save", "roll.gif", "--time", "0.1"]
     lines = command(*options).out.splitlines()
@@ -275,7 +275,7 @@ def test_explore_writes_a_page_and_opens_it(
     assert (code, err) == (0, "") and out.splitlines()[1].startswith("no browser was found")
 
 
-def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
+def test_the_summary_says_where_rolling_ends(command: Any) -> None:
     """A motion whose rolling ends continues: the body slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
     assert (code, err) == (0, "")
@@ -284,11 +284,11 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]
-    assert "lift_off" in out and found["largest_gap"] < 1e-14  # the gap counts in contact only
+    assert "lift_off" in out and found["largest_gap"] < 1e-14  # the gap counts only in contact
     assert found["period"] is None and found["smallest_normal_force"] is None
 
 
-def test_a_slope_has_a_summary_too(command: Any) -> None:
+def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
     """A body on a slope rocks between two turning points."""
     assert "slope = 0.1 rad" in command("--slope", "0.1", "--omega", "3", "--time", "2").out
     rocks = ("--slope", "0.1", "--omega", "0.5", "--time", "2", "--json")
@@ -299,7 +299,7 @@ def test_a_slope_has_a_summary_too(command: Any) -> None:
     assert runs["distance"] > 0
 
 
-def test_extreme_motions_are_still_json(command: Any) -> None:
+def test_extreme_motions_still_give_standard_json(command: Any) -> None:
     """JSON has no infinite number: no friction limit, rest, contact lost, the separatrix."""
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
@@ -332,7 +332,7 @@ def test_extreme_motions_are_still_json(command: Any) -> None:
         ("explore --save no/such/page.html", "page.html"), ("explore --save .", "'.'"),
     ],
 )  # fmt: skip
-def test_bad_input_is_one_line_and_exit_code_2(
+def test_bad_input_gives_one_line_and_exit_code_2(
     command: Any, pages: list[Any], tmp_path: Path, arguments: str, named: str
 ) -> None:
     code, out, err = command(*arguments.split())
@@ -342,7 +342,7 @@ def test_bad_input_is_one_line_and_exit_code_2(
     assert len(err.splitlines()) == 1 and err.endswith("\n"), err
 
 
-def test_the_command_of_the_package(tmp_path: Path) -> None:
+def test_the_installed_command_runs_the_same_function(tmp_path: Path) -> None:
     """The script that pip installs is the same function under another name."""
     (script,) = entry_points(group="console_scripts", name="rolling-ellipse")
     assert script.load() is command_line.run
@@ -359,7 +359,7 @@ def test_the_command_of_the_package(tmp_path: Path) -> None:
         (" explore", [*SCENE_OPTIONS, "press", "time", "language", "save", "no-open"]),
     ],
 )
-def test_help(tmp_path: Path, command: str, options: list[str]) -> None:
+def test_help_lists_every_option(tmp_path: Path, command: str, options: list[str]) -> None:
     code, out, err = typed(tmp_path, *command.split(), "--help")
     assert (code, err) == (0, "") and out.startswith(f"usage: python -m rolling_ellipse{command}")
     assert "explore" in out and all(f"--{option}" in out for option in options)
@@ -369,7 +369,7 @@ def test_help(tmp_path: Path, command: str, options: list[str]) -> None:
 
 
 @pytest.mark.parametrize("text", ["-1e-3", "-.5e1", "-2", "-1E-3", "+2", "-0", "-.15E1"])
-def test_negative_numbers_as_they_are_written(command: Any, text: str) -> None:
+def test_negative_numbers_are_accepted_as_written(command: Any, text: str) -> None:
     code, out, err = command("--omega", text, "--time", "1", "--json")
     assert (code, err) == (0, "")
     scene = rl.Scene(2.0, 1.0, mass=10.0, omega=float(text))
@@ -395,7 +395,7 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
 
 @pytest.mark.parametrize("option", ["--save", "--plot"])
 @pytest.mark.parametrize("name", ["", ".", "folder.gif"])
-def test_what_is_no_file_is_refused_before_any_work(
+def test_an_impossible_file_is_rejected_before_any_work(
     command: Any, tmp_path: Path, monkeypatch: Any, option: str, name: str
 ) -> None:
     (tmp_path / "folder.gif").mkdir()
@@ -406,7 +406,7 @@ def test_what_is_no_file_is_refused_before_any_work(
 
 
 @pytest.mark.parametrize("option", ["--save=roll.gif", "--plot=overview.png"])
-def test_a_file_that_cannot_be_written_leaves_the_old_one(
+def test_a_failed_write_leaves_the_old_file(
     command: Any, tmp_path: Path, monkeypatch: Any, option: str
 ) -> None:
     path = tmp_path / option.split("=")[1]
@@ -428,7 +428,7 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one(
     ("program", "said"),
     [("/no/such/ffmpeg", "No such file"), ("/bin/false", "ffmpeg could not write 'roll.mp4'")],
 )
-def test_an_ffmpeg_that_does_not_work_is_one_line(tmp_path: Path, program: str, said: str) -> None:
+def test_a_broken_ffmpeg_gives_a_one_line_error(tmp_path: Path, program: str, said: str) -> None:
     code, out, err = typed(
         tmp_path, "--save", "roll.mp4", "--time", "0.1", IMAGEIO_FFMPEG_EXE=program
     )
@@ -444,7 +444,9 @@ def shell(folder: Path, command: str) -> Answer:
 
 @pytest.mark.parametrize("options", ["--json", "--help"])
 @pytest.mark.parametrize("unbuffered", ["PYTHONUNBUFFERED= ", "PYTHONUNBUFFERED=1 "])
-def test_where_nobody_reads_or_nothing_fits(tmp_path: Path, options: str, unbuffered: str) -> None:
+def test_a_closed_pipe_or_a_full_disk_ends_the_command_cleanly(
+    tmp_path: Path, options: str, unbuffered: str
+) -> None:
     late = f"{{ sleep 0.2; {unbuffered}roll {options}; }} | true"
     assert shell(tmp_path, late) == Answer(141, "", "")
     code, out, err = shell(tmp_path, f"{unbuffered}roll {options} > /dev/full")
@@ -453,13 +455,13 @@ def test_where_nobody_reads_or_nothing_fits(tmp_path: Path, options: str, unbuff
     assert len(err.splitlines()) == 1
 
 
-def test_with_closed_streams(tmp_path: Path) -> None:
+def test_the_command_works_with_closed_streams(tmp_path: Path) -> None:
     assert shell(tmp_path, "roll >&-") == Answer(0, "", "")
     assert shell(tmp_path, "roll --a -1 2>&-") == Answer(2, "", "")
 
 
-def test_interrupted_it_says_nothing(tmp_path: Path) -> None:
-    """Ctrl-C after the work has begun ends the command without an error text."""
+def test_an_interrupted_command_prints_nothing(tmp_path: Path) -> None:
+    """Ctrl-C during the work ends the command without an error message."""
     program = (
         "import os, signal, sys\n"
         "from rolling_ellipse import __main__ as command_line\n"

@@ -43,13 +43,13 @@ def printed(path: Path) -> str:
     return "".join("".join(output.get("text", "")) for output in outputs)
 
 
-def test_the_figures_of_the_pages_are_those_of_the_data(make: dict[str, Any]) -> None:
+def test_figures_on_the_pages_agree_with_the_data(make: dict[str, Any]) -> None:
     for name in make["PAGES"]:
         page = PROSE[f"{name}.md"]
         assert make["quoted"](page) == page, "docs/makers/make.py text"
 
 
-def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:
+def test_a_figure_edited_by_hand_is_detected(make: dict[str, Any]) -> None:
     page = PROSE["docs/speed.md"]
     part = next(found.group() for found in MARKED.finditer(page))
     digit = re.search(r"(\d)(?=\.\d)", part)
@@ -73,7 +73,7 @@ def test_the_chart_shows_the_data(name: str) -> None:
     assert source == hashlib.sha256(data).hexdigest(), "docs/makers/make.py pictures"
 
 
-def test_the_pages_of_problems_are_those_of_their_data(make: dict[str, Any]) -> None:
+def test_the_problem_pages_agree_with_their_data(make: dict[str, Any]) -> None:
     made = runpy.run_path(str(MAKERS / "problems.py"))
     page = (DOCS / "benchmark.md").read_text(encoding="utf-8")
     listed = make["with_part"](page, "problems", made["listed"]())
@@ -101,5 +101,5 @@ def test_no_measured_figure_is_typed_into_a_page(name: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["takes 3.1 µs", "12.9 × at 1e-02", "14 ns a sample", "0.2 ms"])
-def test_a_measured_figure_is_known(text: str) -> None:
+def test_a_measured_figure_is_recognized(text: str) -> None:
     assert MEASURED.search(text) and not MEASURED.search("25 × 16 blows in 6 s, 450 bytes, 1e-9 m")

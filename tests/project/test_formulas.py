@@ -30,12 +30,12 @@ DEFINED = [number for cell in CELLS for number in headings(cell)]
 CITED = {str(path): citations(path.read_text(encoding="utf-8")) for path in SOURCES}
 
 
-def test_citations_are_told_from_other_brackets() -> None:
+def test_citations_are_distinguished_from_other_brackets() -> None:
     text = "// h: physics (1)\n x = f(2);  // physics (23, 24); eq (5), physics of (6), (7)"
     assert citations(text) == [1, 23, 24]
 
 
-def test_each_number_is_defined_once_and_none_is_missing() -> None:
+def test_each_formula_number_is_defined_once_and_none_is_missing() -> None:
     assert list(range(1, len(DEFINED) + 1)) == DEFINED
     assert len(DEFINED) >= 30  # fewer: the search no longer recognises headings
 
@@ -49,12 +49,12 @@ def test_every_citation_is_defined() -> None:
     assert {name: numbers for name, numbers in undefined.items() if numbers} == {}
 
 
-def test_the_core_says_once_what_the_numbers_are() -> None:
+def test_the_core_explains_its_formula_numbers_in_one_file_only() -> None:
     texts = [(path.name, path.read_text(encoding="utf-8")) for path in SOURCES]
     assert [name for name, text in texts if "02_physics.ipynb" in text] == ["simulate.hpp"]
 
 
-def test_every_formula_is_shown_by_the_cell_below_it() -> None:
+def test_every_formula_is_checked_by_the_cell_below_it() -> None:
     """Each text cell has at most one formula; the code cell below it checks the same number."""
     for text, below in pairwise(CELLS):
         for number in headings(text):

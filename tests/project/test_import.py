@@ -92,7 +92,7 @@ def changed(deed: str) -> str:
 @pytest.mark.parametrize(
     "deed", [IMPORT, EVERY_NAME, USE], ids=["import", "every name", "motions and pictures"]
 )
-def test_the_process_is_left_as_it_was(deed: str) -> None:
+def test_the_package_leaves_the_process_state_unchanged(deed: str) -> None:
     assert changed(deed) == ""
 
 
@@ -111,5 +111,5 @@ def test_no_backend_is_chosen_without_a_picture() -> None:
     reason=f"numbers of x86-64 Linux, not of {sys.platform} on {platform.machine()}",
 )
 @pytest.mark.parametrize(("names", "deed"), DISTURBANCES.items(), ids=DISTURBANCES.keys())
-def test_what_is_disturbed_is_seen(names: str, deed: str) -> None:
+def test_a_disturbed_state_is_detected(names: str, deed: str) -> None:
     assert changed(deed) == names

@@ -1,8 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that a new thing of a kind needs.
 
-Things of that kind which are there already show it: the files that name all of them, found in the
-sources, must be those that the page names. A list of a file that moves fails, too. PLACES finds the
-code that depends on a law or a processor; these lists may name functions instead of files.
+Existing things of that kind show which: the files in the sources that name all of them must be
+those on the page. A list fails, too, if one of its files moves. PLACES finds the code that depends
+on a law or a processor; these lists may name functions instead of files.
 """
 
 import ast
@@ -85,7 +85,7 @@ KINDS = {
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
 
-# Patterns of code that depends on a thing. Each file with the pattern is in the list of the thing,
+# Patterns of code that depends on a thing. Each file with the pattern is on the list of the thing,
 # or contains a name of that list.
 PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
@@ -128,7 +128,7 @@ def holding(words: list[str]) -> set[Path]:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_page_names_the_files_that_a_new_one_needs(kind: str) -> None:
+def test_the_page_names_every_file_that_an_addition_must_change(kind: str) -> None:
     words, beside = KINDS[kind]
     expected = holding(words) | {ROOT / name for name in beside}
     if kind == "a method":  # peers have methods of that name
@@ -150,17 +150,17 @@ def words_of(path: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", PLACES)
-def test_the_page_names_the_places_of_a_thing(kind: str) -> None:
+def test_the_page_names_every_file_that_depends_on_each_kind_of_addition(kind: str) -> None:
     files = named_by_the_page(kind)
     names = set() if kind == "a model" else named(entry(kind))  # its list has every file
     sources = [ROOT / "CMakeLists.txt", *CORE.rglob("*.[ch]pp"), *PACKAGE.rglob("*.py")]
     found = [path for path in sources if re.search(PLACES[kind], path.read_text(encoding="utf-8"))]
     assert len(found) >= 3
-    found = [path for path in found if path.parent.name != "multipliers"]  # a model's own folder
+    found = [path for path in found if path.parent.name != "multipliers"]  # the folder of a model
     assert not [path for path in found if path not in files and not names & words_of(path)]
 
 
-def test_every_name_on_the_page_is_one_of_the_sources() -> None:
+def test_every_name_on_the_page_occurs_in_the_sources() -> None:
     folders = (CORE, PACKAGE, PEERS, ROOT / "tests")
     sources = (path for folder in folders for path in folder.rglob("*"))
     known = [words_of(path) for path in sources if path.suffix in (".cpp", ".hpp", ".py", ".pyi")]
@@ -169,7 +169,7 @@ def test_every_name_on_the_page_is_one_of_the_sources() -> None:
     assert names <= set().union(*known)
 
 
-def test_every_list_is_held() -> None:
+def test_every_list_is_tested() -> None:
     """Except lists of things that do not exist yet, and of files that share no word."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
     assert listed == {*KINDS, *PLACES, *UNTESTED}

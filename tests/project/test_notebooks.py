@@ -1,4 +1,4 @@
-"""The notebooks are committed with their output, small, and run again without an error."""
+"""The notebooks are committed with their output, small, and run again without errors."""
 
 import json
 from pathlib import Path
@@ -19,7 +19,7 @@ def code_cells(path: Path) -> list[nbformat.NotebookNode]:
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_is_committed_as_it_ran(path: Path) -> None:
+def test_a_notebook_is_committed_as_it_ran(path: Path) -> None:
     cells = code_cells(path)
     assert [cell.execution_count for cell in cells] == list(range(1, len(cells) + 1))
     outputs = [output for cell in cells for output in cell.outputs]
@@ -30,7 +30,7 @@ def test_notebook_is_committed_as_it_ran(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_is_plain(path: Path) -> None:
+def test_a_notebook_has_no_traces_of_a_particular_machine(path: Path) -> None:
     """A notebook is valid, has Jupyter's standard kernel, and no traces of a machine."""
     notebook = json.loads(path.read_text(encoding="utf-8"))
     nbformat.validate(notebook)
@@ -41,12 +41,12 @@ def test_notebook_is_plain(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_ends_in_an_assertion(path: Path) -> None:
+def test_a_notebook_ends_in_an_assertion(path: Path) -> None:
     assert "assert " in code_cells(path)[-1].source
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_runs(path: Path, tmp_path: Path) -> None:
+def test_a_notebook_runs_without_an_error(path: Path, tmp_path: Path) -> None:
     """In a folder with the files that come with the package, and nothing else."""
     rl.examples(tmp_path)
     notebook = nbformat.read(tmp_path / path.name, 4)

@@ -51,7 +51,9 @@ def test_every_library_takes_part_or_is_missing_for_a_reason(found: Any) -> None
     assert len({peer.name for peer in installed}) == len(installed)
 
 
-def test_a_broken_installation_is_missing_with_its_message(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_broken_installation_is_reported_with_its_message(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def broken(name: str, package: str | None = None) -> Any:
         raise (
             OSError("libsomething.so: not today")
@@ -66,7 +68,7 @@ def test_a_broken_installation_is_missing_with_its_message(monkeypatch: pytest.M
     assert missing["scipy"].endswith("is not installed")
 
 
-def test_no_library_is_loaded_before_it_is_asked_for() -> None:
+def test_no_library_is_loaded_before_it_is_needed() -> None:
     folder = str(Path(peers.__file__).parents[1])
     heavy = {"numpy", "scipy", "numba", "heyoka", "rebound", "jax", "sksundae"}
     script = f"import sys; sys.path.insert(0, {folder!r}); import peers; "
@@ -74,7 +76,7 @@ def test_no_library_is_loaded_before_it_is_asked_for() -> None:
     subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
 
 
-def test_every_peer_reaches_the_exact_motion(found: Any) -> None:
+def test_every_peer_reproduces_the_exact_motion(found: Any) -> None:
     for peer in found[0]:
         run = peer.prepare(R, T, TOLERANCE)
         first = run()
@@ -83,7 +85,7 @@ def test_every_peer_reaches_the_exact_motion(found: Any) -> None:
         assert all(count >= 0 for count in run.counts.values()), peer.name
 
 
-def test_samples_are_those_of_the_motion(found: Any) -> None:
+def test_samples_agree_with_the_motion(found: Any) -> None:
     times = [0.0, 0.25 * T, 0.5 * T, 0.5 * T, T]
     exact = [exact_end(t) for t in times]
     for peer in found[0]:
@@ -93,7 +95,7 @@ def test_samples_are_those_of_the_motion(found: Any) -> None:
 
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
-def test_peers_and_the_package_agree_on_slopes(found: Any, slope: float) -> None:
+def test_peers_and_the_package_agree_for_motions_on_slopes(found: Any, slope: float) -> None:
     scene = Scene(2.0, 1.0, slope=slope, theta=0.2, omega=2.0, x=1.0)
     end = simulate(scene, [0.7], model="rolling", method="dop853", rtol=1e-13, atol=1e-15)
     exact = end.theta[-1], end.omega[-1], end.x[-1]
@@ -101,7 +103,7 @@ def test_peers_and_the_package_agree_on_slopes(found: Any, slope: float) -> None
         assert largest(peer.prepare(scene, 0.7, TOLERANCE)(), exact) < BOUND, peer.name
 
 
-def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
+def test_scenes_that_do_not_roll_are_rejected(found: Any) -> None:
     slides = Scene(2.0, 1.0, friction=0.01, omega=3.0, x_dot=1.0)
     flies = Scene(2.0, 1.0, z=5.0)
     assert slides.initial_state.mode is Mode.SLIDING
@@ -113,8 +115,8 @@ def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
             peer.prepare(R, math.inf, TOLERANCE)
 
 
-def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
-    """A peer with gravity 1e-3 too strong has an error equal to the difference of exact motions."""
+def test_a_peer_with_a_wrong_equation_is_detected() -> None:
+    """A peer with gravity 1e-3 too strong errs by the difference of the two exact motions."""
 
     def wrong(theta: Any, omega: Any, body: Any) -> Any:
         return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))
@@ -125,7 +127,9 @@ def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
     assert abs(largest(end, exact_end(T)) - difference) < 2 * BOUND
 
 
-def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_quick_benchmark_lists_every_contender(
+    found: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The benchmark's judge is independent of the package, and its table has every contender.
 
     An hour is allowed, so that the result does not depend on the load of the machine.
@@ -144,7 +148,7 @@ def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None
     assert "best peer / best of package" in printed and "is unbeaten" in printed
 
 
-def test_the_judge_sees_a_small_error() -> None:
+def test_the_judge_detects_a_small_error() -> None:
     """The judge shares no line with exact rolling, and agrees with it to a few roundings of 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
@@ -153,8 +157,8 @@ def test_the_judge_sees_a_small_error() -> None:
     assert moved[0] == pytest.approx(1e-3 * exact_end(T)[1], rel=1e-2)
 
 
-def test_a_race_downhill_ends_after_its_half_turns() -> None:
-    """There the half turns become shorter and shorter."""
+def test_a_downhill_race_ends_after_the_stated_number_of_half_turns() -> None:
+    """Downhill, half turns become shorter and shorter."""
     scene = bench_peers.SCENES["S"]
     first, end = (bench_peers.end_of(scene, n) for n in (1.37, 10.37))
     theta = simulate(scene, [first]).theta[0]

@@ -34,11 +34,13 @@ NUMBERS: dict[str, tuple[float | None, float, float]] = {  # found, known, relat
 
 
 @pytest.mark.parametrize(("found", "number", "error"), NUMBERS.values(), ids=NUMBERS)
-def test_numbers(found: float, number: float, error: float) -> None:
+def test_physical_values_agree_to_all_known_digits(
+    found: float, number: float, error: float
+) -> None:
     assert found == pytest.approx(number, rel=error, abs=0)
 
 
-def test_path_of_the_centre_in_space() -> None:
+def test_the_centre_path_agrees_with_project_euler_525() -> None:
     """Project Euler 525: the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
     integral of |d(x, h)/d theta| = r; here by the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
@@ -49,7 +51,7 @@ def test_path_of_the_centre_in_space() -> None:
     assert round(way, 8) == 21.38816906
 
 
-def test_no_roll_over_by_rolling_alone_above_9_753() -> None:
+def test_no_body_above_an_aspect_of_9_753_rolls_over_by_rolling_alone() -> None:
     """N at the roll-over speed reaches 0 for a/b = 9.7532168."""
     ratio = 9.7532168
     for change, possible in ((-1e-7, True), (1e-7, False)):

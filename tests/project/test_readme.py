@@ -31,7 +31,7 @@ PAGES = {  # with the files that their code writes
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # the guides show it
 @pytest.mark.parametrize("page", PAGES)
-def test_the_lines_of_a_page_run(
+def test_the_code_of_a_page_runs(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -46,7 +46,7 @@ def test_the_lines_of_a_page_run(
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_the_residuals_of_a_guide_are_those_that_its_code_prints(
+def test_the_residuals_in_a_guide_agree_with_its_printed_output(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """Within a factor of 2, by which other C libraries may change a rounding."""
@@ -61,7 +61,7 @@ def test_the_residuals_of_a_guide_are_those_that_its_code_prints(
     assert np.all((ratios >= 0.5) & (ratios <= 2))
 
 
-def test_the_tables_of_reference_have_as_many_motions_as_it_says() -> None:
+def test_the_reference_tables_have_the_stated_number_of_motions() -> None:
     """A motion has three lines in the table of slopes, and one for each event in the last table."""
     page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
     said = dict(re.findall(r"\| `(\w+)_reference\.csv` \| (\d+) ", page))
@@ -70,14 +70,14 @@ def test_the_tables_of_reference_have_as_many_motions_as_it_says() -> None:
     assert [*map(int, said.values())] == motions
 
 
-def test_the_readme_is_short_and_its_links_lead_somewhere() -> None:
+def test_the_readme_is_short_and_its_links_work() -> None:
     linked = re.findall(r"\]\((?:https://.+?/(?:raw|blob)/main/)?([^)#]+)", README)
     assert len(linked) > 20 and all((ROOT / path).exists() for path in linked)
     assert len(README.splitlines()) <= 129
 
 
-def test_one_command_writes_the_address(tmp_path: Path) -> None:
-    """A second address takes the place of the first."""
+def test_one_command_writes_the_site_address_everywhere(tmp_path: Path) -> None:
+    """A second address replaces the first."""
     names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml")
     (tmp_path / "recipe").mkdir()
     write = runpy.run_path(str(ROOT / "tools" / "address.py"))["write"]

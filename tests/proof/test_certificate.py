@@ -101,7 +101,7 @@ def reduced_start(sample: Sample) -> tuple[Long, Long]:
 # ---------------------------------------------------------------- the oracle by itself
 
 
-def test_oracle_forces_against_differentiated_energy() -> None:
+def test_oracle_forces_agree_with_the_differentiated_energy() -> None:
     """Newton's law in long double agrees with 40-digit derivatives of h and omega^2(theta)."""
     mp.mp.dps = DIGITS
     sample, _ = random_sample(60, 99)
@@ -135,8 +135,8 @@ def test_oracle_extremes_do_not_depend_on_the_sampling() -> None:
     assert np.all(off <= 1e-3 * fine.needed_error[finite])
 
 
-def test_the_random_scenes_meet_every_case(judged: list[Judged]) -> None:
-    """The random scenes contain every case, so that the tests of verdicts prove something."""
+def test_the_random_scenes_cover_every_case(judged: list[Judged]) -> None:
+    """The random scenes contain every case, so that the tests of verdicts are meaningful."""
     samples = [chunk.sample for chunk in judged]
     needed = np.concatenate([chunk.truth.needed for chunk in judged])
     friction = np.concatenate([sample.friction for sample in samples])
@@ -159,7 +159,7 @@ def test_the_random_scenes_meet_every_case(judged: list[Judged]) -> None:
 # ------------------------------------------------------------------------------ the claims
 
 
-def test_no_false_verdict(judged: list[Judged]) -> None:
+def test_no_verdict_is_wrong(judged: list[Judged]) -> None:
     """VALID and INVALID are never wrong; EDGE, for cases that rounding leaves open, occurs only
     within EDGE_MARGIN of a threshold, and rarely."""
     edges = 0
@@ -182,7 +182,7 @@ def test_no_false_verdict(judged: list[Judged]) -> None:
     assert edges < 0.002 * SCENES
 
 
-def test_smallest_normal_force(judged: list[Judged]) -> None:
+def test_the_smallest_normal_force_agrees_with_the_oracle(judged: list[Judged]) -> None:
     for chunk in judged:
         known = chunk.validity != Validity.NO_PROOF
         off = np.abs(chunk.normal - chunk.truth.normal)
@@ -191,12 +191,12 @@ def test_smallest_normal_force(judged: list[Judged]) -> None:
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[known], chunk.sample.b[known])
         there = oracles.rolling.forces(chunk.sample.motion(known), *sides)
-        # an extreme is flat, or an ulp of its angle moves it: 1e-6 of the terms allows both
+        # an extreme is flat, or an ulp of its angle moves it: 1e-6 of the terms covers both
         slack = 1e6 * there.normal_error
         assert np.all(np.abs(there.normal - chunk.truth.normal[known]) <= slack)
 
 
-def test_largest_friction_needed(judged: list[Judged]) -> None:
+def test_the_largest_friction_needed_agrees_with_the_oracle(judged: list[Judged]) -> None:
     """|F/N| has the errors of both forces, divided by N; it is inf where N reaches 0."""
     for chunk in judged:
         known = chunk.validity != Validity.NO_PROOF
@@ -215,7 +215,7 @@ def test_largest_friction_needed(judged: list[Judged]) -> None:
         assert np.all(near | ~sturdy)
 
 
-def test_ends_at_is_given_for_what_ends(judged: list[Judged]) -> None:
+def test_ends_at_is_given_only_where_rolling_ends(judged: list[Judged]) -> None:
     for chunk in judged:
         given = np.isfinite(chunk.ends_at)
         assert not np.any(given & (chunk.validity == Validity.VALID))
@@ -288,8 +288,8 @@ def assert_ends_there(
     assert around[1] < 0, "still unbroken after"
 
 
-def test_ends_at_is_the_first_end(judged: list[Judged]) -> None:
-    """`ends_at` is the first angle where the law breaks, for scenes that break it by 1e-4 of the
+def test_ends_at_is_the_first_violation_of_the_law(judged: list[Judged]) -> None:
+    """`ends_at` is the first angle where the law fails, for scenes that violate it by 1e-4 of the
     forces (the law is crossed, not grazed), on 1200 points per quarter turn."""
     checked = 0
     for chunk in judged:
@@ -309,7 +309,7 @@ def test_ends_at_is_the_first_end(judged: list[Judged]) -> None:
     assert checked >= 1000
 
 
-def test_ends_at_beside_the_tip_with_little_weight() -> None:
+def test_ends_at_is_right_near_a_nearly_weightless_tip() -> None:
     """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad beside the tip, already needs
     more friction than there is: the angle resolves this distance, h does not."""
     scene = Scene(
@@ -349,7 +349,7 @@ def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
     ],
     ids=["flat", "tip", "standing axes, tip", "standing axes, flat", "F = 0", "standing, F = 0"],
 )
-def test_next_to_no_friction_will_do_where_none_is_needed(
+def test_a_little_friction_suffices_for_a_moment_where_none_is_needed(
     a: float, b: float, theta: float, side: int, friction: float
 ) -> None:
     """Rolling starts flat, on the tip or where F vanishes, and ends after an angle of the order of
@@ -379,7 +379,7 @@ def test_next_to_no_friction_will_do_where_none_is_needed(
 @pytest.mark.parametrize("beside", [1e-13, 1e-9, 1e-5])
 @pytest.mark.parametrize("speed", [-2.0, -0.9, 0.0, 1.0])
 @pytest.mark.parametrize("b", [1.9, 1.001, 40.0])
-def test_a_fall_from_beside_the_tip_ends_where_the_law_does(
+def test_a_fall_from_near_the_tip_stops_rolling_where_the_law_fails(
     b: float, speed: float, beside: float
 ) -> None:
     """A body that falls, turns back first or crosses the tip stops rolling at the right angle and
@@ -403,8 +403,8 @@ def test_a_fall_from_beside_the_tip_ends_where_the_law_does(
 
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
-def test_a_wrong_end_is_noticed(shift: float) -> None:
-    """The judge rejects wrong ends: grip is lost at 0.2488 rad here, and nowhere near."""
+def test_a_wrong_end_is_detected(shift: float) -> None:
+    """The judge rejects wrong ends: grip is lost at 0.2488 rad here and nowhere else nearby."""
     scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
     moving = oracles.rolling.motion(
         *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
@@ -416,7 +416,7 @@ def test_a_wrong_end_is_noticed(shift: float) -> None:
         assert_ends_there(moving, 0.2, 0.0, 2.0, ends + shift)
 
 
-def test_a_hairs_breadth_from_the_threshold() -> None:
+def test_a_verdict_very_close_to_the_threshold_is_edge_or_correct() -> None:
     """Friction 1e-13, 1e-14 or 1e-15 from the needed one gives EDGE, or the true verdict."""
     said_edge = 0
     for seed in range(3):
@@ -437,7 +437,7 @@ def test_a_hairs_breadth_from_the_threshold() -> None:
 
 @pytest.mark.parametrize("friction", [math.inf, 0.5, 1e-9])
 @pytest.mark.parametrize("omega", [0.0, 2.0, -1e3])
-def test_a_circle_rolls_for_ever(friction: float, omega: float) -> None:
+def test_a_circle_rolls_forever(friction: float, omega: float) -> None:
     found = certify(Scene(1.5, 1.5, mass=2.0, omega=omega, friction=friction))
     assert found.validity is Validity.VALID and found.ends_at is None
     # N = m g exactly, but omega^2 (rho - h) may contain the rounding of rho - h = 0
@@ -446,7 +446,7 @@ def test_a_circle_rolls_for_ever(friction: float, omega: float) -> None:
     assert found.largest_friction_needed == pytest.approx(0.0, abs=rounding / 9.81)
 
 
-def test_a_circle_needs_next_to_no_friction() -> None:
+def test_a_circle_needs_almost_no_friction() -> None:
     """A circle rolls with any friction; without friction its contact slides from the start."""
     scene = Scene(1.5, 1.5, omega=2.0, theta=0.7, friction=1e-300)
     assert certify(scene).validity is Validity.VALID
@@ -463,9 +463,9 @@ EQUILIBRIA = [
 
 
 @pytest.mark.parametrize(("a", "b", "theta"), EQUILIBRIA)
-def test_at_rest_in_equilibrium(a: float, b: float, theta: float) -> None:
-    """A body at rest stays there for ever, since next to no friction is needed: NO_PROOF is
-    allowed, INVALID is not. The forces of a body lying flat are exact."""
+def test_a_body_at_rest_in_equilibrium_is_never_invalid(a: float, b: float, theta: float) -> None:
+    """A body at rest stays there forever, since almost no friction is needed: NO_PROOF is allowed,
+    INVALID is not. The forces of a body lying flat are exact."""
     scene = Scene(a, b, mass=3.0, theta=theta)
     for friction in (math.inf, 0.8):
         found = certify(scene.replace(friction=friction))
@@ -492,7 +492,7 @@ def test_at_rest_in_equilibrium(a: float, b: float, theta: float) -> None:
         ),
     ],
 )
-def test_what_cannot_even_start_to_roll_has_no_proof_of_it(scene: Scene) -> None:
+def test_a_body_that_cannot_start_to_roll_is_not_certified(scene: Scene) -> None:
     found = certify(scene)
     assert found.validity in (Validity.INVALID, Validity.NO_PROOF)
     assert found.ends_at == (scene.theta if found.validity is Validity.INVALID else None)
@@ -509,13 +509,13 @@ def test_what_cannot_even_start_to_roll_has_no_proof_of_it(scene: Scene) -> None
     ],
     ids=["in the air", "over a slope", "leaving", "sliding", "sliding after the blow"],
 )
-def test_no_proof_where_it_does_not_roll(scene: Scene) -> None:
+def test_a_body_that_does_not_roll_gets_no_proof(scene: Scene) -> None:
     found = certify(scene)
     assert found.validity is Validity.NO_PROOF
     assert found.reason
 
 
-def test_the_state_after_the_blow_is_what_is_certified() -> None:
+def test_the_certificate_judges_the_state_after_the_blow() -> None:
     """The certificate belongs to the 3.2 rad/s of rolling after the report's blow, not to rest or
     to the free body's 5.76 rad/s, which cannot roll on."""
     struck = certify(Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)))

@@ -99,10 +99,10 @@ def random_scene(rng: np.random.Generator) -> Scene:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_verdict_is_false(seed: int) -> None:
+def test_no_verdict_is_wrong(seed: int) -> None:
     """In 60 scenes per seed VALID is right, and INVALID names the angle of the scan.
 
-    A scan misses violations narrower than the distance of its angles, 1e-3 rad. They are less deep
+    A scan misses violations narrower than the spacing of its angles, 1e-3 rad. They are shallower
     than 1e-5 of the forces: these need 0.01 rad or more to change by their own size.
     """
     rng = np.random.default_rng(seed)
@@ -128,7 +128,7 @@ def test_no_verdict_is_false(seed: int) -> None:
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_a_nearly_round_body_rolls_far(direction: int) -> None:
+def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction: int) -> None:
     """The last half turn of a long roll agrees with the minimum of a bound over the angle.
 
     Downhill the law holds in half turn n as long as W + n w stays below W_plus at every angle,
@@ -162,7 +162,7 @@ def test_a_nearly_round_body_rolls_far(direction: int) -> None:
     assert there == pytest.approx(math.floor(found.ends_at / math.pi), abs=0.5)
 
 
-def test_constant_forces() -> None:
+def test_constant_forces_have_an_exact_friction_threshold() -> None:
     """Needed friction is tan(slope) k^2/(k^2 + a^2) = tan(slope)/3 of a disc, tan(slope) at rest:
     VALID just above, INVALID just below, EDGE at it."""
     incline = math.tan(0.2)
@@ -177,7 +177,7 @@ def test_constant_forces() -> None:
             assert found.smallest_normal_force == pytest.approx(GRAVITY * math.cos(0.2), rel=1e-14)
 
 
-def test_a_swing_has_extremes_and_all_else_none() -> None:
+def test_extremes_are_stated_only_for_rocking() -> None:
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.4, omega=0.0)
     found = certify(scene)
     motion = rl.simulate(scene, np.linspace(0, rl.period(scene), 20001))
@@ -213,7 +213,9 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
-def test_nearly_round_on_a_steep_slope(roundness: float) -> None:
+def test_a_nearly_round_body_on_a_steep_slope_rolls_until_its_normal_force_vanishes(
+    roundness: float,
+) -> None:
     """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself vanishes, not before."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     ended = 0
@@ -230,7 +232,7 @@ def test_nearly_round_on_a_steep_slope(roundness: float) -> None:
         found = motion.sol(np.linspace(0.0, end, 1001))
         force = found.normal_force / scene.mass
         size = GRAVITY * math.cos(slope) + 2 * roundness * np.max(found.omega**2)
-        # some roundings of theta'', of the size of gravity, and of h', of the size of the roundness
+        # some roundings of theta'', as large as gravity, and of h', as large as the roundness
         rounding = 64 * EPS * (size + roundness * GRAVITY) * (1 + np.abs(found.theta).max())
         assert np.all(force >= -rounding) and abs(force[-1]) <= rounding
     assert ended >= 10

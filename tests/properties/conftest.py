@@ -1,10 +1,10 @@
-"""Number and choice of the examples of the properties.
+"""Number and choice of the examples for each property.
 
-The suite draws the same few examples of each property every time. Any number of new ones:
+The suite draws the same few examples of each property every time. For any number of new ones:
 
     ROLLING_ELLIPSE_EXAMPLES=5000 pytest tests/properties
 
-A failure is printed as its smallest example, with a line that draws it again.
+A failure is printed as its smallest example, with a line that reproduces it.
 """
 
 import os

@@ -20,7 +20,7 @@ def rolling_scenes(draw: Any) -> Scene:
 
 
 @given(st.data())
-def test_more_friction_never_ends_a_rolling(data: Any) -> None:
+def test_more_friction_never_ends_rolling_sooner(data: Any) -> None:
     """The set of states that the ground holds only grows with mu: valid rolling stays valid, and an
     end of rolling never comes sooner."""
     scene = data.draw(rolling_scenes())
@@ -39,7 +39,7 @@ def test_more_friction_never_ends_a_rolling(data: Any) -> None:
 
 
 @given(st.data())
-def test_the_ground_holds_what_it_holds_with_the_friction_that_is_required(data: Any) -> None:
+def test_the_required_friction_is_just_enough(data: Any) -> None:
     scene = data.draw(rolling_scenes())
     needed = required_friction(scene)
     assume(1e-200 < needed < 1e5)  # a millionth of less than 1e-200 may be subnormal
@@ -56,7 +56,7 @@ def test_the_ground_holds_what_it_holds_with_the_friction_that_is_required(data:
 
 
 @given(st.data())
-def test_neither_mass_nor_units_nor_a_mirror_change_the_answer(data: Any) -> None:
+def test_neither_mass_nor_units_nor_mirroring_changes_the_answer(data: Any) -> None:
     scene = data.draw(rolling_scenes())
     units = (*(data.draw(st.integers(-12, 12)) for _ in range(3)),)
     mirror = scene.replace(theta=-scene.theta, omega=-scene.omega, slope=-scene.slope)
@@ -88,7 +88,7 @@ def test_thresholds_grow_with_friction(data: Any) -> None:
     friction = data.draw(FRICTIONS)
     more = friction + data.draw(powers(-16, 3))
     one, other = thresholds(**body, friction=friction), thresholds(**body, friction=more)
-    # each speed is a root of its own polynomial, to roundings
+    # each speed is the root of a separate polynomial, to within roundings
     assert other.slip_speed >= one.slip_speed * (1 - 1e-12)
     assert other.slip_speed <= other.contact_loss_speed * (1 + 1e-12)
     assert (one.roll_over_speed, one.contact_loss_speed) == (

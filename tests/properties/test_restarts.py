@@ -1,6 +1,6 @@
-"""What a motion returns can be a start: of the mode that follows, with the events that are left.
+"""Whatever a motion returns can be a start, in the mode that follows and with the events to come.
 
-Ends, samples, states after events and scenes on the way are handed on as numbers, as scenes made by
+Ends, samples, states after events and scenes on the way are passed on as numbers, as scenes made by
 `scene_at`, and in arrays. Among bounces that are summed a start may count one impact more.
 """
 
@@ -28,7 +28,7 @@ from rolling_ellipse import (
 
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 BODY = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution")
-# What the ground leaves free: the rest follows from it.
+# Numbers that the ground leaves free; the others follow from them.
 FREE = {
     Mode.ROLLING: STATE[:3], Mode.REST: STATE[:3],
     Mode.SLIDING: (*STATE[:3], "x_dot"), Mode.FLIGHT: STATE,
@@ -39,7 +39,7 @@ Kinds = list[EventKind]
 
 @st.composite
 def turned_scenes(draw: Any) -> Scene:
-    """Scenes of every kind, some turned so far that their motions come to 1e9 rad."""
+    """Scenes of every kind, some turned so far that their motions reach 1e9 rad."""
     scene = draw(scenes())
     if draw(st.booleans()):
         theta = 0.9 * draw(powers(0, 9)) * draw(st.sampled_from([-1.0, 1.0]))
@@ -52,7 +52,7 @@ def turned_scenes(draw: Any) -> Scene:
 
 
 def handed_on(scene: Scene, state: Any, names: tuple[str, ...] = STATE) -> Scene:
-    """The scene that starts with these numbers of a state."""
+    """The scene that starts from these numbers of a state."""
     given: dict[str, Any] = {name: float(getattr(state, name)) for name in names}
     return Scene(**{name: getattr(scene, name) for name in BODY}, **given)
 
@@ -80,7 +80,7 @@ def beside(scene: Scene) -> Iterator[Scene]:
 
 
 def left_of(motion: Trajectory, t: float) -> float:
-    """Time that is left of a motion; some more of it if the motion ends in a jam."""
+    """Remaining time of a motion, or a little more if it ends in a jam."""
     more = 1e-6 if motion.status is Status.JAMMED else 0.0
     return motion.t_end * (1 + more) - t
 
@@ -128,9 +128,9 @@ def hits(scene: Scene, impact: Any) -> bool:
 
 @settings(suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_an_end_continues_like_the_motion(data: Any) -> None:
+def test_a_motion_continued_from_its_end_follows_the_uninterrupted_motion(data: Any) -> None:
     """The events of two parts are those of the whole, and both ends agree to the roundings of the
-    two starts: of the numbers of the scene, and of the state that is handed on."""
+    two starts: of the numbers of the scene, and of the state that is passed on."""
     scene = data.draw(turned_scenes())
     grain = 2.0 ** (math.frexp(clock(scene))[1] - 10)  # sums of such times are exact
     first, second = (data.draw(st.integers(1, 4000)) * grain for _ in range(2))
@@ -186,7 +186,7 @@ def test_an_end_continues_like_the_motion(data: Any) -> None:
 
 @settings(suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_every_event_is_a_start(data: Any) -> None:
+def test_a_motion_can_restart_after_every_event(data: Any) -> None:
     """A state after an event continues without repeating it: as numbers, a sample, and a scene."""
     scene = data.draw(turned_scenes())
     motion = simulate(scene, data.draw(powers(-1, 1.2)) * clock(scene), **ENOUGH)
@@ -212,7 +212,7 @@ def test_every_event_is_a_start(data: Any) -> None:
 
 @settings(suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_a_motion_cut_at_an_event_continues_with_what_is_due(data: Any) -> None:
+def test_a_motion_cut_at_an_event_continues_with_that_event(data: Any) -> None:
     """An impact is the first event. Another change may happen as a tie, without an event."""
     scene = data.draw(turned_scenes())
     span = data.draw(powers(-1, 1.2)) * clock(scene)
@@ -238,7 +238,7 @@ def test_a_motion_cut_at_an_event_continues_with_what_is_due(data: Any) -> None:
 
 @settings(suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_only_scene_at_starts_with_an_impact(data: Any) -> None:
+def test_only_scenes_from_scene_at_may_start_with_an_impact(data: Any) -> None:
     """Just before an impact a scene on the way hits at t = 0, or a moment later; the same numbers
     typed by hand move into the ground."""
     scene = data.draw(turned_scenes())

@@ -16,7 +16,7 @@ MOST_HALF_TURNS = 1e9
 
 
 def leave_equilibria_out(motion: dict[str, float]) -> None:
-    """Reject a body at rest near an equilibrium: within 8 ulp of it the body stays for ever, a
+    """Reject a body at rest near an equilibrium: within 8 ulp of it the body stays forever, a
     rounding farther it does not, and no bound covers both."""
     roundness = abs(motion["a"] / motion["b"] - motion["b"] / motion["a"])
     leaning = roundness * abs(math.sin(2 * motion["theta"]))
@@ -32,7 +32,7 @@ def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> 
 
 
 @given(st.data())
-def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
+def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
     """x -> -x changes no bit: the arithmetic has no side."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
@@ -43,9 +43,9 @@ def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
 
 
 @given(st.data())
-def test_backwards_is_forwards_with_the_speed_turned_round(data: Any) -> None:
-    """A motion backwards in time equals one with opposite speed, to rounding: its phase is counted
-    from the other side."""
+def test_a_backward_motion_equals_a_forward_one_with_reversed_speed(data: Any) -> None:
+    """A motion backwards in time equals one with opposite speed to within rounding: its phase is
+    counted from the other side."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -56,7 +56,7 @@ def test_backwards_is_forwards_with_the_speed_turned_round(data: Any) -> None:
 
 
 @given(st.data())
-def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
+def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
     """Units of length and time change no bits: computed values are dimensionless or products."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
@@ -77,7 +77,7 @@ def in_units(motion: dict[str, float], metre: float, second: float) -> dict[str,
 
 
 @given(st.data())
-def test_units_of_any_size_leave_the_motion(data: Any) -> None:
+def test_units_of_any_size_do_not_change_the_motion(data: Any) -> None:
     """Units of any size change the motion by no more than the rounding of its inputs."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
@@ -90,7 +90,7 @@ def test_units_of_any_size_leave_the_motion(data: Any) -> None:
 
 
 @given(st.data())
-def test_axes_may_change_their_names(data: Any) -> None:
+def test_exchanging_the_axes_equals_a_quarter_turn(data: Any) -> None:
     """A body with a and b exchanged is the same body a quarter turn on."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
@@ -104,7 +104,7 @@ def test_axes_may_change_their_names(data: Any) -> None:
 
 
 @given(st.data())
-def test_half_a_turn_shows_the_same_body(data: Any) -> None:
+def test_half_a_turn_gives_the_same_body(data: Any) -> None:
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -116,7 +116,7 @@ def test_half_a_turn_shows_the_same_body(data: Any) -> None:
 
 
 @given(st.data())
-def test_two_moves_are_one(data: Any) -> None:
+def test_two_successive_time_spans_equal_their_sum(data: Any) -> None:
     """A move by t1, then by t2, equals one by t1 + t2, to the errors of the intermediate state, as
     t2 changes them, and of both results."""
     motion = data.draw(motions())
@@ -141,7 +141,7 @@ def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyrat
 
 
 @given(st.data())
-def test_energy_stays_for_a_milliard_half_turns(data: Any) -> None:
+def test_energy_is_constant_for_a_billion_half_turns(data: Any) -> None:
     """The energy is known as well as theta and omega: an ulp of a large angle is a motion."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
@@ -156,7 +156,7 @@ def test_energy_stays_for_a_milliard_half_turns(data: Any) -> None:
 
 
 @given(st.data())
-def test_phase_space_keeps_its_volume(data: Any) -> None:
+def test_phase_space_volume_is_conserved(data: Any) -> None:
     """det d(theta, D omega)/d(theta0, D0 omega0) = 1, with D the inertia about the contact.
 
     The derivatives are central differences over s and 2s: one Richardson step leaves errors of the

@@ -55,7 +55,7 @@ def mirrored(scene: Scene) -> Scene:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @given(st.data())
-def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
+def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     how = data.draw(st.sampled_from(METHODS if rolls(scene) else METHODS[:2]))
@@ -79,7 +79,7 @@ def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
 
 
 @given(st.data())
-def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
+def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
     """Units of length, time and mass change no bits, on a slope, too, and through all events."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
@@ -92,7 +92,7 @@ def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
 
 
 @given(st.data())
-def test_where_it_starts_along_the_ground_changes_nothing_else(data: Any) -> None:
+def test_a_shift_along_the_ground_changes_only_x(data: Any) -> None:
     """A shift along the ground is only added to x, to the rounding of the sum."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
@@ -173,7 +173,7 @@ def turned_round(at: Sample) -> dict[str, float]:
 
 
 @given(st.data())
-def test_a_motion_without_friction_goes_back_where_it_came_from(data: Any) -> None:
+def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> None:
     """A reversed motion with e = 1 and mu = 0 passes its events in the opposite order.
 
     The bound is the change of the start when the motion is off by roundings at any of its times.

@@ -103,7 +103,9 @@ def is_refusal(name: str | type[Exception], found: Provoked) -> bool:
     return begins and ends and isinstance(found.error, ValueError | TypeError)
 
 
-def test_each_call_is_refused_by_name(all_provoked: list[Provoked]) -> None:
+def test_each_invalid_call_is_rejected_with_the_name_of_the_argument(
+    all_provoked: list[Provoked],
+) -> None:
     wrong = [
         f"{name}: {found.error!r}"
         for (name, _), found in zip(TABLE, all_provoked, strict=True)
@@ -112,7 +114,7 @@ def test_each_call_is_refused_by_name(all_provoked: list[Provoked]) -> None:
     assert wrong == [], "\n".join(wrong)
 
 
-def test_a_picture_that_is_refused_leaves_no_figure(all_provoked: list[Provoked]) -> None:
+def test_a_rejected_picture_leaves_no_figure(all_provoked: list[Provoked]) -> None:
     assert all_provoked and pyplot.get_fignums() == []
 
 
@@ -144,7 +146,7 @@ AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
         ("mean stronge?", lambda: ours.impacts.collide(**HIT, a=1, b=1, law="Strong")),
     ],
 )
-def test_a_word_of_habit_is_answered_with_ours(said: str, call: Any) -> None:
+def test_a_familiar_but_wrong_word_is_answered_with_the_right_one(said: str, call: Any) -> None:
     with pytest.raises((TypeError, AttributeError, ValueError)) as caught:
         call()
     assert said in str(caught.value)
@@ -163,7 +165,7 @@ def raising(path: Path) -> Iterator[tuple[int, int, str]]:
             yield node.lineno, node.end_lineno or node.lineno, text  # type: ignore[attr-defined]
 
 
-def test_no_raise_of_the_package_is_out_of_reach(all_provoked: list[Provoked]) -> None:
+def test_every_raise_of_the_package_can_be_reached(all_provoked: list[Provoked]) -> None:
     reached = {place for found in all_provoked for place in found.lines}
     missed = []
     total = 0
@@ -193,7 +195,7 @@ def thrown_texts(path: Path) -> Iterator[str]:
         yield from re.findall(r'"([^"]*)"', statement)
 
 
-def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> None:
+def test_every_message_of_the_core_can_be_reached(all_provoked: list[Provoked]) -> None:
     said = "\n".join(found.message for found in all_provoked)
     missed, total = [], 0
     for path in sorted((ROOT / "src").rglob("*.?pp")):
@@ -205,7 +207,7 @@ def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> No
     assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
 
 
-def test_what_is_listed_as_out_of_reach_is_there() -> None:
+def test_texts_listed_as_unreachable_exist() -> None:
     sources = "".join(
         path.read_text(encoding="utf-8")
         for folder, kind in (("python", "*.py"), ("src", "*.?pp"))

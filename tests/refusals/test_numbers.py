@@ -106,20 +106,20 @@ def refused(error: type[Exception], name: str, requirement: str, door: Door, val
 
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
-def test_what_is_no_number(name: str, door: Door) -> None:
+def test_a_value_that_is_not_a_number_is_rejected(name: str, door: Door) -> None:
     for value in NO_NUMBERS:
         if value is not None or name not in OPTIONAL:
             refused(TypeError, name, "a number", door, value)
 
 
 @names(SCALAR_DOORS)
-def test_one_number_is_no_array_of_one(name: str, door: Door) -> None:
+def test_an_array_of_one_element_is_rejected_as_a_number(name: str, door: Door) -> None:
     for value in ([2.0], (2.0,), np.array([2.0]), np.array([[2]]), np.ma.array([2.0])):
         refused(TypeError, name, "a number", door, value)
 
 
 @names(ARRAY_DOORS)
-def test_what_is_no_array_of_numbers(name: str, door: Door) -> None:
+def test_a_value_that_is_not_an_array_of_numbers_is_rejected(name: str, door: Door) -> None:
     for value in NO_ARRAYS:
         refused(TypeError, name, "a number or an array of numbers", door, value)
     refused(TypeError, name, "plain numbers", door, [np.ma.masked, 1.0])
@@ -129,26 +129,26 @@ def test_what_is_no_array_of_numbers(name: str, door: Door) -> None:
 
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
-def test_what_no_double_can_hold(name: str, door: Door) -> None:
+def test_a_number_that_no_double_can_hold_is_rejected(name: str, door: Door) -> None:
     for value in BEYOND:
         refused(ValueError, name, "within the range of doubles", door, value)
 
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
-def test_masked_entries(name: str, door: Door) -> None:
+def test_masked_entries_are_rejected(name: str, door: Door) -> None:
     for value in MASKED:
         refused(TypeError, name, "plain numbers in SI units, none masked", door, value)
 
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
-def test_what_has_units(name: str, door: Door) -> None:
+def test_a_number_with_units_is_rejected(name: str, door: Door) -> None:
     """Units are never converted or removed: plain numbers in SI units are required."""
     for value in quantities(2.0):
         refused(TypeError, name, "plain numbers in SI units", door, value)
 
 
 @names(ARRAY_DOORS)
-def test_arrays_that_have_units(name: str, door: Door) -> None:
+def test_an_array_with_units_is_rejected(name: str, door: Door) -> None:
     many = quantities([0.25, 0.5])
     two: list[Any] = [[many[0], 1.0], (1.0, [many[2]]), deque(quantities(2.0)[:2])]
     for value in (*many, *two):
@@ -156,7 +156,7 @@ def test_arrays_that_have_units(name: str, door: Door) -> None:
 
 
 @names(ARRAY_DOORS)
-def test_more_axes_than_numpy_broadcasts(name: str, door: Door) -> None:
+def test_more_axes_than_numpy_can_broadcast_are_rejected(name: str, door: Door) -> None:
     endless: list[Any] = []
     endless += [endless, endless]
     deep: list[Any] = []
@@ -167,7 +167,7 @@ def test_more_axes_than_numpy_broadcasts(name: str, door: Door) -> None:
         refused(ValueError, name, "at most 32 axes, got [[[[", door, value)
 
 
-def test_numbers_of_every_kind() -> None:
+def test_numbers_of_every_type_are_converted_to_doubles() -> None:
     """Numbers of any type count as their doubles, alone and in arrays."""
     numbers: list[Any] = [
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
@@ -212,7 +212,7 @@ def test_numbers_of_every_kind() -> None:
     ],
     ids=lambda value: f"{check.shown(value):.20}",
 )  # fmt: skip
-def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
+def test_conversion_in_pieces_equals_conversion_at_once(
     value: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pieces of 16 numbers give the result of pieces of 131072. No call of NumPy takes more of a
@@ -244,7 +244,7 @@ def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
         assert max(taken, default=0) <= 16
 
 
-def test_a_message_forms_no_more_of_a_value_than_it_shows() -> None:
+def test_a_message_formats_no_more_of_a_value_than_it_shows() -> None:
     asked = 0
 
     class Entry:

@@ -25,7 +25,7 @@ def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
 
 
 @pytest.mark.parametrize("options", [{}, {"consistent": "refuse"}, {"stabilization": "none"}])
-def test_corrected_refuses_and_names_every_violation(options: dict[str, Any]) -> None:
+def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) -> None:
     message = f"^q and q_dot must meet the constraints at t = 0, got {OWN_VIOLATIONS}$"
     with pytest.raises(ValueError, match=message):
         corrected(OWN_Q, OWN_RATES, 1.0, **options)
@@ -45,7 +45,7 @@ def test_corrected_projects_the_reports_own_start() -> None:
 
 
 def test_corrected_projects_to_the_nearest_state() -> None:
-    """Of all angles, and then of all rates at the angle, none is nearer in the kinetic metric."""
+    """No other angle, and no other rates at that angle, are nearer in the kinetic metric."""
     q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
     motion = corrected(q, q_dot, [0.0], consistent="project", mass=3.0)
     there, rates = motion.q[0], motion.q_dot[0]
@@ -76,10 +76,10 @@ def test_corrected_projects_to_the_nearest_state() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("which", [3, 4])
 @pytest.mark.parametrize("off", [1.0, 1e10, -1e20, 1e50])
-def test_how_far_off_psi_and_r_are_moves_no_body_that_is_projected(
+def test_errors_in_psi_and_r_do_not_move_a_projected_body(
     stabilization: str, which: int, off: float
 ) -> None:
-    """psi and r have no mass and no place in a circle's equations of motion: it rolls on."""
+    """psi and r have no mass and do not enter a circle's equations of motion: it rolls on."""
     q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
     given = np.where(np.arange(5) == which, q + off, q)
     motion = as_given(given, q_dot, [0.01, 0.02], a=1.5, b=1.5, stabilization=stabilization)
@@ -88,7 +88,7 @@ def test_how_far_off_psi_and_r_are_moves_no_body_that_is_projected(
     assert motion.x == pytest.approx(q[0] + 0.3 * motion.t, rel=1e-14, abs=1e-15)
 
 
-def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
+def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
     with pytest.warns(report.InconsistentStartWarning) as caught:
         motion = corrected(
             OWN_Q, OWN_RATES, np.linspace(0, 2, 21), consistent="as_given", stabilization="none"
@@ -105,8 +105,8 @@ def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     assert np.max(np.abs(held.gap)) > 1
 
 
-def test_no_time_of_a_motion_that_starts_off_the_constraints_is_valid() -> None:
-    """Also of one that leaves the ground by 1e-6 m/s only, with forces that the ground can give."""
+def test_a_motion_that_starts_off_the_constraints_is_never_valid() -> None:
+    """Not even if it leaves the ground at only 1e-6 m/s, with forces that the ground can give."""
     motion = lifted(0.5)
     assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
     assert motion.message == "the start violates the constraints, as no body on the ground does"
@@ -126,7 +126,7 @@ LAWS = {  # gap over time from (gap, its rate) = (0, 1) or (0.1, 0)
 
 @pytest.mark.parametrize(("stabilization", "law"), LAWS.items(), ids=LAWS)
 @pytest.mark.parametrize(("gap", "rate"), [(0.0, 1.0), (0.1, 0.0)])
-def test_what_becomes_of_an_inconsistent_start(
+def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
     stabilization: str, law: Any, gap: float, rate: float
 ) -> None:
     """A body lifted or thrown off the ground: without stabilization the gap persists or grows."""
@@ -142,8 +142,8 @@ def test_what_becomes_of_an_inconsistent_start(
 
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
-def test_corrected_is_the_model_multipliers(method: Any, stabilization: Any) -> None:
-    """From the same start, to the bit; tests/multipliers holds that model to exact rolling."""
+def test_corrected_equals_the_multipliers_model(method: Any, stabilization: Any) -> None:
+    """From the same start, bit for bit; tests/multipliers holds that model to exact rolling."""
     times = np.linspace(0, 3, 31)
     scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
     how: dict[str, Any] = {"method": method, "stabilization": stabilization}
@@ -155,7 +155,7 @@ def test_corrected_is_the_model_multipliers(method: Any, stabilization: Any) -> 
         assert np.array_equal(getattr(motion, name), getattr(same, name))
 
 
-def test_corrected_has_defaults_of_its_own() -> None:
+def test_corrected_has_its_own_defaults() -> None:
     default = corrected(Q, Q_DOT, [1.0])
     assert (default.settings.method, default.settings.stabilization) == ("dop853", "projection")
     assert (default.settings.rtol, default.settings.atol) == (1e-8, 1e-10)

@@ -1,8 +1,7 @@
-"""The errata of the report: each row by two numbers, its equations one by one.
+"""The errata of the report: each row by two numbers, then the equations one by one.
 
-The right numbers are held against closed forms written down here once more, from h and its
-derivatives (oracles/geometry.py), with psi and r by r cos(psi - theta) = h and
-r sin(psi - theta) = h'.
+The right numbers are compared with closed forms written out again here, from h and its derivatives
+(oracles/geometry.py), with psi and r by r cos(psi - theta) = h and r sin(psi - theta) = h'.
 """
 
 import math
@@ -92,7 +91,7 @@ def zero(scale: float) -> Any:
 ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # velocity of the geometric contact: x_dot + d/dt h' = (h + h'') omega = rho omega
     "eqs 9, 10, f1": lambda at: (at.rho * at.omega, 0, at.h * at.omega),
-    # r sin (psi_dot - theta_dot) cancels in the right row; the printed one keeps twice of it
+    # r sin (psi_dot - theta_dot) cancels in the right row; the printed one keeps twice this term
     "eq 32, df2, row 2": lambda at: (
         -2 * at.slope * (at.psi_dot - at.omega), 0, at.slope * at.psi_dot,
     ),
@@ -146,13 +145,13 @@ def rolled(first: float, last: float) -> float:
 
 
 @pytest.mark.parametrize("where", ROWS)
-def test_a_row_is_off_by_its_misprint(where: str) -> None:
+def test_each_erratum_gives_the_printed_and_the_correct_value(where: str) -> None:
     found, (printed, right, scale) = numbers(where), ROWS[where](Exact(ANGLE))
     assert found.printed == (close(printed) if printed else zero(scale))
     assert found.right == (close(right) if right else zero(scale))
 
 
-def test_rates_beyond_the_doubles_are_infinite() -> None:
+def test_overflowing_rates_are_infinite() -> None:
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 1.0, **SHAPE)
     assert np.array_equal(np.abs(rates) > 1, [True, True, False, True, True])
@@ -160,7 +159,7 @@ def test_rates_beyond_the_doubles_are_infinite() -> None:
     assert np.array_equal(beyond, [-math.inf, math.inf, -1.7e308, math.inf, math.inf])
 
 
-def test_f1_frozen_means_no_advance() -> None:
+def test_a_frozen_f1_lets_the_body_spin_on_the_spot() -> None:
     """With f1 = 0 the body spins on the spot: x + h' stays constant while theta grows."""
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
@@ -170,12 +169,12 @@ def test_f1_frozen_means_no_advance() -> None:
     assert np.ptp(contact) < 1e-6  # 0.5 s with an error of 1e-8 a step
 
 
-def test_the_cases_are_wrong_in_the_third_quadrant() -> None:
+def test_the_printed_cases_are_wrong_in_the_third_quadrant() -> None:
     found, at = numbers("section 2.2, cases 1 and 2"), Exact(4.0)
     assert found.printed == close(-at.slope) and found.right == close(at.slope)
     fourth = numbers("section 2.2, case 2 and Figure 8")
     assert fourth.right == close(Exact(5.5).slope) and fourth.printed == -fourth.right > 0
-    # f2 has a sign of its own on the arctan's branches
+    # f2 has its own sign on the branches of the arctan
     for theta, sign in ((0.7, 1), (2.0, 1), (4.0, -1), (5.5, 1)):
         lead = float(report.case_lead(theta, **SHAPE))
         assert lead == pytest.approx(sign * Exact(theta).slope, rel=1e-14)
@@ -183,7 +182,7 @@ def test_the_cases_are_wrong_in_the_third_quadrant() -> None:
         assert (cosine < 0) == (math.pi / 2 < theta < 3 * math.pi / 2)
 
 
-def test_eq_38_has_another_f1_than_eq_10() -> None:
+def test_eq_38_uses_a_different_f1_from_eq_10() -> None:
     """The printed f1 is rho omega too large; f3 and f4 are right."""
     at = Exact(ANGLE)
     q, q_dot = rl.kinematics(ANGLE, at.omega, **SHAPE)
@@ -212,9 +211,9 @@ def test_lambda3_divides_by_zero() -> None:
         assert report.constraint_rates(q, q_dot, a=body["a"], b=1.0) == zero(10)
 
 
-def test_lambda4_vanishes() -> None:
-    """It is printed with b^2 too much in the divisor, and with the wrong sign of g; on the exact
-    motion no force is left for it."""
+def test_the_correct_lambda4_vanishes() -> None:
+    """It is printed with an extra b^2 in the divisor, and with the wrong sign of g; on the exact
+    motion it vanishes."""
     found, at = numbers("eq 39, λ4"), Exact(ANGLE, b=0.8)
     assert found.printed == close(-at.couple * math.cos(ANGLE) ** 2 / (4 * 0.8**2))
     assert found.right == zero(abs(found.printed))
@@ -227,7 +226,7 @@ def test_lambda4_vanishes() -> None:
     assert left[2] == zero(30)
 
 
-def test_f_lost_terms() -> None:
+def test_f_of_eq_40_lacks_terms_of_eq_42() -> None:
     """The difference of eq 40 from all the terms of eq 42 is its lost terms; F itself is
     4 a^2 b^2 h' N by the moments about the contact."""
     found, at = numbers("eqs 40, 42"), Exact(ANGLE)
@@ -242,7 +241,7 @@ def test_f_lost_terms() -> None:
 
 
 def lost(q: Array, q_ddot: Array, a: float, b: float, mass: float, **_: float) -> float:
-    """Eq 40 less all the terms of eq 42."""
+    """Eq 40 minus all the terms of eq 42."""
     (_, _, theta, psi, r), (x, z, spin, _, _) = q, q_ddot
     m, c2, t2 = mass, math.cos(theta) ** 2, math.tan(theta) ** 2
     sine, cosine = r * math.sin(psi - theta), r * math.cos(psi - theta)
@@ -279,7 +278,7 @@ def test_tan_is_infinite_at_a_quarter_turn() -> None:
     assert found.printed > 1e30 and found.right == close(16.0)
 
 
-def test_appendix_b_has_another_radius() -> None:
+def test_appendix_b_has_a_wrong_radius() -> None:
     found, at = numbers("appendix B"), Exact(ANGLE)
     assert found.right == close(math.hypot(at.h, at.slope))
     assert found.gap < -0.5
@@ -290,20 +289,20 @@ def test_appendix_b_has_another_radius() -> None:
     assert printed - q[0] == pytest.approx(at.slope * found.printed / found.right, rel=1e-13)
 
 
-def test_eq_48_is_right_on_ice_only() -> None:
+def test_eq_48_is_right_only_on_ice() -> None:
     found = numbers("eqs 45–48")
     assert found.printed == close(5.76) and found.right == close(3.2)
     on_ice = rl.Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=rl.Impulse.press(48.0, 1.5))
     assert on_ice.initial_state.omega == close(found.printed)
 
 
-def test_back_substitution_sees_nothing() -> None:
+def test_back_substitution_does_not_detect_the_misprints() -> None:
     found = numbers("section 4.2.2, Figure 11")
     assert found.printed < 1e-7  # tolerance 1e-12 a step, 10 kg, accelerations up to 1e3
     assert found.right > 0.09
 
 
-def test_a_broken_solution_is_seen_by_back_substitution() -> None:
+def test_back_substitution_detects_a_changed_solution() -> None:
     """Back substitution notices a solution that was changed."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
@@ -313,20 +312,20 @@ def test_a_broken_solution_is_seen_by_back_substitution() -> None:
     assert motion.back_substitution()[0, 1] == pytest.approx(-1e-3, rel=1e-3)
 
 
-def test_an_even_turning_tests_no_rates() -> None:
+def test_a_uniform_rotation_does_not_test_the_rates() -> None:
     """f2 and f3 hold on theta = t; f1 as printed is rho theta_dot, at most a^2/b."""
     found = numbers("section 4.2.2, θ = t")
     assert found.printed == zero(2.0) and found.right == close(4.0)
 
 
-def test_psi_is_discontinuous_by_its_branch() -> None:
+def test_psi_jumps_at_the_branch_cut_of_its_arctan() -> None:
     found, at = numbers("section 4.2.2, Figure 12"), Exact(2.0)
     assert found.right == close(at.psi) and found.gap == close(-math.pi)
     theta = np.linspace(-10, 10, 4001)
     assert np.max(np.abs(np.diff(report.eq_5(theta, **SHAPE)))) > 3.1
 
 
-def test_figure_13_rolls_over_too_early() -> None:
+def test_the_body_in_figure_13_rolls_over_too_early() -> None:
     found = numbers("Figure 13")
     assert found.printed == 1 and found.right == close(math.sqrt(2 * 9.81 / 2.25))
     slow, fast = (rl.simulate(rl.Scene(2.0, 1.0, omega=w), 5.0) for w in (1.0, 3.0))
@@ -336,13 +335,13 @@ def test_figure_13_rolls_over_too_early() -> None:
     assert abs(math.sin(fast.theta[flat])) < 0.02 and abs(math.cos(fast.theta[tall])) < 0.02
 
 
-def test_every_row_is_in_the_table() -> None:
+def test_every_erratum_is_in_the_table() -> None:
     lines = report.errata_table().splitlines()
     errata = report.errata()
     assert len({e.where for e in errata}) == len(errata)
     assert lines[1] == "|---|---|---|---|---:|---:|" and len(lines) == 2 + len(errata)
     for line, erratum in zip(lines[2:], errata, strict=True):
-        assert line.count("|") == 7  # no text has one of its own: it would end a cell
+        assert line.count("|") == 7  # no text contains one, which would end a cell
         cells = [cell.strip() for cell in line.strip("|").split(" | ")]
         assert cells[:4] == [erratum.where, erratum.printed, erratum.finding, erratum.quantity]
         found = erratum.evaluate()
@@ -363,7 +362,7 @@ def accelerations(motion: rl.Trajectory) -> Array:
     return np.stack(columns, axis=1)
 
 
-def test_right_equations_hold_on_an_exact_motion() -> None:
+def test_the_right_equations_hold_on_an_exact_motion() -> None:
     motion = trajectory()
     shape, q_ddot = {"a": 2.0, "b": 0.7}, accelerations(motion)
     forces = report.multipliers(motion.q, q_ddot, **UNEVEN)
@@ -378,7 +377,7 @@ def test_right_equations_hold_on_an_exact_motion() -> None:
     assert np.all(np.abs(rates) <= 100 * EPS * (terms + 1))
 
 
-def test_multipliers_are_those_of_the_package() -> None:
+def test_multipliers_equal_those_of_the_package() -> None:
     """F, N, lambda3 of rows equal to 2 (...)^(3/2) times grad f3, and lambda4 = 0 are found."""
     motion = trajectory()
     forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
@@ -390,7 +389,7 @@ def test_multipliers_are_those_of_the_package() -> None:
     assert np.max(np.abs(forces[:, 3])) < 1e-12 * scale
 
 
-def test_right_rows_are_the_gradients_of_f1_to_f4() -> None:
+def test_the_right_rows_are_the_gradients_of_f1_to_f4() -> None:
     """Rows times rates equal scale times `constraints`, at any state, also off the constraints."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
@@ -401,7 +400,7 @@ def test_right_rows_are_the_gradients_of_f1_to_f4() -> None:
     assert np.allclose(rates, scales * velocity, rtol=1e-12, atol=1e-12)
 
 
-def test_printed_f1_to_f4_on_an_exact_motion() -> None:
+def test_the_printed_constraints_hold_only_in_part_on_an_exact_motion() -> None:
     motion = trajectory()
     shape = {"a": 2.0, "b": 0.7}
     assert np.max(np.abs(report.f2(motion.q))) < 1e-14
@@ -417,7 +416,7 @@ def test_printed_f1_to_f4_on_an_exact_motion() -> None:
     assert np.any(second) and np.array_equal(mixed, np.where(second, one, two))
 
 
-def test_misprints_change_what_they_name() -> None:
+def test_misprints_change_only_the_entries_they_name() -> None:
     q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     right = report.constraint_matrix(q, a=2.0, b=0.7, printed=())
     entries = {"f1": {(0, 3), (0, 4)}, "df2": {(1, 2), (1, 3)}, "df3": {(2, 3), (2, 4)},
@@ -446,7 +445,7 @@ def f_of_eq_42(q: Array, q_ddot: Array, a: float, b: float, mass: float, gravity
     )  # fmt: skip
 
 
-def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
+def test_eq_42_has_all_the_terms_missing_from_eq_40() -> None:
     q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
     complete = float(report.complete_f(q, q_ddot, **UNEVEN))

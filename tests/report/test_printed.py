@@ -31,7 +31,9 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
-def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass: float) -> None:
+def test_wrong_equations_lift_the_body_off_the_ground(
+    printed: tuple[str, ...], gap: float, mass: float
+) -> None:
     """Cause (a): wrong equations lift the body off, from their own start, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     loose, tight = (
@@ -48,7 +50,7 @@ def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass:
     assert np.array_equal(tight.constraint_residuals().gap, tight.gap)
 
 
-def test_right_rows_give_the_exact_motion() -> None:
+def test_the_right_rows_give_the_exact_motion() -> None:
     q, q_dot = start(0.2, 2.0)
     times = np.linspace(0, 3, 31)
     motion = run(q, q_dot, times, printed=(), rtol=1e-11, atol=1e-11)
@@ -60,8 +62,8 @@ def test_right_rows_give_the_exact_motion() -> None:
     assert np.max(np.abs(motion.energy / motion.energy[0] - 1)) < 1e-9
 
 
-def test_an_inconsistent_start_lifts_it_off() -> None:
-    """Cause (b): from z_dot one too large, right equations give f2 = t with f2'' = 0."""
+def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
+    """Cause (b): with z_dot too large by one, right equations give f2 = t with f2'' = 0."""
     q, q_dot = start(0.2, 2.0)
     q_dot[1] += 1.0
     times = np.linspace(0, 1, 11)
@@ -74,7 +76,7 @@ def test_an_inconsistent_start_lifts_it_off() -> None:
     assert projected.start.q_dot_change[1] < -0.5
 
 
-def test_large_steps_lift_it_off() -> None:
+def test_large_steps_lift_the_body_off_the_ground() -> None:
     """Cause (c): right equations with large RK4 steps give 0.84 m and +40 % after 60 s."""
     q, q_dot = start(0.0, 3.2)
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
@@ -89,19 +91,19 @@ def test_large_steps_lift_it_off() -> None:
     assert errors[2] < 1e-4
 
 
-def test_samples_do_not_steer() -> None:
+def test_samples_do_not_change_the_steps() -> None:
     """Samples do not change the steps; between steps the pair has dense output of order 4."""
     q, q_dot = start(0.2, 2.0)
     few = run(q, q_dot, [0.5, 1.0], printed=())
     many = run(q, q_dot, np.linspace(0, 1, 101), printed=())
     assert np.array_equal(few.q, many.q[[50, 100]])
     exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), many.t)
-    # rtol is 1e-8; dense output has one order less than the steps
+    # rtol is 1e-8; dense output is one order lower than the steps
     assert np.max(np.abs(many.q - exact.q)) < 1e-6
     assert run(q, q_dot, 0.1, printed=()).t.size == 1001
 
 
-def test_a_singular_sample_takes_nothing_from_those_before() -> None:
+def test_a_singular_sample_leaves_earlier_samples_intact() -> None:
     """Far off the constraints the system becomes singular in doubles, after a quarter second."""
     how: dict[str, Any] = {"consistent": "as_given", "method": "rk4", "step": 0.01}
     with pytest.warns(report.InconsistentStartWarning):
@@ -109,14 +111,14 @@ def test_a_singular_sample_takes_nothing_from_those_before() -> None:
     assert motion.t[-1] >= 0.25
 
 
-def test_ten_steps_of_a_tenth_reach_the_end() -> None:
+def test_ten_steps_of_a_tenth_of_a_second_reach_the_end() -> None:
     """The sum of ten steps of 0.1 is an ulp less than 1."""
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [1.0], printed=(), method="rk4", step=0.1)
     assert motion.t.tolist() == [1.0] and motion.message == ""
 
 
-def test_max_steps() -> None:
+def test_a_printed_motion_stops_at_max_steps() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 1.0], printed=(), max_steps=3)
     assert motion.t.tolist() == [0.0] and motion.message.startswith("max_steps reached at 0.")
@@ -137,7 +139,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
         options: dict[str, Any] = {"a": a, "b": b, "printed": printed, "max_steps": 1}
         assert run(q, q_dot, 0.0, **options).start.violations == ()
-        for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is noticed
+        for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is detected
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
             with pytest.raises(ValueError, match="must meet the constraints"):
@@ -148,10 +150,10 @@ def test_exact_starts_are_consistent_and_others_are_not(
             run(q, faster, 0.0, **options)
 
 
-def test_the_reports_own_start_is_refused_by_name() -> None:
+def test_the_reports_own_start_is_rejected_naming_its_violations() -> None:
     """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit.
 
-    test_corrected.py has what right rows say of it.
+    test_corrected.py shows what the right rows make of it.
     """
     q, q_dot = [0, 1, 0, 0, 1], [0, 1, 1, 1.5, 0]
     code = "f1 as printed = 0.5 m/s; rate of f2 as printed = 1 m/s; rate of f4 as printed = 5.5"
@@ -159,13 +161,13 @@ def test_the_reports_own_start_is_refused_by_name() -> None:
         run(q, q_dot, 1.0)
 
 
-def test_motion_says_what_it_is() -> None:
+def test_the_repr_of_a_motion_states_its_equations() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 0.1], printed=())
     assert repr(motion).startswith("<PrintedMotion: 2 samples, t = 0 ... 0.1 s, as printed: none")
 
 
-def test_as_many_states_everywhere() -> None:
+def test_leading_axes_of_states_broadcast_or_are_rejected() -> None:
     """Leading axes of states broadcast, or a refusal names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
     of_body = (report.eq_39, report.eq_40, report.eq_41, report.eq_42, report.lambda4_numerator,
@@ -185,7 +187,7 @@ def test_as_many_states_everywhere() -> None:
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4"])
-def test_a_step_that_cannot_change_the_time(method: Any) -> None:
+def test_tiny_steps_reach_the_end_of_a_short_motion(method: Any) -> None:
     motion = report.simulate(
         Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14,
         method=method,

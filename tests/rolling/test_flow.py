@@ -1,7 +1,7 @@
 """`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
 The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
-nothing with the package. A unit is the effect of one rounding of every input on an answer, plus two
+no code with the package. A unit is the effect of one rounding of every input on an answer, plus two
 ulp of the answer; test_flow_reference.py allows LARGEST_ERROR units, too.
 """
 
@@ -18,6 +18,7 @@ from oracles.flow import LARGEST_ERROR, MOTIONS, PARAMETERS, Motion
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
+from runs import ROUNDING
 
 DIGITS = 40
 each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
@@ -47,7 +48,7 @@ def period_unit(motion: Motion) -> float:
         if change:
             ends = [(*motion[:i], value + sign * change, *motion[i + 1 :]) for sign in (1, -1)]
             up, down = (exact_period(end, 12) for end in ends)
-            total += abs(up - down) / (2 * small) * reference.ROUNDING
+            total += abs(up - down) / (2 * small) * ROUNDING
     return float(total) + 2 * math.ulp(float(exact_period(motion, 12)))
 
 
@@ -55,14 +56,14 @@ def period_unit(motion: Motion) -> float:
 
 
 @each_motion
-def test_the_oracle_has_thirty_digits(motion: Motion) -> None:
-    """Two rules of different order agree: the coarser one's error is far above the finer one's."""
+def test_the_oracle_is_accurate_to_thirty_digits(motion: Motion) -> None:
+    """Two rules of different order agree: the coarser errs far more than the finer."""
     coarse, fine = exact_period(motion), exact_period(motion, 40)
     assert abs(coarse - fine) <= mp.mpf("1e-30") * fine
 
 
 @each_motion
-def test_period_against_the_energy_integral(motion: Motion) -> None:
+def test_the_period_agrees_with_the_energy_integral(motion: Motion) -> None:
     a, b, gyration2, gravity, theta, omega = motion
     scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
     exact, unit = exact_period(motion), period_unit(motion)
@@ -71,15 +72,15 @@ def test_period_against_the_energy_integral(motion: Motion) -> None:
     assert off <= LARGEST_ERROR
 
 
-def test_the_unit_of_the_period_is_sharp() -> None:
-    """A change of the speed by 16 ulp is noticed: the bound is not wide."""
+def test_the_period_test_detects_a_speed_off_by_16_ulp() -> None:
+    """A change of the speed by 16 ulp is detected: the bound is tight."""
     motion = MOTIONS["rotation"]
     changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
     off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
     assert off > LARGEST_ERROR
 
 
-def test_period_of_rest_and_of_a_circle() -> None:
+def test_the_period_is_infinite_at_rest_and_one_full_turn_for_a_circle() -> None:
     assert period(Scene(2.0, 1.0)) == math.inf
     assert period(Scene(2.0, 1.0, theta=math.pi / 2)) == math.inf
     assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
@@ -105,7 +106,7 @@ def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
 @pytest.mark.parametrize(
     ("theta", "omega"), [(0.3, 2.0), (0.3, -1e-3), (1.0, 1e-6), (0.2, 0.0), (1.5, 0.0)]
 )
-def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) -> None:
+def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> None:
     """The unit contains no roundings of a and b, which alone would change the slow motions by 1e-8:
     a - b = 1e-8 is an exact difference of the given numbers."""
     a, b = 1.0 + 1e-8, 1.0
@@ -127,9 +128,9 @@ def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) ->
 
 @pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9), (1.0, 1e-3)])
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
-def test_rest_stays_at_the_flat_and_on_the_tip(shape: tuple[float, float], quarter: int) -> None:
-    """Rest lasts for ever where the double next to the quarter turn is an equilibrium: |h'| within
-    8 ulp of h. At pi or 5 pi/2 it may be none: the body rocks by the rounding of the angle."""
+def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], quarter: int) -> None:
+    """Rest lasts forever where the double next to the quarter turn is an equilibrium: |h'| within 8
+    ulp of h. At pi or 5 pi/2 it may be none: the body rocks by the rounding of the angle."""
     theta = quarter * math.pi / 2
     a, b = shape
     slope = geometry.support_slope(theta, a=a, b=b)
@@ -143,7 +144,7 @@ def test_rest_stays_at_the_flat_and_on_the_tip(shape: tuple[float, float], quart
             assert abs(answer[0] - theta) <= 2 * math.ulp(theta)
 
 
-def test_beside_the_tip_it_falls() -> None:
+def test_a_body_released_near_its_tip_falls() -> None:
     """A body released a millionth beside its tip falls: the place is no equilibrium."""
     side = 1e-6
     left = flow(12.0, a=2.0, b=1.0, theta=math.pi / 2 - side, omega=0.0)
@@ -152,7 +153,7 @@ def test_beside_the_tip_it_falls() -> None:
 
 
 @pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
-def test_a_nearly_round_body_beside_its_tip_falls_as_well(rounder: float) -> None:
+def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None:
     """h' is below a rounding of h, but the angle resolves the distance to the tip: omega is
     distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to the square of
     the distance and the roundings of the angle and of the exponent."""
@@ -178,7 +179,7 @@ def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_on_the_separatrix_it_creeps_to_the_tip_and_never_passes(direction: int) -> None:
+def test_a_motion_on_the_separatrix_creeps_to_the_tip_and_never_passes(direction: int) -> None:
     speeds = separatrix_speeds(2.0, 1.0, 0.0)
     assert speeds, "no double has the energy of the tip: choose another shape"
     times = np.concatenate([np.linspace(0, 60, 60_001), np.geomspace(61, 1e12, 200)])
@@ -198,7 +199,7 @@ def test_on_the_separatrix_it_creeps_to_the_tip_and_never_passes(direction: int)
         assert np.median(rates) == pytest.approx(-rate, rel=1e-4)
 
 
-def test_on_the_separatrix_the_period_is_infinite() -> None:
+def test_the_period_on_the_separatrix_is_infinite() -> None:
     """A motion that never returns has an infinite period."""
     for speed in separatrix_speeds(2.0, 1.0, 0.0):
         assert period(Scene(2.0, 1.0, omega=speed)) == math.inf

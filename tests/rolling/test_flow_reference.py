@@ -1,7 +1,7 @@
 """`flow` against exact rolling in 40 digits (reference/make_rolling_reference.py).
 
-The unit of every row is the effect of one rounding of each input on the answer, plus two ulp of
-the answer itself. A row demands relative accuracy: a state reached in a microsecond from rest has a
+The unit of every row is the effect of one rounding of each input on the answer, plus two ulp of the
+answer itself. Each row demands relative accuracy: a state reached in a microsecond from rest has a
 tiny omega and x, and their units are tiny too.
 """
 
@@ -89,7 +89,7 @@ def errors(
 @pytest.mark.parametrize(
     ("call", "rounding"), [(one_by_one, 0.0), (all_at_once, 0.0), (among_many, 2e-16)]
 )
-def test_flow_is_within_a_few_units(
+def test_flow_is_accurate_to_a_few_rounding_units(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float
 ) -> None:
     """flow errs by a few units; x of many times has the rounding of a length like the body's."""
@@ -100,11 +100,11 @@ def test_flow_is_within_a_few_units(
 
 
 @pytest.mark.parametrize("name", INPUTS)
-def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
-    """A change of any single input by 16 ulp is noticed: the judge is sharp.
+def test_changing_an_input_by_a_few_ulp_is_detected(rows: list[Row], name: str) -> None:
+    """A change of any single input by 16 ulp is detected: the check is sharp.
 
-    k^2 changes the motion least, its share of a unit is a fifth at best: 48 ulp are needed. Far
-    start angles are left out: their ulp is no small change.
+    k^2 changes the motion least, by a fifth of a unit at best: 48 ulp are needed. Far start angles
+    are left out: their ulp is not a small change.
     """
     ulps = 48 if name == "gyration2" else 16
 

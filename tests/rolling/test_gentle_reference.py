@@ -23,7 +23,7 @@ Row = dict[str, str]
 
 
 def start_of(row: Row) -> dict[str, Any]:
-    """The arguments of `flow`, but for the times."""
+    """The arguments of `flow` except the times."""
     s = table.scene_of(row)
     return {
         "a": s.a, "b": s.b, "theta": s.theta, "omega": s.omega, "gravity": s.gravity,
@@ -42,7 +42,7 @@ def errors(row: Row, values: Any, names: tuple[str, ...] = STATE) -> float:
     return float(np.max(table.differences([list(values)], exact)[0] / units(row, names)))
 
 
-def test_the_table_has_what_it_promises() -> None:
+def test_the_table_covers_all_slopes_and_shapes() -> None:
     """At least 300 cases, of all slopes, aspects, directions and names of the axes."""
     scenes = [table.scene_of(row) for row in ROWS]
     assert len(scenes) >= 300
@@ -57,12 +57,12 @@ def test_the_table_has_what_it_promises() -> None:
 
 
 @each_row
-def test_the_flow_is_right_to_a_few_units(row: Row) -> None:
+def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
     """Four units, alone and as the last of many times.
 
-    W beside a tip has the rounding of W where the motion began, as a rounding of an input would
-    change it; then come some roundings of the time and of each answer. Found: 1.6 at most. With W
-    counted from the start alone, by sin^2, 31 cases were beyond it, up to 5e5 units.
+    W beside a tip has the rounding of W where the motion started, of the size of a rounded input;
+    then come some roundings of the time and of each answer. The largest error was 1.6. With W
+    counted from the start alone, by sin^2, 31 cases exceeded this, by up to 5e5 units.
     """
     start, t = start_of(row), float(row["t"])
     alone = rl.flow(t, **start)
@@ -71,8 +71,8 @@ def test_the_flow_is_right_to_a_few_units(row: Row) -> None:
     assert [each[-1] for each in many] == list(alone)
 
 
-def test_the_flow_of_many_bodies_has_these_bits() -> None:
-    """So have past times of the reversed start, and mirror images have the other signs."""
+def test_the_flow_of_many_bodies_equals_single_flows() -> None:
+    """So do past times of the reversed start; mirror images have opposite signs."""
     starts = [start_of(row) for row in ROWS]
     columns = {name: np.array([start[name] for start in starts]) for name in starts[0]}
     t = np.array([float(row["t"]) for row in ROWS])
@@ -85,8 +85,8 @@ def test_the_flow_of_many_bodies_has_these_bits() -> None:
 
 
 @each_row
-def test_simulate_and_ends_are_right_to_a_few_units(row: Row) -> None:
-    """Four units, by the models of rolling and, as long as it rolls, of contact."""
+def test_simulate_and_ends_are_accurate_to_a_few_rounding_units(row: Row) -> None:
+    """Four units, by the model of rolling and, while the body rolls, that of contact."""
     scene, t = table.scene_of(row), float(row["t"])
     motion = rolled(scene, [0.5 * t, t])
     assert errors(row, [motion.theta[1], motion.omega[1], motion.x[1]]) < 4
@@ -108,10 +108,10 @@ def rounding_of_forces(scene: rl.Scene, theta: float, omega: float) -> Any:
 
 
 @each_row
-def test_forces_are_right_to_a_few_units(row: Row) -> None:
+def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
     """Four units; the forces belong to the angle of the sample, which is rounded.
 
-    Found: 3.2 at most, where the terms of N of a thin body nearly cancel.
+    The largest error was 3.2, where the terms of N of a thin body nearly cancel.
     """
     scene, t = table.scene_of(row), float(row["t"])
     motion = rolled(scene, [0.5 * t, t])
@@ -122,7 +122,7 @@ def test_forces_are_right_to_a_few_units(row: Row) -> None:
 
 
 @each_row
-def test_the_law_is_broken_where_the_table_needs_all_friction(row: Row) -> None:
+def test_rolling_ends_where_the_table_requires_all_available_friction(row: Row) -> None:
     """With friction |F|/N at t rolling ends at t, or earlier at a place that needs as much.
 
     The end errs by four units of the margin mu N - |F| over its rate, and two ulp of the time.

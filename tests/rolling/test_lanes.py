@@ -1,4 +1,4 @@
-"""`flow` of many scenes in the lanes of a vector has the bits of one scene at a time.
+"""`flow` of many scenes in the lanes of a vector equals one scene at a time bit for bit.
 
 test_flow_reference.py judges the answers of one scene in 40 digits.
 """
@@ -56,7 +56,7 @@ def same(found: np.ndarray, expected: np.ndarray) -> bool:
     [(10.0, 10.0), (1e3, 10.0), (10.0, 1e6), (1.0001, 100.0)],
     ids=["few", "thin", "long", "round"],
 )
-def test_a_scene_among_many_has_the_bits_that_it_has_alone(
+def test_a_scene_gives_the_same_bits_in_a_batch_as_alone(
     level: str, ratio: float, half_turns: float
 ) -> None:
     """The bits agree for any number of workers."""
@@ -67,7 +67,7 @@ def test_a_scene_among_many_has_the_bits_that_it_has_alone(
 
 
 @each_level
-def test_neighbours_do_not_change_a_bit(level: str) -> None:
+def test_neighbouring_scenes_change_no_bit_of_a_result(level: str) -> None:
     """The bits agree in any order of scenes, and with any part of the lanes filled."""
     motions = scenes(3000, 3, ratio=1e3, half_turns=1e3)
     found = states(level, motions)
@@ -123,7 +123,9 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
 
 @each_level
 @pytest.mark.parametrize("case", EXTREMES)
-def test_extremes(level: str, case: str) -> None:
+def test_extreme_scenes_give_the_same_finite_results_in_lanes_as_one_by_one(
+    level: str, case: str
+) -> None:
     ordinary: Columns = {
         "a": 2.0, "b": 1.0, "gyration2": 1.25, "gravity": 9.81, "theta": 0.0, "omega": 0.0,
     }  # fmt: skip
@@ -144,7 +146,9 @@ WRONG = {
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_number_is_told_by_name_and_place(level: str, workers: int, name: str) -> None:
+def test_an_invalid_value_is_reported_by_name_and_index(
+    level: str, workers: int, name: str
+) -> None:
     """The first wrong number is named, even if later chunks or later steps contain more of them."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
     motions[name][[700, 2900]] = WRONG[name]
@@ -154,14 +158,14 @@ def test_a_wrong_number_is_told_by_name_and_place(level: str, workers: int, name
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_a_time_that_is_too_long_is_told_before_later_wrong_numbers(level: str) -> None:
+def test_a_time_that_is_too_long_is_reported_before_later_invalid_values(level: str) -> None:
     motions = scenes(40, 6, ratio=10.0, half_turns=10.0)
     motions["t"][3], motions["a"][5] = 1e30, -1.0
     with pytest.raises(ValueError, match=r"^t\[3\] must be at most 1e15 half turns or swings, "):
         states(level, motions)
 
 
-def test_ratios_name_the_arrays_among_their_two() -> None:
+def test_an_invalid_ratio_is_reported_with_the_index_in_its_arrays() -> None:
     lengths = np.array([1.0, 1.0, 1e4])
     with pytest.raises(ValueError, match=r"^a\[2\]/b must be between 1e-3 and 1e3, got 10000.0$"):
         flow(1.0, a=lengths, b=1.0, theta=0.0, omega=1.0)
@@ -169,7 +173,7 @@ def test_ratios_name_the_arrays_among_their_two() -> None:
         flow(np.zeros(3), a=1e4, b=np.ones(1), theta=0.0, omega=1.0)
 
 
-def test_places_are_those_of_the_common_shape() -> None:
+def test_reported_indices_follow_the_shape_of_the_argument() -> None:
     omega = np.array([[1.0], [math.nan]])
     with pytest.raises(ValueError, match=r"^omega\[1, 0\] must be a finite number"):
         flow(np.arange(3.0), a=2.0, b=1.0, theta=0.0, omega=omega)

@@ -1,6 +1,6 @@
-"""`flow` at many times of one motion: answers of a table, for any order and number of times.
+"""`flow` at many times of one motion: answers from a table, for any order and number of times.
 
-Bits may only depend on whether the times are enough for a table (40): the result of
+The bits may depend only on whether the times are enough for a table (40): the result of
 test_flow_reference.py for 151 times in 40 digits then holds for any number of them.
 """
 
@@ -48,7 +48,7 @@ def same(one: Any, other: Any) -> bool:
 
 
 @each_motion
-def test_bits_depend_on_the_time_alone(motion: tuple[float, ...]) -> None:
+def test_results_depend_only_on_the_time_bit_for_bit(motion: tuple[float, ...]) -> None:
     """The bits do not depend on the order, the neighbours, the chunk or the worker."""
     times, start = times_of(motion), arguments(motion)
     found = flow(times, **start)
@@ -64,7 +64,7 @@ def test_bits_depend_on_the_time_alone(motion: tuple[float, ...]) -> None:
 
 
 @each_motion
-def test_many_times_are_the_single_ones(motion: tuple[float, ...]) -> None:
+def test_results_at_many_times_agree_with_those_at_single_times(motion: tuple[float, ...]) -> None:
     """Both answers may err by the bound; x has the rounding of a length like the body's."""
     start = arguments(motion)
     times = times_of(motion)
@@ -80,7 +80,7 @@ def test_many_times_are_the_single_ones(motion: tuple[float, ...]) -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 39, 40, 41, 1023, 1025])
-def test_any_number_of_times(count: int) -> None:
+def test_any_number_of_times_gives_correct_results(count: int) -> None:
     """Counts around the 40 times that start a table and the 1024 times of a chunk are correct."""
     start = arguments(MOTIONS["rotation"])
     times = np.linspace(0.0, 3.0, count)
@@ -93,7 +93,7 @@ def test_any_number_of_times(count: int) -> None:
 
 @pytest.mark.parametrize("place", [0, 5, 1500, 2002])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
-def test_a_wrong_time_is_named_by_its_place(place: int, bad: float) -> None:
+def test_an_invalid_time_is_named_by_its_index(place: int, bad: float) -> None:
     times = np.linspace(0.0, 3.0, 2003)
     times[place] = bad
     times[place + 1 :: 700] = math.nan  # the message names the first wrong time
@@ -101,7 +101,7 @@ def test_a_wrong_time_is_named_by_its_place(place: int, bad: float) -> None:
         flow(times, **arguments(MOTIONS["libration"]))
 
 
-def test_memory_is_that_of_the_answer() -> None:
+def test_flow_needs_little_more_memory_than_its_result() -> None:
     """A million times are not copied; a tenth of the answer is more than any table."""
     times, start = np.linspace(0.0, 100.0, 1_000_000), arguments(MOTIONS["rotation"])
     tracemalloc.start()

@@ -1,4 +1,4 @@
-"""The path of the centre: motions that begin nearly at rest on the tip or beside it, and steps.
+"""The path of the centre: motions that start nearly at rest on the tip or beside it, and steps.
 
 The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
 alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.
@@ -46,7 +46,7 @@ def excess(start: Start, t: float, state: State) -> float:
 
 
 def starts(count: int) -> Iterator[Start]:
-    """Starts with either axis longer, on the tip or beside it, at 1e-300 to 1 rad/s either way."""
+    """Starts with either axis longer, on the tip or beside it, at 1e-300 to 1 rad/s each way."""
     rng = random.Random(30)
     for i in range(count):
         a = 10 ** rng.uniform(-1, 1)
@@ -70,7 +70,7 @@ def times_past_a_tip(start: Start, rng: random.Random) -> list[float]:
     return sorted(fall * rng.uniform(1.0, 3.0) for _ in range(3))
 
 
-def test_x_is_the_path_to_the_angle() -> None:
+def test_x_agrees_with_the_centre_path_at_the_angle() -> None:
     rng = random.Random(31)
     worst = {name: 0.0 for name in ("one", "few", "many", "bodies", "rolling", "contact")}
     for start in starts(120):
@@ -115,7 +115,7 @@ SCENES = {
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize("method", ["dop853", "dopri5"])
-def test_x_is_the_path_of_the_angle_in_steps(
+def test_x_agrees_with_the_centre_path_at_the_angle_in_stepped_motions(
     scene: Scene, method: Literal["dop853", "dopri5"]
 ) -> None:
     """x errs by a few roundings of the path, whose reference points are up to half a radian away,

@@ -61,8 +61,10 @@ def lagrange(scene: Scene, theta: float, omega: float) -> tuple[Motion, Motion]:
 
 
 @pytest.mark.parametrize("slope", SLOPES)
-def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: float) -> None:
-    """8 ulp of the terms of a sum are allowed: some ten roundings, sin and cos among them."""
+def test_the_acceleration_and_its_derivatives_agree_with_lagrange(
+    shape: tuple[float, float], slope: float
+) -> None:
+    """The bound is 8 ulp of the terms of a sum: some ten roundings, sin and cos among them."""
     scene = Scene(*shape, gravity=3.7, slope=slope)
     unit = math.sqrt(scene.gravity / max(shape))
     for theta in (*ANGLES, *FAR_ANGLES):
@@ -76,7 +78,7 @@ def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: flo
             assert max(off) <= 8, (theta, omega, off)
 
 
-def test_a_wrong_equation_is_seen() -> None:
+def test_a_wrong_equation_is_detected() -> None:
     """The same scene with 1e-12 more gravity, slope or k^2 is thousands of ulp away."""
     scene = Scene(2.0, 1.0, slope=0.3)
     changes: list[dict[str, Any]] = [
@@ -92,7 +94,7 @@ def test_a_wrong_equation_is_seen() -> None:
         assert ulps(found[0], exact.acceleration, sizes.acceleration) > 500
 
 
-def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -> None:
+def test_derivatives_agree_with_differences_of_the_acceleration(shape: tuple[float, float]) -> None:
     """Central differences of theta'' agree with its derivatives. They err by the third derivative
     times d^2/6, some (rho/b)^2 d^2 of the sizes since b/a is the finest scale of the outline, and
     by the rounding over d."""
@@ -122,7 +124,7 @@ def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -
 
 @pytest.mark.parametrize("slope", SLOPES)
 @pytest.mark.parametrize(("a", "b", "gyration2"), [(1.0, 2e-3, 1e-4), (0.05, 3.0, 0.02), (2, 1, 1)])
-def test_forces_are_accelerations_less_gravity(
+def test_forces_are_accelerations_minus_gravity(
     a: float, b: float, gyration2: float, slope: float
 ) -> None:
     """N and F by Newton's law for the centre, in 40 digits. The bound is a few roundings of the

@@ -1,7 +1,7 @@
 """Exact rolling on slopes beyond the table: many half turns, long climbs, wells, circles, edges.
 
 The references share no formula with the package: mpmath's Hurwitz zeta function and its quadrature
-of the energy integral, which never takes one half turn after the other.
+of the energy integral, which never goes through half turns one by one.
 """
 
 import math
@@ -78,11 +78,11 @@ MANY = product(list(DOWNHILL)[:3], (40, 1000, 10**6, 10**9))
 
 
 @pytest.mark.parametrize("name, half_turns", [*MANY, ("from its tip", 1000)])
-def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
+def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_turns: int) -> None:
     """After n half turns the body stands as at the start, and its W has grown by n w.
 
     The time of the simulation is rounded by half an ulp, and the quadrature has a few roundings, as
-    if the inputs were changed by 8 roundings (found: 3 at most).
+    if the inputs were changed by 8 roundings (3 at most were observed).
     """
     scene = DOWNHILL[name]
     with mp.workdps(DIGITS):
@@ -110,7 +110,7 @@ def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
 
 @pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
 @pytest.mark.parametrize("ratio", [0.9, 0.3, 1e-2])
-def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
+def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) -> None:
     """A motion mirrored in time is the same motion, uphill and back, from any of its states.
 
     The reversed state at t reaches the reversed start after another t, by three methods: the sum
@@ -130,7 +130,7 @@ def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
         assert abs(back.omega[0] - 8.0) < 64 * EPS * turned * 8.0 / ratio**3
 
 
-def test_a_body_is_back_at_its_start_at_twice_the_time_of_its_turn() -> None:
+def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point() -> None:
     """There the mirror image of the way up ends: each double beside that time has its stretch."""
     for omega in np.linspace(-6.0, -1.0, 41):
         scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
@@ -142,11 +142,11 @@ def test_a_body_is_back_at_its_start_at_twice_the_time_of_its_turn() -> None:
 
 @pytest.mark.parametrize("omega", [-8.0, 8.0], ids=["up", "down"])
 @pytest.mark.parametrize("way", [1e-5, 0.1])
-def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
+def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
     """theta and x of a short path agree with the energy integral, up a long climb and down.
 
-    Allowed are 4 roundings of the path and of the geometry at the start (found: 0.7 at most; a path
-    counted from half a turn further up had an error of 1e-16 m).
+    The bound is 4 roundings of the path and of the geometry at the start (0.7 at most were
+    observed; a path counted from half a turn further up had an error of 1e-16 m).
     """
     scene = rl.Scene(1.0, 0.5, slope=1e-3, theta=0.4, omega=omega)
     with mp.workdps(25):
@@ -169,7 +169,7 @@ def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
 
 
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
-def test_a_circle_rests_on_no_slope(slope: float) -> None:
+def test_no_circle_rests_on_a_slope(slope: float) -> None:
     """A circle's contact is never right below its centre: it rolls from rest if friction holds a
     third of the pull, and slides otherwise."""
     needed = abs(slope) / 3
@@ -202,7 +202,7 @@ def assert_keeps_energy(found: rl.Trajectory) -> None:
 
 @pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
 @pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.5])
-def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
+def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
     """The energy is constant over nine decades of time."""
     scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
     assert_keeps_energy(rolled(scene, np.concatenate([[0.0], np.logspace(-2, 4, 60)])))
@@ -211,7 +211,9 @@ def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
 @pytest.mark.parametrize("ratio", [0.1, 1 - 1e-9, 2.0])
 @pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
 @pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
-def test_a_climb_is_known_up_to_its_top(ratio: float, slope: float, half_turns: float) -> None:
+def test_a_climbing_body_conserves_energy_up_to_its_highest_point(
+    ratio: float, slope: float, half_turns: float
+) -> None:
     """The energy is constant up and down a climb: half turns near the top take longest."""
     height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
     speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
@@ -237,7 +239,7 @@ def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: fl
     assert [motion.sol([t]).theta[0] for t in times] == motion.theta.tolist()
 
 
-def test_a_circle_that_is_driven_by_less_than_doubles_tell_rests() -> None:
+def test_a_circle_driven_by_less_than_the_smallest_double_stays_at_rest() -> None:
     """The acceleration, in the circle's own units, is less than half of the smallest double."""
     scene = rl.Scene(1.6e-23, 1.6e-23, slope=5e-324, theta=0.3)
     motion = rl.simulate(scene, [0.0, 1e300])
@@ -245,19 +247,19 @@ def test_a_circle_that_is_driven_by_less_than_doubles_tell_rests() -> None:
 
 
 @pytest.mark.parametrize("t", [1e150, 1e300])
-def test_a_double_knows_no_phase_beyond_1e15_half_turns(t: float) -> None:
+def test_times_beyond_1e15_half_turns_are_rejected(t: float) -> None:
     for scene in (rl.scenes.slope, rl.Scene(1.0, 1.0, slope=0.1), rl.Scene(2.0, 1.0, slope=0.1)):
         with pytest.raises(ValueError, match="1e15 half turns"):
             rolled(scene, [t])
 
 
-def test_what_does_not_repeat_itself_has_no_period() -> None:
+def test_a_motion_that_does_not_repeat_has_no_period() -> None:
     with pytest.raises(ValueError, match=r"^scene must repeat itself, but on a slope of 0\.1"):
         rl.period(rl.scenes.slope)
     assert math.isinf(rl.period(rl.Scene(2.0, 1.0, slope=0.1, theta=lying(0.1), omega=0.0)))
 
 
-def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
+def test_a_nearly_round_body_is_not_driven_by_rounding() -> None:
     """A body whose tip is higher by one ulp and which hardly moves is driven by gravity times h',
     at most b - a, over the inertia about the contact, at least a^2."""
     a, b, t = 7.374404490252059, 7.37440449025206, 2.5
@@ -282,7 +284,7 @@ def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
     ],
     ids=["tall", "flat"],
 )
-def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> None:
+def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
     """Roundings of the height alone drive the body: its motion is a single piece all the same, and
     omega changes by no more than gravity and all of its height differences give."""
     t = 0.1 / abs(scene.omega)
@@ -294,8 +296,8 @@ def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> No
 
 
 @pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
-def test_the_flow_on_a_slope(omega: float) -> None:
-    """It has the bits of `simulate`. Its past solves the equation of rolling. The local error of
+def test_the_flow_on_a_slope_equals_simulate(omega: float) -> None:
+    """It equals `simulate` bit for bit. Its past solves the equation of rolling. The local error of
     the integrator is 1e-12, which three seconds magnify by less than a hundred."""
     scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
     motion, asked = rolled(scene, times), {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": omega}
@@ -324,9 +326,9 @@ def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def test_the_flow_of_runs_beside_power_series() -> None:
+def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
     """A run or climb is computed from its energy alone; the power series solve the equation of
-    motion. They agree within what a rounding of each argument changes, and two of the state."""
+    motion. They agree to within the effect of a rounding of each argument and two of the state."""
     asked = drawn_on_slopes(np.random.default_rng(0), 300)
     t = np.minimum(10 ** np.random.default_rng(1).uniform(-3, 1, 300), 6 / np.abs(asked["omega"]))
     found = np.stack(rl.flow(t, **asked))
@@ -338,7 +340,7 @@ def test_the_flow_of_runs_beside_power_series() -> None:
     assert np.all(error <= allowed), np.max(error / allowed)
 
 
-def test_the_flow_has_the_bits_of_single_times() -> None:
+def test_the_flow_at_many_times_equals_that_at_single_times_bit_for_bit() -> None:
     """Also between the end of the first piece and the mirror image of the start."""
     rng = np.random.default_rng(5)
     for _ in range(120):

@@ -76,7 +76,7 @@ each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one i
 def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     """Errors in units (3, 5) of a scene that is forced to roll.
 
-    x is a path less the path before the start. So it also has the error of theta, times h, even
+    x is a path minus the path before the start. So it also has the error of theta, times h, even
     shortly after a start at rest, where the inputs hardly matter to x.
     """
     with warnings.catch_warnings():
@@ -114,12 +114,12 @@ def reach_of_series(motion: Motion) -> float:
 
 
 @each_motion
-def test_exact_is_right_to_a_few_roundings(motion: Motion) -> None:
+def test_exact_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
     """theta, omega and x err by four units; the forces follow from theta and omega.
 
-    A state is some hundred series, each with a rounding of its own, of which the energy keeps the
-    angular velocity; the sum over half turns has a few roundings of its time. Found: 1.1 at most,
-    0.1 in the median.
+    A state is some hundred series, each with its own rounding, and the energy keeps the angular
+    velocity accurate; the sum over half turns has a few roundings of its time. The errors were 1.1
+    at most, 0.1 in the median.
     """
     assert errors(motion, method="exact")[:, :3].max() < 4
 
@@ -133,7 +133,7 @@ def dop853_errors(motion: Motion) -> NDArray[np.float64]:
 
 
 @each_motion
-def test_dop853_keeps_its_tolerance(motion: Motion) -> None:
+def test_dop853_stays_within_its_tolerance(motion: Motion) -> None:
     """dop853 errs by eight tolerances at most.
 
     An unlucky method could add one tolerance in each of up to 4400 steps. The controller keeps the
@@ -144,25 +144,25 @@ def test_dop853_keeps_its_tolerance(motion: Motion) -> None:
 
 
 @each_motion
-def test_gauss_is_right_to_rounding(motion: Motion) -> None:
+def test_gauss_is_accurate_to_within_rounding(motion: Motion) -> None:
     """Gauss's method with steps of R/16 errs by 32 units at most.
 
     The error of a step is (4!)^4 / (9 (8!)^3) h^9 y^(9), with y^(9) = 9!/R^9 at most 2e-4 (h/R)^9
     or 3e-15, near the singularity only: a few units. Rounding adds the rest, most where the flat
-    side of a thin ellipse makes omega grow and shrink tenfold, and with it the relative error.
-    Found: 15 at most, 0.7 in the median.
+    side of a thin ellipse makes omega grow and shrink tenfold, and with it the relative error. The
+    errors were 15 at most, 0.7 in the median.
     """
     step = reach_of_series(motion) / 16
     assert errors(motion, method="gauss", stages=4, step=step).max() < 32
 
 
-def test_radau_errs_as_its_order_says() -> None:
+def test_radau_errors_are_as_its_order_predicts() -> None:
     """Radau with steps of R/8 errs by 0.0012 (h/R)^5 per passage of the flat side.
 
     The error of a step is h^6 y^(6) / 7200, with y^(6) = 6!/r^6 at distance r of the singularity.
     Over all steps of a passage, where r^2 = R^2 + t^2, that sums up to 0.1 (h/R)^5 3 pi/8. The
-    singularity is a branch point, weaker than the pole assumed here: a thousandth of the sum was
-    found at most. Scenes that take more than 20,000 such steps are left to Gauss's method.
+    singularity is a branch point, weaker than the pole assumed here: at most a thousandth of the
+    sum was observed. Scenes that take more than 20,000 such steps are left to Gauss's method.
     """
     checked = 0
     for motion in MOTIONS:
@@ -177,8 +177,8 @@ def test_radau_errs_as_its_order_says() -> None:
 @pytest.mark.parametrize(
     "name", ["a", "b", "mass", "inertia", "gravity", "slope", "theta", "omega"]
 )
-def test_a_small_change_of_an_input_is_seen(name: str) -> None:
-    """A change of any single input by a millionth is noticed in every scene: the judge is sharp.
+def test_a_small_change_of_an_input_is_detected(name: str) -> None:
+    """A change of any single input by a millionth is detected in every scene: the check is sharp.
 
     Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share: a
     slope of a few milliradians hardly matters to a fast spin: a millionth of it is 14 tolerances.

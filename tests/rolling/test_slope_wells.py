@@ -1,4 +1,4 @@
-"""Rocking in the well of a slope, from 1e-12 rad up to its rim and over up to 1e9 swings.
+"""Rocking in the well of a slope, from 1e-12 rad up to its rim, for up to 1e9 swings.
 
 The table (reference/make_well_reference.py) has the period, and the state at one time, of each
 scene, with a unit for each number: its change by a relative change of 2.2e-16 of every input.
@@ -47,12 +47,13 @@ def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[str(i) for i in range(len(ROWS))])
-def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
+def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> None:
     """Rocking errs by eight units and two ulp of each answer.
 
     A half swing is a few series, each with a few roundings of its own in the time, the angle and
-    omega; the phase after any number of swings has the period's roundings. Found: 0.8 at most; with
-    gravity as a difference of two terms a third of the scenes erred by more than 8, up to 3e7.
+    omega; the phase after any number of swings has the period's roundings. The largest error was
+    0.8; with gravity as a difference of two terms a third of the scenes erred by more than 8, up to
+    3e7.
     """
     scene, t = table.scene_of(row), float(row["t"])
     state = rolled(scene, [t])
@@ -69,7 +70,7 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
     [rl.Scene(2.0, 1.0, slope=0.2), rl.Scene(0.3, 1.0, slope=-0.8), rl.Scene(1.1, 1.0, slope=1e-6)],
     ids=["2:1", "standing", "gentle"],
 )
-def test_next_to_the_rim_a_motion_comes_back_to_its_start(
+def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     scene: rl.Scene, distance: float, share: float
 ) -> None:
     """A start that moves to the rim or away from it swings like a rest somewhat further in.
@@ -93,8 +94,8 @@ def test_next_to_the_rim_a_motion_comes_back_to_its_start(
     assert abs(again.theta[1] - again.theta[0]) < allowed
 
 
-def test_many_times_of_small_rocking_are_those_of_each() -> None:
-    """Bits agree in a table, alone and in contact; the body turns round every half period."""
+def test_small_rocking_at_many_times_equals_that_at_single_times() -> None:
+    """Bits agree in a table, alone and in contact; the body turns back every half period."""
     scene = rl.Scene(2.0, 1.0, slope=0.2, friction=0.5)
     scene = scene.replace(theta=equilibria(scene)[0].theta + 1e-9)
     half = rl.period(scene) / 2

@@ -68,7 +68,7 @@ RANDOM = random_scenes(210)
 
 
 @pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
-def test_collision_law(scene: Scene) -> None:
+def test_the_reaction_follows_the_collision_law(scene: Scene) -> None:
     """The reaction agrees to rounding; for mu = inf with the limit of large mu (error ~ 1/mu)."""
     assert scene.impulse is not None
     contact, free_omega = free_contact(scene, scene.impulse)
@@ -95,7 +95,7 @@ def scene_stiffness(contact: Response) -> mp.mpf:
 
 
 @pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
-def test_the_velocities_take_the_momentum_and_the_mode_follows(scene: Scene) -> None:
+def test_the_impulses_determine_the_velocities_and_these_the_mode(scene: Scene) -> None:
     assert scene.impulse is not None
     impulse, found = scene.impulse, scene.initial_state
     h, slope, _ = (
@@ -110,7 +110,7 @@ def test_the_velocities_take_the_momentum_and_the_mode_follows(scene: Scene) -> 
     assert linear_x == pytest.approx(impulse.jx + found.reaction_x, abs=small)
     assert linear_z == pytest.approx(impulse.jz + found.reaction_z, abs=small)
     assert found.reaction_z >= 0
-    # the mode follows from the velocities
+    # the velocities determine the mode
     assert found.theta == scene.theta and found.x == scene.x
     leaves = found.z_dot - slope * found.omega > small / MASS or thrown_off(scene, found.omega)
     assert leaves == (found.mode == Mode.FLIGHT)
@@ -126,7 +126,7 @@ def thrown_off(scene: Scene, omega: float) -> bool:
     return bool(scene.gravity + curvature * omega**2 < 0)
 
 
-def test_the_random_impulses_meet_every_outcome() -> None:
+def test_the_random_impulses_cover_every_outcome() -> None:
     modes = [scene.initial_state.mode for scene in RANDOM]
     for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT):
         assert modes.count(mode) >= 20
@@ -136,9 +136,9 @@ def test_the_random_impulses_meet_every_outcome() -> None:
 
 
 @pytest.mark.parametrize("push", [2.0, -2.0])
-def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
-    """The product inf * 0 of mu = inf and Lambda_z = 0 is not formed. For a push at G, lying flat:
-    m (k^2 + b^2) omega = J b."""
+def test_a_horizontal_push_with_unlimited_friction_makes_the_body_roll(push: float) -> None:
+    """The product inf * 0 of mu = inf and Lambda_z = 0 never occurs. For a push at G, lying flat: m
+    (k^2 + b^2) omega = J b."""
     found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(jx=push, jz=0.0)).initial_state
     assert found.mode == Mode.ROLLING
     assert found.omega == pytest.approx(push * 1.0 / 2.25, rel=4 * EPS)
@@ -150,7 +150,7 @@ def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
     assert limited.mode == Mode.SLIDING and limited.omega == 0 and limited.reaction_x == 0
 
 
-def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
+def test_unlimited_friction_stops_an_initial_slip_at_once() -> None:
     """The impulse m (h omega - x_dot) alone gives D omega = h x_dot, lying flat with h' = 0."""
     found = Scene(2.0, 1.0, mass=2.0, x_dot=4.5).initial_state
     assert found.mode == Mode.ROLLING
@@ -162,7 +162,7 @@ def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
     assert found.energy_lost == pytest.approx(20.25 - 9.0, rel=8 * EPS)
 
 
-def test_a_press_that_pulls_is_said_so() -> None:
+def test_a_press_that_pulls_gives_a_warning() -> None:
     with pytest.warns(ValidityWarning, match=r"^F = -48\.0 N s pulls"):
         assert Impulse.press(-48.0, 1.5) == Impulse(jx=0.0, jz=48.0, dx=1.5)
     assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # without a warning
@@ -175,7 +175,7 @@ MARGINS = ((1 - 1e-6, True), (1.0, True), (1 + 1e-6, False))
 @pytest.mark.parametrize(("share", "meets"), MARGINS)
 @pytest.mark.parametrize("axes", [(2.0, 1.0), (1.0, 1.0), (1e-3, 1.0), (1.0, 1e-3), (3e-20, 1e-20)])
 @pytest.mark.parametrize("theta", [0.0, 0.5, -2.1, math.pi / 2, 40.0])
-def test_a_blow_beside_the_body_is_refused(
+def test_a_blow_that_misses_the_body_is_rejected(
     axes: tuple[float, float], theta: float, share: float, meets: bool
 ) -> None:
     """The line of action goes through an end of the body as seen along the blow: by brute force,
@@ -201,14 +201,14 @@ def test_a_blow_beside_the_body_is_refused(
                     Scene(a, b, theta=theta, impulse=blow)
 
 
-def test_no_blow_is_nowhere() -> None:
+def test_only_a_zero_blow_may_miss_the_body() -> None:
     assert Scene(2.0, 1.0, impulse=Impulse(dx=5.0)).initial_state.omega == 0
     for size in (5e-324, 1e50):  # a blow of any size has a line
         with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
             Scene(2.0, 1.0, impulse=Impulse(jx=0.0, jz=size, dx=5.0))
 
 
-def test_in_the_air_nothing_reacts() -> None:
+def test_a_blow_in_mid_air_causes_no_reaction() -> None:
     scene = Scene(2.0, 1.0, mass=2.0, z=3.0, impulse=Impulse(jx=1.0, jz=-6.0, dx=0.5, dz=0.2))
     found = scene.initial_state
     assert found.mode == Mode.FLIGHT and found.reaction_x == found.reaction_z == 0
@@ -216,7 +216,7 @@ def test_in_the_air_nothing_reacts() -> None:
     assert found.omega == pytest.approx((0.2 * 1.0 + 0.5 * 6.0) / (2 * 1.25), rel=4 * EPS)
 
 
-def test_restitution_does_not_take_part_in_an_applied_impulse() -> None:
+def test_restitution_has_no_effect_on_an_applied_impulse() -> None:
     for friction in (0.2, math.inf):
         plain, bouncing = (
             Scene(
@@ -232,7 +232,7 @@ def test_restitution_does_not_take_part_in_an_applied_impulse() -> None:
         assert plain == bouncing
 
 
-def test_no_impulse_changes_nothing() -> None:
+def test_a_zero_impulse_changes_nothing() -> None:
     found = Scene(2.0, 1.0, theta=0.3, omega=1.7, x=4.0).initial_state
     assert found.omega == found.free_omega == 1.7
     assert found.reaction_x == found.reaction_z == 0 and found.x == 4.0
@@ -241,7 +241,7 @@ def test_no_impulse_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.5, math.inf])
-def test_a_spin_that_counts_as_none_leaves_no_slip(friction: float) -> None:
+def test_a_negligible_spin_leaves_no_slip(friction: float) -> None:
     blow = Impulse(jx=0.0, jz=-1.0, dx=1e-169)
     found = Scene(1.0, 1.0, friction=friction, impulse=blow).initial_state
     assert (found.omega, found.x_dot) == (0.0, 0.0)

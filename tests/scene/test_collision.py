@@ -1,4 +1,4 @@
-"""Collisions with restitution: the law followed along its impulse path, and its invariants.
+"""Collisions with restitution: the law along its impulse path, and its invariants.
 
 The path is followed by straight pieces; tests/impacts follows it in small pushes without cases.
 """
@@ -56,7 +56,7 @@ def limited() -> list[Hit]:
 # ----------------------------------------------------------------------------- the path
 
 
-def test_impacts_follow_the_path(limited: list[Hit]) -> None:
+def test_impacts_agree_with_integration_along_the_impulse_path(limited: list[Hit]) -> None:
     """Some hundred roundings are allowed, magnified by solving for the reaction. The speeds have
     roundings of the size of the body's velocity, and e > 0 takes a square root of the work: errors
     are absolute, in the scale of the impulse that stops the velocity. The angle, thousands of
@@ -74,7 +74,7 @@ def test_impacts_follow_the_path(limited: list[Hit]) -> None:
             assert abs(found - exact) <= (300 + abs(state.theta)) * EPS * scale
 
 
-def test_the_random_impacts_meet_every_outcome(limited: list[Hit]) -> None:
+def test_the_random_impacts_cover_every_outcome(limited: list[Hit]) -> None:
     outcomes = {"stick": 0, "slip on": 0, "reverse": 0}
     for hit in limited:
         v, w = hit.before.slip, hit.after.slip
@@ -119,7 +119,7 @@ def velocities_after(hit: Blow) -> list[mp.mpf]:
     return [hit.x_dot + along, hit.z_dot + across, hit.omega - turned]
 
 
-def test_light_bodies_that_turn_fast_keep_the_digits_of_their_impact() -> None:
+def test_impacts_of_light_fast_turning_bodies_stay_accurate() -> None:
     """Velocities agree with the pieces in 40 digits, in units of the effect of 2.2e-16 of each
     number and two ulp of the answer. omega h is up to 1e4 times the centre's speed."""
     rng = np.random.default_rng(30)
@@ -178,7 +178,7 @@ def one_hit(**given: Any) -> Hit:
     return Hit(scene, simulate(scene, 5.0, model="contact").events[0])
 
 
-def test_unlimited_friction_by_its_three_formulas() -> None:
+def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
     """Three cases of u1 = u - v Gnt/Gtt, the gap rate without slip: stuck, stuck without pressure,
     or friction alone. The terms are of the size of the velocities and the response, and the angle
     of h' has an error of an ulp."""
@@ -209,7 +209,7 @@ def test_unlimited_friction_by_its_three_formulas() -> None:
     assert min(met) >= 10, met
 
 
-def test_the_reaction_of_an_event_is_what_the_centre_gains() -> None:
+def test_the_reaction_of_an_event_is_the_momentum_the_centre_gains() -> None:
     hit = one_hit(friction=0.3, restitution=0.5, x_dot=1.0)
     after = hit.event.state_after
     assert (after.reaction_x, after.reaction_z) == pytest.approx(impulses(hit), rel=4 * EPS)

@@ -39,7 +39,7 @@ def inertial_time(scene: Scene, turned: float) -> float:
     [(DOWNHILL, 1e8), (LEVEL, 1e14 * rl.period(LEVEL) / 2)],
     ids=["downhill", "level"],
 )
-def test_a_state_after_very_many_half_turns_is_gone_on_from(
+def test_a_state_after_very_many_half_turns_can_be_continued(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
     """Bits agree from the state itself, a file, a table of scenes and a folder."""
@@ -67,7 +67,7 @@ def test_a_state_after_very_many_half_turns_is_gone_on_from(
     assert list(rl.load_many(tmp_path / "many")) == [on]
 
 
-def test_what_was_gained_downhill_is_not_typed_again() -> None:
+def test_energy_gained_downhill_may_exceed_the_input_limit() -> None:
     motion = rolled(DOWNHILL, [1e8])
     reached = motion.scene_at(motion.t_end)
     energy = reached.omega**2 * (reached.gyration2 + 4.0) / (reached.gravity * 2.0)
@@ -114,8 +114,8 @@ LIMITS: dict[str, Callable[[dict[str, Any]], float]] = {
     "of", [body(2.0, 1.0, 9.81), body(1e-9, 1e-6, 1e-3), body(3e20, 3e20, 1e9)]
 )
 @pytest.mark.parametrize("name", LIMITS)
-def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
-    """A value 64 roundings below its limit is accepted; as far above it is refused by name."""
+def test_input_is_accepted_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
+    """A value 64 roundings below its limit is accepted; one as far above it is refused by name."""
     limit = LIMITS[name](of)
     above: dict[str, Any] = {"z": height(of) / 2} if name == "z_dot" else {}
     of = {**of, **above}
@@ -124,7 +124,7 @@ def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> No
         Scene(**{**of, name: limit * (1 + 64 * EPS)})
 
 
-def test_a_blow_brings_no_more_than_is_typed() -> None:
+def test_a_blow_brings_no_more_energy_than_the_input_limit() -> None:
     """The largest impulse through the centre of a body at rest has J^2/2m = 1e12 m g L."""
     scene = Scene(2.0, 1.0, mass=3.0)
     most = 3.0 * math.sqrt(2 * MOST * 9.81 * 2.0)

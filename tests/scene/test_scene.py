@@ -27,14 +27,14 @@ def scene(**changes: Any) -> Scene:
 
 @pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
 @pytest.mark.parametrize("value", [INF, -INF, NAN])
-def test_impulse_refuses_wrong_values_of_arrays_with_their_index(name: str, value: float) -> None:
+def test_an_impulse_names_the_index_of_an_invalid_value(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value} at index 2$"):
         Impulse(**{name: [1.0, -2.0, value]})
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value} at index \(1, 0\)$"):
         Impulse(**{name: [[1.0], [value]]})
 
 
-def test_an_impulse_of_arrays() -> None:
+def test_an_impulse_broadcasts_its_arrays() -> None:
     jx = np.array([[1.0], [2.0]])
     many = Impulse(jx=jx, jz=-3, dx=[0.0, 0.5, 1.0])
     jx[:] = 7.0
@@ -56,7 +56,7 @@ def test_an_impulse_of_arrays() -> None:
 
 
 @pytest.mark.parametrize("bare", [(48.0, 1.5), (0.0, -1.0), (3,), ([1.0, 2.0], 1.0)])
-def test_components_without_names_are_warned_of(bare: tuple[Any, ...]) -> None:
+def test_unnamed_components_give_a_warning(bare: tuple[Any, ...]) -> None:
     with pytest.warns(
         DeprecationWarning, match=r"components jx, jz .* Impulse\.press\(F, d\)"
     ) as seen:
@@ -70,7 +70,7 @@ def test_components_without_names_are_warned_of(bare: tuple[Any, ...]) -> None:
     [({"theta": 90}, True), ({"omega": 180.0}, True), ({"theta": -45.0}, True),
      ({"x": 90.0}, False), ({"theta": 1.5}, False), ({"omega": 20.0}, False)],
 )  # fmt: skip
-def test_an_angle_that_looks_like_degrees_is_doubted_in_print_only(
+def test_an_angle_that_looks_like_degrees_is_questioned_only_when_printed(
     angle: dict[str, float], doubted: bool
 ) -> None:
     body = scene(**angle)
@@ -91,7 +91,7 @@ def test_impulses_of_arrays_are_equal_by_value() -> None:
     assert hash(Impulse(jx=1.0, jz=2.0)) == hash(Impulse(jx=1.0, jz=2.0))
 
 
-def test_presses_of_arrays() -> None:
+def test_presses_broadcast_their_arrays() -> None:
     found = Impulse.press([[1.0], [2.0]], [0.5, -0.5])
     assert found == Impulse(jx=0.0, jz=[[-1.0], [-2.0]], dx=[0.5, -0.5]) and found.shape == (2, 2)
     for name, given in (("F", ([1.0, NAN], 0.5)), ("d", (1.0, [0.5, INF]))):
@@ -103,12 +103,12 @@ def test_presses_of_arrays() -> None:
 
 
 @pytest.mark.parametrize(("one", "name"), [(scene(), "a"), (scene(), "core"), (Impulse(), "jx")])
-def test_values_are_frozen(one: Any, name: str) -> None:
+def test_scenes_and_impulses_are_immutable(one: Any, name: str) -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         setattr(one, name, 3.0)
 
 
-def test_scene_equality_and_hash() -> None:
+def test_equal_scenes_have_equal_hashes() -> None:
     assert scene(omega=3.0) == scene(omega=3.0) and hash(scene(omega=3.0)) == hash(scene(omega=3.0))
     assert len({scene(), scene(), scene(omega=1.0)}) == 2
     changes: dict[str, Any] = {
@@ -122,10 +122,10 @@ def test_scene_equality_and_hash() -> None:
 
 
 @pytest.mark.parametrize("name", ["initial_state", "core", "gyration2"])
-def test_what_a_scene_keeps_beside_its_numbers_does_not_matter(name: str) -> None:
+def test_scenes_with_equal_values_are_equal_whatever_they_cache(name: str) -> None:
     """The sign of zero does not matter, as for numbers; an omitted value differs from its default.
 
-    A hash that does not go with `==` would lose scenes in sets.
+    A hash inconsistent with `==` would lose scenes in sets.
     """
     one, other = scene(omega=3.0, x=0.0), scene(omega=3.0, x=-0.0)
     getattr(one, name)
@@ -134,7 +134,7 @@ def test_what_a_scene_keeps_beside_its_numbers_does_not_matter(name: str) -> Non
     assert one.initial_state == other.initial_state
 
 
-def test_replace() -> None:
+def test_replace_changes_only_the_given_fields() -> None:
     struck = scene(omega=1.0, friction=0.3, impulse=Impulse.press(48.0, 1.5))
     changed = struck.replace(omega=2.0, impulse=None)
     assert changed == scene(omega=2.0, friction=0.3) and struck.omega == 1.0
@@ -142,7 +142,7 @@ def test_replace() -> None:
 
 
 @pytest.mark.parametrize(("slope", "asked"), [(30.0, True), (-90.0, True), (1000.0, False)])
-def test_a_slope_in_degrees_is_asked_about(slope: float, asked: bool) -> None:
+def test_a_slope_that_looks_like_degrees_is_questioned(slope: float, asked: bool) -> None:
     with pytest.raises(ValueError, match=r"^slope must .*, got -?\d+\.0$") as caught:
         scene(slope=slope)
     assert ("degrees?" in str(caught.value)) == asked
@@ -150,8 +150,8 @@ def test_a_slope_in_degrees_is_asked_about(slope: float, asked: bool) -> None:
 
 @pytest.mark.parametrize("impulse", [None, Impulse()])
 def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
-    """A body turning at 0.9 rad with 3 rad/s needs a pull of the ground, and the limit of slides
-    begins; with a friction of 0.01 it is friction that cannot hold."""
+    """A body turning at 0.9 rad with 3 rad/s needs the ground to pull, and the limit of slides
+    starts; with a friction of 0.01 it is friction that fails to hold."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
     limit = scene(**given).initial_state
     assert limit.mode is Mode.SLIDING
@@ -160,7 +160,7 @@ def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -
     assert held.mode is Mode.SLIDING and "Friction 0.01 cannot hold" in held.reason
 
 
-def test_gyration2() -> None:
+def test_gyration2_is_that_of_a_uniform_disc_by_default() -> None:
     assert scene().gyration2 == 1.25  # a uniform disc, eq 12 of the report
     assert scene(mass=4.0).gyration2 == 1.25
     assert scene(mass=4.0, inertia=2.0).gyration2 == 0.5
@@ -169,7 +169,7 @@ def test_gyration2() -> None:
     assert steel.mass == pytest.approx(7850.0 * 1e-3 * math.pi, rel=1e-15)
 
 
-def test_what_is_taken_as_inertia_is_taken_as_gyration2() -> None:
+def test_inertia_and_gyration2_have_the_same_limits() -> None:
     """Both limits agree at the ends of the range, where the last bit decides."""
     random = np.random.default_rng(9)
     taken = 0
@@ -198,7 +198,7 @@ def ulps_above(value: float, count: int) -> float:
 
 
 @pytest.mark.parametrize("theta", ANGLES)
-def test_missing_values_are_those_of_rolling(theta: float) -> None:
+def test_omitted_values_default_to_those_of_rolling(theta: float) -> None:
     """h errs by 2 ulp, the products h omega and h' omega by 9 ulp with the geometry's errors."""
     found = scene(theta=theta, omega=1.3).initial_state
     h, slope = (f(theta, a=2.0, b=1.0) for f in (geometry.support, geometry.support_slope))
@@ -210,7 +210,9 @@ def test_missing_values_are_those_of_rolling(theta: float) -> None:
 
 @pytest.mark.parametrize("theta", ANGLES)
 @pytest.mark.parametrize("count", [-6, -1, 1, 6])
-def test_within_8_ulp_is_touching_and_rolling_exactly(theta: float, count: int) -> None:
+def test_a_start_within_8_ulp_of_rolling_touches_and_rolls_exactly(
+    theta: float, count: int
+) -> None:
     exact = scene(theta=theta, omega=1.3)
     state = exact.initial_state
     for name in ("z", "x_dot", "z_dot"):
@@ -222,7 +224,7 @@ def test_within_8_ulp_is_touching_and_rolling_exactly(theta: float, count: int) 
 
 
 @pytest.mark.parametrize("theta", ANGLES)
-def test_beyond_8_ulp_it_is_in_the_air(theta: float) -> None:
+def test_a_start_more_than_8_ulp_above_the_ground_is_in_the_air(theta: float) -> None:
     h = geometry.support(theta, a=2.0, b=1.0)
     for z in (ulps_above(h, 20), h + 1.0):
         found = scene(theta=theta, omega=1.3, z=z).initial_state
@@ -233,14 +235,14 @@ def test_beyond_8_ulp_it_is_in_the_air(theta: float) -> None:
 
 
 @pytest.mark.parametrize("theta", ANGLES)
-def test_under_the_ground_is_refused(theta: float) -> None:
+def test_a_start_below_the_ground_is_rejected(theta: float) -> None:
     h = geometry.support(theta, a=2.0, b=1.0)
     for z in (ulps_above(h, -20), 0.5 * h, 0.0, -3.0):
         assert_refused("z", z, scene, theta=theta, z=z)
 
 
 @pytest.mark.parametrize("theta", ANGLES)
-def test_moving_into_the_ground_is_refused(theta: float) -> None:
+def test_a_start_moving_into_the_ground_is_rejected(theta: float) -> None:
     along = scene(theta=theta, omega=1.3).initial_state.z_dot
     for z_dot in (along - 1e-9, along - 4.0):
         assert_refused("z_dot", z_dot, scene, theta=theta, omega=1.3, z_dot=z_dot)
@@ -249,7 +251,7 @@ def test_moving_into_the_ground_is_refused(theta: float) -> None:
 
 
 @pytest.mark.parametrize("theta", ANGLES)
-def test_a_given_slip_is_sliding(theta: float) -> None:
+def test_a_start_with_slip_slides(theta: float) -> None:
     along = scene(theta=theta, omega=1.3).initial_state.x_dot
     for x_dot in (along * (1 + 1e-9), along - 2.0):
         found = scene(theta=theta, omega=1.3, x_dot=x_dot, friction=0.9).initial_state
@@ -267,7 +269,7 @@ def test_a_given_slip_is_sliding(theta: float) -> None:
         (0.3, Mode.ROLLING),
     ],
 )
-def test_rest_is_equilibrium(theta: float, mode: Mode) -> None:
+def test_a_body_rests_only_in_equilibrium(theta: float, mode: Mode) -> None:
     """Rest needs |h'| within 8 ulp: the nearest doubles to the first multiples of pi/2."""
     assert scene(theta=theta).initial_state.mode == mode
     assert scene(theta=theta, omega=1e-9).initial_state.mode != Mode.REST

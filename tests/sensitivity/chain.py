@@ -57,7 +57,7 @@ def rates(mode: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def guard(kind: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
-    """The function that vanishes at an event; `side` is that of the slip that begins at SLIP."""
+    """The function that vanishes at an event; `side` is that of the slip that starts at SLIP."""
     h, _, h2 = support(y[2], p)
     into = p["gravity"] * np.cos(p["slope"])
     if kind == "IMPACT":
@@ -193,7 +193,7 @@ def chain(motion: Trajectory, wrt: list[str]) -> tuple[Any, Any]:
 
 
 def _side(state: Any, p: Mapping[str, Any]) -> int:
-    """The sign of the slip of a sliding state, also where it only begins."""
+    """The sign of the slip of a sliding state, also where it only starts."""
     if state.mode.name != "SLIDING":
         return 0
     y = np.array([state.x, state.z, state.theta, state.x_dot, state.z_dot, state.omega])
@@ -202,6 +202,6 @@ def _side(state: Any, p: Mapping[str, Any]) -> int:
 
 
 def _slip(y: Any, p: Mapping[str, Any]) -> int:
-    """The sign of a slip that begins: against the friction that rolling would need."""
+    """The sign of a slip that starts: against the friction that rolling would need."""
     acceleration = rates("ROLLING", 0, y, p)[3] - p["gravity"] * np.sin(p["slope"])
     return -int(np.sign(acceleration.real))

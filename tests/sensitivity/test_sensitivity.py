@@ -1,4 +1,4 @@
-"""Derivatives through events agree with equations of their own, and say how good they are."""
+"""Derivatives through events agree with independent equations and state their accuracy."""
 
 import math
 import re
@@ -72,7 +72,7 @@ def drawn(rng: np.random.Generator) -> tuple[Trajectory, list[str]]:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_drawn_scenes_agree_with_the_chain(seed: int) -> None:
+def test_random_scenes_agree_with_the_variational_chain(seed: int) -> None:
     """The chain integrates with tolerances of 1e-12 and 1e-13, which a few events magnify."""
     motion, wrt = drawn(np.random.default_rng(seed))
     found = motion.sensitivity(wrt)
@@ -82,8 +82,8 @@ def test_drawn_scenes_agree_with_the_chain(seed: int) -> None:
     assert (np.abs(found.event_times - times) * rate).max() < 1e-8
 
 
-def test_motions_of_the_reference() -> None:
-    """95 of 106 motions are within 1e-10; the others magnify roundings, as `error` says.
+def test_reference_motions_have_accurate_derivatives() -> None:
+    """95 of 106 motions are within 1e-10; the others magnify roundings, as `error` reports.
 
     The errors that are stated cover 99 of 100 columns, and are mostly within a factor of 100: one
     of the two steps beside the best is farther off by 4 to 64 times, and a value is allowed eight
@@ -119,7 +119,7 @@ def by_any_side(motion: Trajectory, name: str) -> Any:
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
-def test_rolling_keeps_areas() -> None:
+def test_rolling_conserves_phase_space_areas() -> None:
     """det d(theta, D omega)/d(theta0, D0 omega0) = 1 with D = k^2 + h^2 + h'^2.
 
     The determinant is a difference of two products of derivatives, each with an error of 1e-12.
@@ -188,8 +188,8 @@ def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
     )
 
 
-def test_parts_agree_with_the_whole() -> None:
-    """In all modes, by all inputs, within the sum of both errors."""
+def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
+    """In all modes and by all inputs, they agree within the sum of both errors."""
     modes, seen = set(), 0
     for seed in range(40):
         motion, wrt = drawn(np.random.default_rng(seed))
@@ -207,9 +207,9 @@ def test_parts_agree_with_the_whole() -> None:
     assert {Mode.ROLLING, Mode.SLIDING} <= modes and seen > 40
 
 
-def test_derivatives_that_grow() -> None:
-    """They are those of the motion's own arcs in 60 digits, up to a growth of 1e12; the exact
-    motion parts from it by roundings that grow, and the error covers that. Then they are refused.
+def test_growing_derivatives_are_accurate_until_they_are_rejected() -> None:
+    """They agree with the motion's own arcs in 60 digits up to a growth of 1e12, and are refused
+    beyond; the exact motion departs by growing roundings, which the error covers.
 
     At 14 s the exact motion has dtheta/dtheta0 = -8.851e8. The product of six parts, each with
     an error of some 1e-12, is within 1e-10.
@@ -236,7 +236,7 @@ def test_derivatives_that_grow() -> None:
     assert early.state[0, 2, 0] == pytest.approx(-8.851e8, rel=1e-3)
 
 
-def test_errors_of_bounces_are_covered() -> None:
+def test_stated_errors_cover_the_true_errors_of_bounces() -> None:
     """Of random bodies without friction, elastic or not, against 60 digits from the start."""
     rng = np.random.default_rng(6)
     shares: list[float] = []
@@ -259,7 +259,7 @@ def test_errors_of_bounces_are_covered() -> None:
     assert np.median(shares) > 1e-3
 
 
-def test_event_times_do_not_depend_on_the_samples() -> None:
+def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
     """A body that slides on ice, where a slope makes and ends slips; in 40 digits the first REVERSE
     moves by -0.00998485024303 per radian of slope."""
     ice = Scene(
@@ -276,8 +276,8 @@ def test_event_times_do_not_depend_on_the_samples() -> None:
         assert np.array_equal(alone.event_times, motion.sensitivity(wrt).event_times)
 
 
-def test_the_message_of_other_events() -> None:
-    """An ending is no event that a neighbour has in place of another one."""
+def test_a_message_names_the_events_in_which_a_neighbour_differs() -> None:
+    """The end of a motion is not an event that a neighbour has in place of another."""
     landing = simulate(DROP, 1.0).events[0].t
     with pytest.raises(ValueError, match=r"there is no IMPACT to \w+ at t = 0\.\d+ s$"):
         simulate(DROP, landing).sensitivity("theta")
@@ -287,7 +287,7 @@ def test_the_message_of_other_events() -> None:
         simulate(DROP, np.nextafter(landing, 0)).sensitivity("theta")
 
 
-def test_a_forecast_beyond_its_distance_warns() -> None:
+def test_a_forecast_beyond_its_stated_distance_warns() -> None:
     motion = simulate(DROP, [0.3, 1.0])
     known = motion.sensitivity(("theta", "friction", "t"))
     for name, distance in zip(known.wrt, known.distance.tolist(), strict=True):
@@ -301,7 +301,7 @@ def test_a_forecast_beyond_its_distance_warns() -> None:
         upwards.forecast(theta=-1e-3)
 
 
-def test_a_forecast_of_changes_that_are_too_large_together_warns() -> None:
+def test_a_forecast_for_changes_too_large_in_combination_warns() -> None:
     """Theta and omega turn the body to another angle at its landing, together twice as far."""
     known = simulate(DROP, [0.3, 1.0]).sensitivity(("theta", "omega"))
     theta, omega = (0.9 * known.distance).tolist()
@@ -314,7 +314,7 @@ def test_a_forecast_of_changes_that_are_too_large_together_warns() -> None:
     assert together and all("theta, omega change together" in text for text in together)
 
 
-def test_a_forecast_is_true_to_second_order() -> None:
+def test_a_forecast_is_accurate_to_second_order() -> None:
     """Half the change leaves a quarter of the error; events keep their order within `distance`."""
     motion = simulate(DROP, [0.3, 1.0])
     known = motion.sensitivity(("theta", "friction"))
@@ -336,7 +336,7 @@ def test_a_forecast_is_true_to_second_order() -> None:
         assert near == [kinds(name, 0)] * 2 and far != near
 
 
-def test_one_side_other_times_and_methods_with_steps() -> None:
+def test_derivatives_hold_at_any_time_at_bounds_and_with_steps() -> None:
     """At a bound there is one side; a method's error counts; x moves with x, and t by the rates."""
     motion = simulate(DROP, np.sort([0.0, 1.0, *(e.t for e in simulate(DROP, 1.0).events)]))
     known = motion.sensitivity(("x", "t", "theta"))
@@ -360,7 +360,7 @@ def test_one_side_other_times_and_methods_with_steps() -> None:
 
 
 @pytest.mark.parametrize("package", ["numpy", "jax", "torch"])
-def test_the_page_runs(package: str) -> None:
+def test_the_code_on_the_page_gives_the_same_gradient(package: str) -> None:
     """Its recipes have the gradient of `sensitivity`."""
     pytest.importorskip(package)
     page = (ROOT / "docs" / "sensitivity.md").read_text(encoding="utf-8")

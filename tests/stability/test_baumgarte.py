@@ -46,7 +46,7 @@ def growth(method: str, alpha: float, beta: float, step: float) -> float:
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
-def test_feedback_on_a_circle_is_the_stability_function(method: str) -> None:
+def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> None:
     """The constraints of a circle are linear in the errors: each step multiplies f1 by R(-2 alpha
     h) and (f2, f2') by R of their matrix. From an error of 1e-6, 100 ulp of the coordinates are
     2e-14, times the growth in the steps (and 1/h for a rate); gains are below and above the
@@ -106,7 +106,7 @@ LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.39365152
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
-def test_the_limit_of_equal_gains(method: str) -> None:
+def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> None:
     """Runs are lost at the end of the stability interval of 2 alpha h, by bisection: within 1 %. On
     the ellipse 600 steps must raise 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and the
     constraints change as it turns."""
@@ -119,7 +119,7 @@ def test_the_limit_of_equal_gains(method: str) -> None:
 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("mix", [(1.0, 0.5), (0.2, 1.0), (1.0, 3.0)])
-def test_gains_have_a_limit(method: str, mix: tuple[float, float]) -> None:
+def test_gains_above_their_limit_ruin_the_motion(method: str, mix: tuple[float, float]) -> None:
     """Gains grow in a fixed proportion until a step multiplies constraint errors by more than 1: 5
     % below the limit residuals stay small for 600 steps, 5 % above the motion is lost."""
     limit = largest(
@@ -141,9 +141,10 @@ def test_gains_have_a_limit(method: str, mix: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("gains", [(10.0, 10.0), (40.0, 5.0), (3.0, 30.0)])
-def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> None:
+def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float, float]) -> None:
     """Above the limit a warning names the largest step: it is stable and 1.01 of it is not. A run
-    with it warns of no gains. (The step is rounded down to 1e-6 s, less than 1e-4 of it.)"""
+    with that step does not warn of its gains. (The step is rounded down to 1e-6 s, less than 1e-4
+    of it.)"""
     limit = largest(lambda step: growth(method, *gains, step) <= 1 + 1e-12, 1e-3, 10.0, 1e-9)
     how = kept_by("baumgarte", method=method, baumgarte=gains, raise_on_failure=False)
     with pytest.warns(rl.StabilityWarning, match="does not bear the gains") as caught:
@@ -162,7 +163,7 @@ def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> No
     assert not any("gains" in str(warning.message) for warning in then)
 
 
-def test_controlled_steps_find_the_limit_themselves() -> None:
+def test_controlled_steps_find_the_stability_limit_by_themselves() -> None:
     """Gains of 200 1/s with dop853 at its default tolerances keep steps near the limit (at most
     twice it on average, since errors are known only after a step), without a loss or a warning."""
     how = kept_by("baumgarte", method="dop853", baumgarte=(200.0, 200.0))
@@ -176,7 +177,7 @@ def test_controlled_steps_find_the_limit_themselves() -> None:
 # ----------------------------------------------------------------------------- the price of gains
 
 
-def test_small_gains_hold_like_their_square_and_large_ones_spoil_the_phase() -> None:
+def test_errors_fall_with_the_square_of_small_gains_and_large_gains_spoil_the_phase() -> None:
     """Truncation pushes the constraints by d on average: errors are d t^2/2 without feedback, and
     d/beta^2 with it. Both give the same d to 15 % (d also varies within a turn, which matters more
     the smaller the mean), and the slope is -2 up to gains of 2.

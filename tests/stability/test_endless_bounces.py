@@ -1,6 +1,6 @@
 """Infinitely many bounces in a finite time (Zeno): a body dropped flat, e = 0.5.
 
-Bounce n takes 2 v e^n/g, all of them v/g (1 + e)/(1 - e). A loop over events never passes that
+Bounce n takes 2 v e^n/g, all together v/g (1 + e)/(1 - e). A loop over events never passes that
 time, and equal steps sink into the ground; the package sums the rest of the series.
 """
 
@@ -45,7 +45,7 @@ def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
 
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-4])
-def test_steps_of_one_size_sink_into_the_ground(step: float) -> None:
+def test_equal_steps_let_the_body_sink_into_the_ground(step: float) -> None:
     """Symplectic Euler steps turn the speed to -e times it where the body is in the ground and
     falls: the speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) a second."""
     t, z = sinking(SPEED, E, step, 6.0)
@@ -56,7 +56,7 @@ def test_steps_of_one_size_sink_into_the_ground(step: float) -> None:
 
 
 @pytest.mark.parametrize("theta", [0.1, 0.3])
-def test_a_tilted_body_errs_by_the_square_of_the_speed_of_rest(theta: float) -> None:
+def test_errors_of_a_tilted_body_scale_with_the_square_of_the_rest_speed(theta: float) -> None:
     """Bounces turn a tilted body, so that the summed ones differ: they last in proportion to the
     speed of rest, and the body turns in proportion to it meanwhile: slope 2. Whole bounces scatter
     the errors by e^-2 at most: six speeds a decade over four decades, so 0.1 of a slope. The errors

@@ -1,4 +1,4 @@
-"""Errors of energy and phase grow over thousands of half swings as theory says.
+"""Errors of energy and phase grow over thousands of half swings as theory predicts.
 
 A method that drifts changes the energy in proportion to time and the phase by its square. Gauss
 collocation neither drifts nor, with compensated sums and stages solved to the last bit, adds up
@@ -49,14 +49,14 @@ def walks() -> Errors:
 
 
 @pytest.mark.parametrize(("drift", "expected"), [(0.0, 0.5), (1.0, 1.0)])
-def test_growth_is_measured(drift: float, expected: float) -> None:
-    """Exponents of made walks are right; they scatter by 0.04 from seed to seed."""
+def test_growth_exponents_are_measured_correctly(drift: float, expected: float) -> None:
+    """Exponents of synthetic walks are right; they scatter by 0.04 from seed to seed."""
     steps = np.random.default_rng(1).choice([-1.0, 1.0], (RUNS, SAMPLES))
     assert growth(np.cumsum(steps + drift, axis=1)) == pytest.approx(expected, abs=0.1)
 
 
-def test_energy_error_is_measured() -> None:
-    """A part of 1e-9 of omega is 2e-9 of the kinetic energy; at any angle the energy is the
+def test_the_energy_error_is_measured_correctly() -> None:
+    """A change of 1e-9 in omega is 2e-9 of the kinetic energy; at any angle the energy is the
     package's, which has some ulp of a sum of four products."""
     omega = QUICK.omega
     kinetic = (GYRATION2 + B * B) * omega**2 / 2
@@ -72,7 +72,7 @@ def test_energy_error_is_measured() -> None:
 
 
 @pytest.mark.parametrize("name", DRIFTING)
-def test_what_drifts_drifts(name: str) -> None:
+def test_drifting_methods_lose_energy_and_phase_as_predicted(name: str) -> None:
     """Energy errors grow like time over three decades, phase errors like its square over the last
     decade: before, the truncation of the period, in proportion to time, is not yet small."""
     drifting = errors(QUICK, SAMPLES, [DRIFTING[name]])
@@ -89,8 +89,8 @@ def test_what_drifts_drifts(name: str) -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize(("name", "power"), [("none", 2), ("gains of 10", 1), ("projection", 1)])
-def test_constraints_alone_do_not_keep_the_energy(name: str, power: int) -> None:
-    """An explicit method along the constraints loses energy in proportion to time, over three
+def test_constraints_alone_do_not_conserve_energy(name: str, power: int) -> None:
+    """An explicit method along the constraints loses energy in proportion to time over three
     decades; without them, the body also leaves the height that belongs to its speed, like t^2."""
     start = simulate(FED_BACK, 0.0).energy[0]
     lost = np.abs(kept(name).energy / start - 1)
@@ -103,7 +103,7 @@ def test_constraints_alone_do_not_keep_the_energy(name: str, power: int) -> None
 # ----------------------------------------------------------------- Gauss walks at random
 
 
-def test_energy_of_gauss_walks() -> None:
+def test_the_energy_of_gauss_walks_at_random() -> None:
     """A step errs by at most an ulp of its largest change of omega, and the errors walk at random
     without a drift: the mean of the runs stays within its own scatter (5 sigma)."""
     energy = walks().energy
@@ -118,11 +118,11 @@ def test_energy_of_gauss_walks() -> None:
     assert rms(last) < math.sqrt(QUICK.steps * SAMPLES) * one_step
 
 
-def test_phase_of_gauss_walks() -> None:
+def test_the_phase_of_gauss_walks_at_random() -> None:
     """Delays are compared with their mean over all runs: truncation, which changes the period.
 
-    The fit begins at 100 half swings, where the walk of the energy dominates the phase. In made
-    walks the exponent scatters by 0.1.
+    The fit starts at 100 half swings, where the walk of the energy dominates the phase. In
+    synthetic walks the exponent scatters by 0.1.
     """
     late = spread(10, SAMPLES) - 1
     half_swings, delay = walks().half_swings[late], walks().delay[:, late]

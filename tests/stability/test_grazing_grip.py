@@ -1,7 +1,7 @@
-"""Friction a hair above or below the need of rolling: the grip holds, or is lost for an instant.
+"""Friction a hair above or below the need of rolling: the grip holds or is lost for an instant.
 
-The need has a smooth maximum on the way up: it exceeds a friction that is short by 10^-k on
-10^(-k/2) of the path. Samples, or the ends of steps, do not show this from some k on; the
+The need has a smooth maximum on the way up: it exceeds a friction that falls short by 10^-k over
+10^(-k/2) of the path. From some k on, neither samples nor the ends of steps show this; the
 certificate decides signs of polynomials and misses nothing.
 """
 
@@ -51,7 +51,7 @@ def friction(k: int, side: int) -> float:
         return float(need()[0] * (1 + side * mp.mpf(10) ** -k))
 
 
-def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
+def test_samples_miss_shortfalls_of_friction_up_to_the_square_of_their_spacing() -> None:
     """A maximum is flat: slope -2, up to the scatter of the rms of 64 draws, a tenth of it, over
     two decades: 0.05. So a grid finds a lack of friction only above this shortfall."""
     counts = [30, 100, 300, 1000, 3000]
@@ -86,7 +86,7 @@ def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
 
 
 @pytest.mark.parametrize("slope", [0.0, 1e-300], ids=["by the certificate", "by the event finder"])
-def test_the_motion_slips_where_it_is_short_and_nowhere_else(slope: float) -> None:
+def test_the_motion_slips_only_where_friction_is_insufficient(slope: float) -> None:
     """On level ground the certificate gives the angle; on the slightest slope an event of the
     stepped motion, which searches for the minima of mu N - |F|, not for a change of sign. The angle
     is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp of the need

@@ -1,7 +1,7 @@
 """Phase errors of methods from one half turn to 1e9.
 
-An energy error that grows like t gives a phase error like t^2; a constant one gives t; drifting
-constraints give t^3. The number of steps of a stepped motion grows with its length in any case.
+An energy error that grows like t gives a phase error like t^2; a constant one gives t, drifting
+constraints t^3. The number of steps of a stepped motion grows with its length in any case.
 """
 
 from typing import Any
@@ -22,9 +22,9 @@ ALL: dict[str, tuple[int, dict[str, Any]]] = LAWS | {
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_the_phase_is_lost_by_a_power_of_time(name: str) -> None:
+def test_the_phase_error_grows_as_a_power_of_time(name: str) -> None:
     """Slopes are taken from 20 to 500 half turns (10 to 80 for ggl, which is slow); the next power
-    is down by 1/20 at the first span: 0.1 or so of a slope there and half of it in the fit. The law
+    is down by 1/20 at the first span: about 0.1 of a slope there and half of it in the fit. The law
     predicts the loss of a radian; 1e9 half turns take more steps than `max_steps` allows."""
     power, how = ALL[name]
     spans = np.array([10.0, 20.0, 40.0, 80.0]) if "ggl" in name else SPANS

@@ -1,8 +1,8 @@
 """Motions with a tolerance of 1e-2, as in the report: some leave their constraints, some keep them,
 some keep their energy.
 
-A tolerance bounds the error of a step, not of the motion: only a quantity that is kept by
-construction is kept at any tolerance.
+A tolerance bounds the error of a step, not of the motion: only a quantity kept by construction is
+kept at any tolerance.
 """
 
 from functools import cache
@@ -35,10 +35,10 @@ def kind(name: str) -> str:
 
 
 @each_run
-def test_constraints_are_kept_by_construction_or_not(scene: str, name: str) -> None:
+def test_constraints_are_satisfied_only_by_construction(scene: str, name: str) -> None:
     """Free constraints err by half a semi-axis or more: 100 steps with errors of 1e-2, and drift
-    like t^2. Feedback leaves the errors of some steps, between a tenth of the tolerance and a
-    semi-axis. All other methods hold 16 ulp of theta, also at samples between steps."""
+    like t^2. Feedback leaves the errors of a few steps, between a tenth of the tolerance and a
+    semi-axis. All other methods keep within 16 ulp of theta, also at samples between steps."""
     found = run(scene, name)
     if kind(name) == "none":
         assert found.missed.max() > 0.5
@@ -50,7 +50,7 @@ def test_constraints_are_kept_by_construction_or_not(scene: str, name: str) -> N
 
 
 @each_run
-def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
+def test_energy_is_conserved_only_by_construction(scene: str, name: str) -> None:
     """The exact motion keeps the energy (4 ulp: a sum of squares of rounded rates), and projection
     with the energy (8 ulp); all other methods lose more than 1e-4, or 1e-5 with Radau's steps of a
     thirtieth of a swing."""
@@ -65,7 +65,7 @@ def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
 
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", ["dopri5, projection", "dopri5"])
-def test_constraints_do_not_make_a_motion_right(scene: str, name: str) -> None:
+def test_satisfying_the_constraints_does_not_make_a_motion_right(scene: str, name: str) -> None:
     """dopri5 loses more than twice the tolerance of its energy and a tenth of a radian, although
     projection or rolling holds its constraints to the last digit. The losses depend on the steps
     that are rejected, and so, after a minute, on the last bits."""

@@ -1,8 +1,8 @@
 """Painleve's paradox: friction that presses the body into the ground faster than N pushes it out.
 
-A slide has N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
-force then continues with an N that pulls or is infinite. The package ends the motion there, with a
-status whose sentence says why.
+A slide has N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a force law
+then continues with an N that pulls or is infinite. The package ends the motion there, with a status
+whose sentence says why.
 """
 
 import dataclasses
@@ -43,7 +43,7 @@ BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), slidin
 
 
 @pytest.mark.parametrize("scene", BEYOND, ids=["3 at 0.9", "3 at 0.3", "1.5", "1.36"])
-def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene) -> None:
+def test_a_force_law_continues_with_nonsense_where_the_package_jams(scene: Scene) -> None:
     """N is negative from the first instant, though gravity presses (c = g): the ground pulls, the
     slip grows, and the body soon moves with more than twice its energy, mostly until numbers
     overflow, with steps of either size. The package ends at that instant, with a sentence and
@@ -74,9 +74,12 @@ def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene)
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirrored: bool) -> None:
-    """N = g/B, however large, holds below the critical friction: B is a part `distance` of Gnn at
-    the critical angle, and the slip of 5 m/s ends in proportion to B. Nearer B is a few ulp."""
+def test_a_slide_jams_above_the_critical_friction_and_not_below(
+    distance: float, mirrored: bool
+) -> None:
+    """N = g/B, however large, holds below the critical friction: B is a fraction `distance` of Gnn
+    at the critical angle, and the slip of 5 m/s ends in proportion to B. Closer still, B is a few
+    ulp."""
     exact = float(critical()[0])
     angle = float(critical()[1])
     start = {"theta": math.pi - angle, "x_dot": -5.0} if mirrored else {}
@@ -105,7 +108,7 @@ def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirr
 
 
 @pytest.mark.parametrize("distance", [1e-13, 3e-14, 1e-14, 3e-15])
-def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: float) -> None:
+def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distance: float) -> None:
     """With B of a few ulp the impulse of N ends the slip before the body turns, whether it stands,
     turns towards a smaller B or a larger one. It rolls from then on, as with ten times as much B;
     its speed follows from the impulse alone."""
@@ -130,7 +133,7 @@ def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: flo
 
 def test_nothing_jams_below_the_critical_friction() -> None:
     """None of 300 random starts of the 2:1 disc, of every kind, level and on slopes, jams at 1 -
-    1e-9 of the critical friction; some do at three times it, so that the starts could jam."""
+    1e-9 of the critical friction; some do at three times as much, so the starts could jam."""
     jammed = {}
     for friction in (CRITICAL * (1 - 1e-9), 3 * CRITICAL):
         count = 0

@@ -1,4 +1,4 @@
-"""Beside the separatrix a motion is decided by less than any error: methods roll over or return.
+"""Close to the separatrix any error decides whether a motion rolls over or returns.
 
 The body starts flat with omega = omega_R (1 +- 10^-k) and lingers at the tip for
 ln(1/distance)/lambda. An error of the energy on the way there shifts the separatrix of a method,
@@ -36,16 +36,19 @@ def first_wrong(side: int, **how: Any) -> int | None:
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
-def test_these_decide_right_down_to_1e_minus_14(how: dict[str, Any], side: int) -> None:
-    """Exact motions decide right to 45 ulp of omega; stepped motions with their energy, too."""
+def test_motions_that_conserve_energy_are_right_down_to_1e_minus_14_off_the_separatrix(
+    how: dict[str, Any], side: int
+) -> None:
+    """Exact motions decide right to 45 ulp of omega, and so do stepped ones that keep their
+    energy."""
     assert first_wrong(side, **how) is None
 
 
 @pytest.mark.parametrize("name", FAIL)
-def test_every_stepped_method_decides_wrong_from_some_k_on(name: str) -> None:
+def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str) -> None:
     """A method is wrong between its own separatrix and the true one, from k = -log10(distance) on,
-    on the side of its own one. A shift of rounding size is known to a unit only. (ggl is too slow
-    for a bisection.)"""
+    on the side of its own. A shift of rounding size is known only to a unit. (ggl is too slow for a
+    bisection.)"""
     above, below = (first_wrong(side, **FAIL[name]) for side in SIDES)
     assert (above is None) != (below is None)
     if "ggl" not in name:
@@ -56,7 +59,7 @@ def test_every_stepped_method_decides_wrong_from_some_k_on(name: str) -> None:
         assert (above or below) == nearer or abs(shift) < 10 * UNIT
 
 
-def test_the_separatrix_of_rk4_is_off_by_its_order() -> None:
+def test_the_separatrix_error_of_rk4_follows_its_order() -> None:
     """Steps of 0.02, 0.01 and 0.005 s lose energy on the way up like the step's fourth power."""
     steps = [0.02, 0.01, 0.005]
     shifts = [own_separatrix(method="rk4", step=step) for step in steps]
@@ -66,7 +69,7 @@ def test_the_separatrix_of_rk4_is_off_by_its_order() -> None:
 
 
 @pytest.mark.parametrize("name", ["dop853", "dopri5"])
-def test_the_separatrix_of_the_pairs_is_off_by_their_tolerance(name: str) -> None:
+def test_the_separatrix_error_of_embedded_pairs_follows_their_tolerance(name: str) -> None:
     """The step follows rtol^(1/p), the error its power p: slope 1 over seven decades. The distances
     are sums of errors of either sign, which scatter by half a decade; over 8 points whose spread is
     2.3 decades that is 0.08 of a slope, and twice that is allowed."""

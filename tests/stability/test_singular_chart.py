@@ -1,4 +1,4 @@
-"""Places where the report's formulas divide by zero although the motion is regular.
+"""Angles where the report's formulas divide by zero although the motion is regular.
 
 The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: both
 are infinite at every quarter turn, lambda3 of a circle everywhere. The linear system of the
@@ -45,7 +45,7 @@ def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
     assert abs(lost[-1]) > 1e-5
 
 
-def test_the_tangent_does_not_get_over_the_tip() -> None:
+def test_the_printed_tangent_does_not_pass_the_tip() -> None:
     """The printed tan is singular at a quarter turn: the motion stops there with a message."""
     q, q_dot = start(0.0, 3.2)
     how: dict[str, Any] = SHAPE | {"equations": "printed", "method": "rk4", "step": 0.02}

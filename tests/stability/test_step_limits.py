@@ -1,7 +1,7 @@
 """Explicit steps that are too large: growth of small rocking in runs agrees with theory.
 
 Small rocking is theta'' = -Omega^2 theta with Omega^2 = g (a^2 - b^2)/(b (k^2 + b^2)), and a step
-turns (theta, omega/Omega) by the angle and scales it by the size of R(i y), y = Omega h: it is
+turns (theta, omega/Omega) by the angle and scales it by the magnitude of R(i y), y = Omega h: it is
 bounded up to the end of the stability interval on the imaginary axis.
 """
 
@@ -34,7 +34,7 @@ from stability_laws import (
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
-def test_a_step_makes_what_the_stability_function_says(method: str) -> None:
+def test_steps_scale_the_amplitude_as_the_stability_function_predicts(method: str) -> None:
     """The amplitude after 200 steps is |R(i y)|^200 to 1e-8, for y from 0.2 up to where this power
     is 10 (1e-5 rad: the nonlinear part is 1e-10 a step), except where it is below 1e-100."""
     worst = 0.0
@@ -53,7 +53,7 @@ LIMITS = {"rk4": math.sqrt(8), "dopri5": 0.997189, "dop853": 5.960360}
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
-def test_the_limit_of_small_rocking(method: str) -> None:
+def test_small_rocking_is_stable_up_to_the_limit(method: str) -> None:
     """By bisection on runs, 2000 steps do not increase the amplitude up to the limit, sqrt 8 for
     the classical method, to 1e-4 (2000 steps add up to 1 %, or 0.1 % for dopri5, 1e-4 off it)."""
     limit = interval(method, 1j)
@@ -63,7 +63,7 @@ def test_the_limit_of_small_rocking(method: str) -> None:
     assert found == pytest.approx(limit, rel=1e-4)
 
 
-def test_dopri5_grows_by_little_for_long() -> None:
+def test_the_amplitude_of_dopri5_grows_slowly_beyond_its_stability_interval() -> None:
     """dopri5 beyond its interval grows by 1.4e-6 a step at y = 1, by 0.3 % at 1.5 and by 3 % at 2,
     by a hundredth at 1.73. The other methods reach a hundredth within 0.5 % of their limits."""
     for y, much in ((1.0, 1.389e-6), (1.5, 3.018e-3), (2.0, 3.185e-2)):
@@ -81,7 +81,7 @@ def test_dopri5_grows_by_little_for_long() -> None:
 # ---------------------------------------------------------------------- methods without a limit
 
 
-def test_radau_has_no_limit() -> None:
+def test_radau_has_no_step_limit() -> None:
     """Radau is L-stable: no amplitude grows, up to steps of 16 swings; large steps damp it."""
     for y in (0.1, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0):
         found = amplitude("radau", y, 300)
@@ -91,7 +91,7 @@ def test_radau_has_no_limit() -> None:
 
 
 @pytest.mark.parametrize("stages", [2, 3, 4])
-def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -> None:
+def test_gauss_keeps_the_amplitude_until_its_stages_fail(stages: int) -> None:
     """|R(i y)| = 1 for every y, but the stages come from an iteration that multiplies errors by y
     times the spectral radius of the matrix A, one over the nearest pole of R, which is the Pade
     approximant of e^z: beyond the pole it cannot converge, and the motion ends with STEP_TOO_LARGE.
@@ -115,7 +115,7 @@ def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -
 
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
-def test_the_energy_alone_bounds_the_steps_of_the_multipliers(name: str) -> None:
+def test_only_conserving_the_energy_keeps_large_multiplier_steps_bounded(name: str) -> None:
     """rk4 in five coordinates without feedback has the limit of rolling, sqrt 8, below the 3 here;
     feedback of 10/s is lost before. With the energy 300 steps of any size up to 10 keep the
     amplitude to a thousandth, the effect of 1e-12 of the energy, its last digits."""

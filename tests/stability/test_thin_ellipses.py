@@ -17,9 +17,9 @@ CONTROLLED: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("how", CONTROLLED.values(), ids=CONTROLLED)
-def test_controlled_steps_grow_with_the_logarithm_only(how: dict[str, Any]) -> None:
+def test_the_number_of_controlled_steps_grows_only_logarithmically(how: dict[str, Any]) -> None:
     """Each decade of a/b adds as many steps or fewer: near the flat position the motion is similar
-    to itself, so that a factor in a/b adds a number of steps. As a power: a/b to less than 0.2."""
+    to itself, so that each factor in a/b adds a number of steps. As a power of a/b: below 0.2."""
     counts = [steps_taken(ratio, **how) for ratio in RATIOS]
     told(", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))
@@ -31,7 +31,7 @@ def test_controlled_steps_grow_with_the_logarithm_only(how: dict[str, Any]) -> N
 
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
-def test_five_coordinates_cost_less_than_the_root_of_a_over_b(name: str) -> None:
+def test_the_cost_of_five_coordinates_grows_slower_than_the_root_of_a_over_b(name: str) -> None:
     """r and psi turn fast over the flat side, and take part in the control of the error."""
     power = exponent(RATIOS[2:], [steps_taken(ratio, **kept_by(name)) for ratio in RATIOS[2:]])
     told(f"{name}: as a power {power:.3f}")
@@ -39,7 +39,7 @@ def test_five_coordinates_cost_less_than_the_root_of_a_over_b(name: str) -> None
 
 
 @pytest.mark.parametrize(("method", "last"), [("rk4", 6), ("gauss", 6), ("radau", 5)])
-def test_steps_of_one_size_grow_like_a_over_b(method: str, last: int) -> None:
+def test_the_number_of_equal_steps_grows_like_a_over_b(method: str, last: int) -> None:
     """The passage of the flat side is b/a of the swing, and the step a part of it: slope 1, except
     for terms of the next order, 1/10 at a/b = 10, and the factors of 2^(1/4), which at both ends of
     a fit over a factor of 30 are 0.05 each."""

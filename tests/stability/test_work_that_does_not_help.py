@@ -1,4 +1,4 @@
-"""More work beyond rounding makes no answer better: its errors stay there, or rise again.
+"""More work beyond rounding improves no answer: its errors stay there or rise again.
 
 Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
 sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated
@@ -45,7 +45,7 @@ def known() -> np.ndarray:
         return np.array([float(moving.state(mp.mpf(SPAN)).theta) for moving in motions])
 
 
-def test_plain_steps_get_worse_with_more_of_them() -> None:
+def test_plain_sums_get_worse_with_more_steps() -> None:
     """Rms errors of a hundred starts have slope 4 in double precision; in single precision, where
     few steps show it, slope 4 to 2^-5 s, the least error at 2^-6 s, and then slope -1/2 (0.12: a
     tenth of each rms is the scatter of a hundred starts, over 2^4 in steps): 2^-12 s costs 64 times
@@ -69,7 +69,7 @@ FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16
 
 
 @pytest.mark.parametrize("method", ORDERS)
-def test_the_package_gets_no_worse(method: str) -> None:
+def test_the_package_gets_no_worse_with_more_steps(method: str) -> None:
     """A method follows its order down to rounding, and then has no slope with up to a hundred
     thousand steps (0.15: eight starts), and an error of 4 ulp of the largest angle, 0.4 rad."""
 
@@ -88,7 +88,7 @@ def test_the_package_gets_no_worse(method: str) -> None:
 
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
-def test_constraints_cost_digits_but_no_more_with_more_steps(name: str) -> None:
+def test_constraints_cost_some_accuracy_but_no_more_with_more_steps(name: str) -> None:
     """dop853 in five coordinates solves for them at every stage: 16 ulp of the largest angle."""
     for power in (8, 10):
         found, _ = ends(**kept_by(name, method="dop853", step=2.0**-power))
@@ -102,7 +102,7 @@ ASKED: dict[str, tuple[range, range, float]] = {
 
 
 @pytest.mark.parametrize("method", ASKED)
-def test_tolerances_below_rounding_buy_nothing(method: Any) -> None:
+def test_tolerances_below_rounding_gain_nothing(method: Any) -> None:
     """Down to rounding the error is evaluations to the power of minus the order (a third of it
     either way: steps change with the tolerance); below, each digit requested costs a fifth more or
     half as much again, and the error stays within 16 ulp of the angle, some 32 rad after ten half

@@ -1,4 +1,4 @@
-"""A StabilityWarning comes exactly where a motion has lost what it must keep, and says how much."""
+"""A StabilityWarning comes exactly where a motion has lost what it must keep, and how much."""
 
 import math
 import warnings
@@ -52,7 +52,7 @@ def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, 
 @pytest.mark.parametrize("slope", [0.0, 0.05])
 @pytest.mark.parametrize("how", [{"model": "rolling", "method": "rk4"}, DRIFTING])
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
-def test_losses_are_what_the_samples_say(how: dict[str, Any], slope: float) -> None:
+def test_reported_losses_agree_with_the_samples(how: dict[str, Any], slope: float) -> None:
     """Losses agree with the energies and constraints of the trajectory, which are computed
     differently, to some roundings of the largest term of the energy."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=0.2, omega=3.2, slope=slope)
@@ -66,7 +66,7 @@ def test_losses_are_what_the_samples_say(how: dict[str, Any], slope: float) -> N
     assert found.energy > 1e-6
 
 
-def test_the_constraints_lost_are_the_worst_of_three() -> None:
+def test_the_constraint_loss_is_the_largest_of_three_errors() -> None:
     """Each of f2, f3 and f4 is the largest error in one of the motions."""
     worst = set()
     for b, omega, t in ((0.9, 3.0, 1.5), (0.3, 1.0, 0.15), (0.3, 1.0, 0.4)):
@@ -91,7 +91,7 @@ def test_the_constraints_lost_are_the_worst_of_three() -> None:
     ],
 )
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
-def test_nothing_of_it_depends_on_where_x_is_0(how: dict[str, Any]) -> None:
+def test_losses_do_not_depend_on_the_origin_of_x(how: dict[str, Any]) -> None:
     """The origin of x changes neither the motion except x, nor its losses and warnings, bit by bit;
     x is known to an ulp of its start at best."""
     scene = Scene(2.0, 1.0, slope=0.3, theta=0.3, omega=3.5)
@@ -108,7 +108,7 @@ def test_nothing_of_it_depends_on_where_x_is_0(how: dict[str, Any]) -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_the_energy_error_shown_is_the_same_wherever_x_is_0() -> None:
+def test_the_plotted_energy_error_does_not_depend_on_the_origin_of_x() -> None:
     """Energy errors depend on the origin of x only by an ulp of x times m g sin(slope) / scale."""
     scene = Scene(2.0, 1.0, mass=3.0, slope=0.3, theta=0.3, omega=3.5)
     times = np.linspace(0, 6, 101)
@@ -124,7 +124,7 @@ def test_the_energy_error_shown_is_the_same_wherever_x_is_0() -> None:
         assert np.max(np.abs(energy_error(there) - here)) <= allowed
 
 
-def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
+def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
     """Only some steps are checked for losses: a loss that comes and goes may be seen below its
     maximum, so that a warning is certain only above three times the limit."""
     seen = {True: 0, False: 0}
@@ -142,9 +142,9 @@ def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
     assert seen[True] >= 5 and seen[False] >= 30, seen
 
 
-def test_a_projection_hides_no_step_that_is_too_large() -> None:
+def test_projection_hides_no_step_that_is_too_large() -> None:
     """Energy and constraints hold at the ends of steps, but the motion is lost: its angle goes to
-    -22 rad and beyond 60, where the true one never turns back and reaches 38.4."""
+    -22 rad and beyond 60, while the true one never turns back and reaches 38.4."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=3.2)
     how: dict[str, Any] = {"model": "multipliers", "stabilization": "projection+energy"}
     motion, (said,) = advice(scene, np.arange(0, 20.1, 0.2), method="rk4", step=0.2, **how)
@@ -156,7 +156,7 @@ def test_a_projection_hides_no_step_that_is_too_large() -> None:
     assert "take smaller rtol and atol" in said
 
 
-def test_it_comes_with_the_loss_and_not_before() -> None:
+def test_a_warning_comes_with_the_loss_and_not_before() -> None:
     """Steps from fine to coarse, at some of which the constraints or the energy are lost."""
     for how, quantity, least in (
         (DRIFTING, "constraints", 1e-3),
@@ -174,7 +174,7 @@ def test_it_comes_with_the_loss_and_not_before() -> None:
         assert seen == {True, False}
 
 
-def test_it_says_how_much_is_lost_and_what_to_use() -> None:
+def test_a_warning_states_the_loss_and_a_remedy() -> None:
     (said,) = advice(SCENE, 20.0, step=0.02, **DRIFTING)[1]
     assert "by t = 20 s with stabilization 'none'" in said and "use 'projection'" in said
     (said,) = advice(SCENE, 20.0, step=0.2, model="rolling", method="rk4")[1]
@@ -200,7 +200,7 @@ def test_it_says_how_much_is_lost_and_what_to_use() -> None:
         {"model": "multipliers", "stabilization": "ggl", "method": "radau", "step": 0.02},
     ],
 )
-def test_what_is_fine_is_not_warned_of(how: dict[str, Any]) -> None:
+def test_a_good_motion_gives_no_warning(how: dict[str, Any]) -> None:
     assert advice(SCENE, 5.0, **how)[1] == []
 
 
@@ -212,14 +212,14 @@ def test_loose_tolerances_are_taken_at_their_word() -> None:
         simulate(SCENE, 10.0, model="rolling", method="dopri5", rtol=1e-3)
 
 
-def test_it_points_to_the_call() -> None:
+def test_a_warning_points_to_the_calling_line() -> None:
     with pytest.warns(StabilityWarning) as said:
         simulate(SCENE, 20.0, step=0.02, **DRIFTING)
     assert said[0].filename == __file__
     assert issubclass(StabilityWarning, UserWarning)
 
 
-def test_what_has_no_constraints_is_not_told_of_them() -> None:
+def test_a_warning_for_rolling_mentions_no_constraints() -> None:
     """The coordinates of a rolling motion follow from theta, so they lose no constraints."""
     motion, (said,) = advice(
         Scene(2.0, 1.0, theta=0.1), 300.0, model="rolling", method="rk4", step=2.0,

@@ -17,7 +17,7 @@ each = pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 
 
 @each
-def test_the_same_again(make: Callable[[], Trajectory], tmp_path: Path) -> None:
+def test_a_repeated_motion_is_equal(make: Callable[[], Trajectory], tmp_path: Path) -> None:
     motion = make()
     motion.save(tmp_path / "motion.npz")
     again = [make(), rl.load(tmp_path / "motion.npz"), pickle.loads(pickle.dumps(motion))]
@@ -34,7 +34,7 @@ def test_the_same_again(make: Callable[[], Trajectory], tmp_path: Path) -> None:
 
 
 @each
-def test_each_bit_counts(make: Callable[[], Trajectory]) -> None:
+def test_a_motion_with_one_changed_bit_is_unequal(make: Callable[[], Trajectory]) -> None:
     motion = make()
     for name in ("t", "theta", "omega", "x") if motion.t.size else ():
         values = np.array(getattr(motion, name))
@@ -63,7 +63,7 @@ def test_each_bit_counts(make: Callable[[], Trajectory]) -> None:
         assert dataclasses.replace(motion, contact=motion.contact._replace(z=z)) != motion
 
 
-def test_the_sign_of_zero_is_a_bit() -> None:
+def test_the_sign_of_zero_counts() -> None:
     motion = MOTIONS["rolling"]()
     assert motion.x[0] == 0
     other = dataclasses.replace(motion, x=np.where(motion.x == 0, -0.0, motion.x))
@@ -71,12 +71,12 @@ def test_the_sign_of_zero_is_a_bit() -> None:
 
 
 @pytest.mark.parametrize("thing", [None, 1.0, "motion", rl.scenes.report, np.zeros(3)[0]])
-def test_what_is_no_motion_is_not_equal(thing: Any) -> None:
+def test_a_motion_equals_nothing_but_a_motion(thing: Any) -> None:
     assert MOTIONS["rolling"]() != thing
     assert thing not in [MOTIONS["rolling"]()]
 
 
-def test_methods_that_agree_are_not_equal() -> None:
+def test_equal_results_of_different_requests_are_unequal() -> None:
     """Equal results of other requests are not equal; nor is a part of a motion."""
     exact = MOTIONS["rolling"]()
     assert exact != simulate(rl.scenes.report, TIMES, method="exact")

@@ -1,4 +1,4 @@
-"""The methods bound to a motion from other modules behave as if written in its class.
+"""The methods bound to a motion from other modules behave as if they were written in its class.
 
 Tests of their modules check their results; these check their presence for people and programs.
 """
@@ -39,12 +39,12 @@ def declared() -> Iterator[str]:
                     yield each.id
 
 
-def test_type_checkers_know_them_all() -> None:
+def test_type_checkers_know_every_bound_method() -> None:
     assert sorted(declared()) == sorted(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_each_is_a_method_of_its_name(name: str) -> None:
+def test_each_bound_method_has_its_name(name: str) -> None:
     """help, Jupyter and pickles of bound methods find each method by the name of its calls."""
     method, motion = getattr(Trajectory, name), rl.simulate(rl.scenes.drop, 1.0)
     assert name in dir(motion) and inspect.isroutine(method) and method.__name__ == name
@@ -55,19 +55,19 @@ def test_each_is_a_method_of_its_name(name: str) -> None:
     assert pickle.loads(pickle.dumps(getattr(motion, name))).__name__ == name
 
 
-def test_completion_shows_what_is_for_people() -> None:
+def test_tab_completion_shows_only_what_is_meant_for_users() -> None:
     shown = {name for name in dir(rl.simulate(rl.scenes.drop, 1.0)) if name[0] != "_"}
     stored = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
     assert not stored & shown and set(NAMES) - {"_repr_html_"} < shown
 
 
-def test_help_tells_them() -> None:
+def test_help_lists_the_bound_methods() -> None:
     told = pydoc.plain(pydoc.render_doc(Trajectory))
     for name in ("plot", "animate", "when", "to_dataframe", "load"):
         assert f"\n |  {name}(" in told, name
 
 
-def test_a_subclass_has_and_replaces_them(tmp_path: Path) -> None:
+def test_a_subclass_inherits_and_overrides_the_methods(tmp_path: Path) -> None:
     class Named(Trajectory):
         def at(self, t: float) -> rl.Sample:
             return super().at(t / 2)
@@ -81,7 +81,7 @@ def test_a_subclass_has_and_replaces_them(tmp_path: Path) -> None:
     assert np.array_equal(again.theta, motion.theta)
 
 
-def test_nothing_is_loaded_before_it_is_asked_for() -> None:
+def test_nothing_is_loaded_before_it_is_needed() -> None:
     script = (
         "import sys, rolling_ellipse as rl; motion = rl.simulate(rl.scenes.rocking, 1.0);"
         "dir(motion), repr(motion), vars(rl.Trajectory), motion.at(1.0), motion._repr_html_();"

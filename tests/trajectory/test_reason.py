@@ -1,4 +1,4 @@
-"""A reason tells first what happens and then what is proved, with no number of what does not."""
+"""A reason states first what happens and then what is proved, and has no other numbers."""
 
 import math
 import re
@@ -88,7 +88,7 @@ SAID = (
 )  # fmt: skip
 
 
-def test_reasons_of_1500_motions() -> None:
+def test_reasons_of_1500_motions_obey_the_rules() -> None:
     said = ""
     for scene in (*random_scenes(1000, 51), *random_scenes(500, 52, struck=1.0)):
         motion = simulate(scene, 2.0, raise_on_failure=False)
@@ -97,7 +97,7 @@ def test_reasons_of_1500_motions() -> None:
     assert not [each for each in SAID if each not in said]
 
 
-def test_the_reason_is_the_same_from_any_samples_and_model() -> None:
+def test_the_reason_is_the_same_for_any_samples_and_model() -> None:
     scene = rl.scenes.jump
     motion = simulate(scene, 2.0)
     assert motion.reason == simulate(scene, [0.3]).reason == motion.sol(0.01).reason
@@ -107,7 +107,7 @@ def test_the_reason_is_the_same_from_any_samples_and_model() -> None:
     assert before.reason == motion.reason.replace(" at t = 0.143801 s", "")
 
 
-def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
+def test_the_reason_of_a_flight_states_the_outcome_after_landing() -> None:
     drop, bounce = rl.scenes.drop, rl.scenes.bounce
     for force, place, says in ((6.17, 1.36, "It rocks."), (11.0, 1.36, "It rolls over.")):
         motion = simulate(drop.replace(impulse=rl.Impulse.press(force, place)), 5.4)
@@ -118,7 +118,7 @@ def test_a_body_in_the_air_has_the_outcome_after_its_flight() -> None:
     assert bounces.reason.startswith("It bounces.")
 
 
-def test_a_start_from_coordinates_has_the_proof_of_its_scene() -> None:
+def test_a_start_from_coordinates_has_the_same_proof_as_its_scene() -> None:
     scene = Scene(2.0, 1.0, omega=5.2)
     start = simulate(scene, [0.05])
     with pytest.warns(rl.ValidityWarning):

@@ -20,7 +20,7 @@ Long = Any  # arrays of np.longdouble
 
 
 class Outline(NamedTuple):
-    """Geometry at the angles of a trajectory, in long double [m]."""
+    """Geometry [m] at the angles of a trajectory, in long double."""
 
     h: Long
     slope: Long
@@ -46,7 +46,7 @@ def close(actual: np.ndarray, exact: Long, terms: Long, ulps: float) -> None:
     assert np.all(off <= ulps * EPS * terms), f"{worst:.3g} ulp"
 
 
-def test_close_sees_ten_ulp() -> None:
+def test_close_detects_a_difference_of_ten_ulp() -> None:
     values = np.linspace(1, 2, 5)
     close(values, values, values, 0)
     with pytest.raises(AssertionError, match="ulp"):
@@ -56,7 +56,7 @@ def test_close_sees_ten_ulp() -> None:
 # ------------------------------------------------------------------------------------------- arrays
 
 
-def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
+def test_arrays_have_the_stated_shapes_and_types(motion: Trajectory) -> None:
     n = motion.t.size
     arrays = {name: (n,) for name in VECTORS} | {name: (n, k) for name, k in MATRICES.items()}
     for name, shape in arrays.items():
@@ -74,8 +74,8 @@ def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
         assert np.array_equal(motion.q_dot[:, i], getattr(motion, rate))
 
 
-def test_positions_and_velocities(motion: Trajectory) -> None:
-    """h, h', psi and r from theta, and the rates from them and omega, have a few roundings."""
+def test_positions_and_velocities_follow_from_theta_and_omega(motion: Trajectory) -> None:
+    """h, h', psi and r from theta, and rates from them and omega, err by a few roundings."""
     e, omega = outline(motion), motion.omega.astype(np.longdouble)
     close(motion.z, e.h, e.h, 4)
     r, grain_of_psi = np.hypot(e.h, e.slope), np.abs(motion.psi) + 8 * np.abs(e.lead)
@@ -90,8 +90,8 @@ def test_positions_and_velocities(motion: Trajectory) -> None:
     close(motion.turns, turns, np.abs(motion.turns), 4)
 
 
-def test_the_contact_rolls_off_the_outline(motion: Trajectory) -> None:
-    """The contact moves by the arc length between the angles; allowed are 16 ulp, and an ulp of
+def test_the_contact_moves_by_the_arc_length(motion: Trajectory) -> None:
+    """The contact moves by the arc length between the angles; the bound is 16 ulp, and an ulp of
     theta times the radius of curvature, which is large where a thin body lies flat."""
     a, b = motion.scene.a, motion.scene.b
     arc = rl.geometry.arc_length(motion.theta, a=a, b=b)
@@ -153,7 +153,7 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     assert np.median(allowed) <= 1e-5 * np.max(np.abs(rate)) + 1e-9 * largest
 
 
-def test_newton_and_euler(motion: Trajectory) -> None:
+def test_forces_and_torques_obey_newton_and_euler(motion: Trajectory) -> None:
     """Accelerations give the forces, and satisfy the torque balance, which no code uses."""
     scene, e = motion.scene, outline(motion)
     mass, weight = scene.mass, scene.mass * scene.gravity
@@ -172,7 +172,7 @@ def test_newton_and_euler(motion: Trajectory) -> None:
     close(motion.friction_needed, needed, needed, 2)
 
 
-def test_energies(motion: Trajectory) -> None:
+def test_energies_agree_with_their_definitions(motion: Trajectory) -> None:
     scene = motion.scene
     translational = (scene.mass * (motion.x_dot**2 + motion.z_dot**2)) / 2
     rotational = scene.mass * scene.gyration2 * motion.omega**2 / 2
@@ -198,7 +198,7 @@ LONG_RUNS = {
 
 
 @pytest.mark.parametrize(("scene", "t_end"), LONG_RUNS.values(), ids=LONG_RUNS)
-def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
+def test_residuals_of_a_million_samples_do_not_grow(scene: Scene, t_end: float) -> None:
     """Residuals do not grow: 1e-14 of the size, and 2 ulp of theta times h' of the ground.
 
     Velocities: the same times omega; the rates of f2, f3 and f4 are differences of terms in

@@ -71,8 +71,8 @@ def test_the_order_of_times_changes_no_bit() -> None:
 
 
 @pytest.mark.parametrize("name", ["report", "rocking", "standing", "circle"])
-def test_scene_at_goes_on(name: str) -> None:
-    """The scene at 1.7 s continues the same motion, up to the effect of its rounding."""
+def test_scene_at_continues_the_motion(name: str) -> None:
+    """The scene at 1.7 s continues the same motion, to within the effect of its rounding."""
     scene, t1, t2 = SCENES[name], 1.7, 4.0
     whole = simulate(scene, t2)
     later = whole.scene_at(t1)
@@ -89,7 +89,7 @@ def test_scene_at_goes_on(name: str) -> None:
         assert abs(getattr(rest, field)[-1] - getattr(whole, field)[-1]) <= bound
 
 
-def test_scene_at_takes_another_impulse() -> None:
+def test_scene_at_accepts_another_impulse() -> None:
     """Another impulse changes omega: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
     whole = simulate(rl.scenes.report, 6.0)
     later = whole.scene_at(2.0)

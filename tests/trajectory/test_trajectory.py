@@ -20,13 +20,13 @@ each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 # ------------------------------------------------------------------------------------- sample times
 
 
-def test_a_number_is_an_end_time() -> None:
+def test_a_single_number_is_taken_as_the_end_time() -> None:
     trajectory = simulate(rl.scenes.rocking, 3)
     assert np.array_equal(trajectory.t, np.linspace(0, 3, 1001))
     assert trajectory.t_end == 3
 
 
-def test_zero_is_one_sample() -> None:
+def test_an_end_time_of_zero_gives_one_sample() -> None:
     trajectory = simulate(rl.scenes.report, 0)
     assert trajectory.t.tolist() == [0.0]
     start = rl.scenes.report.initial_state
@@ -37,7 +37,7 @@ def test_zero_is_one_sample() -> None:
 @pytest.mark.parametrize(
     "times", [[0.5, 1.0, 7.0], (0.5, 2.0), [0.0, 2.0], np.array([3, 4]), [2.0]]
 )
-def test_an_array_is_taken_as_it_is(times: Any) -> None:
+def test_an_array_of_times_is_used_unchanged(times: Any) -> None:
     trajectory = simulate(rl.scenes.rocking, times)
     assert np.array_equal(trajectory.t, np.asarray(times, float))
     assert not np.shares_memory(trajectory.t, np.asarray(times))
@@ -48,7 +48,7 @@ def test_an_array_is_taken_as_it_is(times: Any) -> None:
 
 
 @each_scene
-def test_rolling_that_is_valid(scene: Scene) -> None:
+def test_valid_rolling_runs_to_completion(scene: Scene) -> None:
     ways: list[dict[str, Any]] = [{}, {"model": "rolling", "method": "exact"}]
     for way in ways:
         trajectory = simulate(scene, 4.0, **way)
@@ -79,10 +79,10 @@ ENDING = {
 
 
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
-def test_rolling_that_ends(scene: Scene) -> None:
+def test_rolling_is_valid_until_its_law_fails(scene: Scene) -> None:
     """At valid_until a law ends rolling: |F| = friction N, or N = 0; before it the ground can hold
-    the motion. Allowed is 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
-    change by at most some hundred weights a second."""
+    the motion. The bound is 1e-9 of the weight: time and angle are good to some 1e-15, and the
+    forces change by at most some hundred weights a second."""
     with pytest.warns(ValidityWarning, match="rolling is valid until t = "):
         trajectory = simulate(scene, 10.0, model="rolling")
     assert trajectory.status is Status.VALIDITY_LOST and not trajectory.success
@@ -117,7 +117,7 @@ def test_rolling_that_ends(scene: Scene) -> None:
     assert short.status is Status.COMPLETED and short.valid_until == end
 
 
-def test_what_cannot_start_rolling_is_valid_until_zero() -> None:
+def test_a_body_that_cannot_start_to_roll_is_valid_until_zero() -> None:
     with pytest.warns(ValidityWarning):
         trajectory = simulate(Scene(2.0, 1.0, theta=0.5, friction=0.01), 2.0, model="rolling")
     assert trajectory.valid_until == 0 and trajectory.t.size == 1001
@@ -125,7 +125,7 @@ def test_what_cannot_start_rolling_is_valid_until_zero() -> None:
 
 
 @pytest.mark.parametrize("theta", [0.0, math.pi / 2])
-def test_rest(theta: float) -> None:
+def test_a_body_at_rest_stays_at_rest(theta: float) -> None:
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0, friction=0.0)
     trajectory = simulate(scene, 5.0)
     assert trajectory.status is Status.COMPLETED and np.all(trajectory.mode == Mode.REST)
@@ -141,7 +141,7 @@ def test_rest(theta: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["drop", "bounce", "slip"])
-def test_what_does_not_roll_is_followed_all_the_same(name: str) -> None:
+def test_a_body_that_does_not_roll_is_simulated_anyway(name: str) -> None:
     scene = getattr(rl.scenes, name)
     trajectory = simulate(scene, 2.0)
     assert (trajectory.model, trajectory.status) == ("contact", Status.COMPLETED)
@@ -164,7 +164,7 @@ def test_a_motion_may_end_before_the_first_sample() -> None:
         trajectory.plot()
 
 
-def test_repr() -> None:
+def test_the_repr_summarizes_the_motion() -> None:
     report = simulate(rl.scenes.report, 6.0)
     text = repr(report)
     assert text.startswith("<Trajectory rolling/exact: 1001 samples, t = 0 ... 6 s, ")
@@ -179,7 +179,7 @@ def five_samples() -> Trajectory:
     return simulate(rl.scenes.bounce, np.linspace(0.0, 0.4, 5))
 
 
-def test_any_numbers_become_float64() -> None:
+def test_numbers_of_any_type_become_float64() -> None:
     for x in ([0, 1, 2, 3, 4], range(5), np.arange(5, dtype=np.float32), np.arange(10.0)[::2] / 2):
         made = dataclasses.replace(five_samples(), x=x)  # type: ignore[arg-type]
         assert made.x.dtype == np.float64 and made.x.tolist() == [0, 1, 2, 3, 4]
@@ -190,7 +190,7 @@ def test_any_numbers_become_float64() -> None:
     assert made.mode.dtype == np.int8 and made.mode.tolist() == [2, 2, 2, 1, 3]
 
 
-def test_the_arrays_of_others_are_left_alone() -> None:
+def test_arrays_of_the_caller_are_left_alone() -> None:
     """Arrays of others are neither locked nor shared, nor are read-only views of such arrays."""
     mine, mode = np.arange(5.0), np.full(5, 2, np.int8)
     view = mine[:]
@@ -213,7 +213,7 @@ def test_the_arrays_of_others_are_left_alone() -> None:
 
 
 @pytest.mark.parametrize("model", ["rolling", "multipliers", "contact"])
-def test_nothing_can_be_written_to(model: Any) -> None:
+def test_no_array_of_a_motion_is_writable(model: Any) -> None:
     motion = simulate(rl.scenes.report, np.linspace(0.0, 1.0, 5), model=model)
     start = (motion.q[0], motion.q_dot[0])
     for one in (motion, motion.sol([0.5]), dataclasses.replace(motion, start=start)):
@@ -224,7 +224,7 @@ def test_nothing_can_be_written_to(model: Any) -> None:
                 values[...] = 0
 
 
-def test_the_default_settings_are_made_once() -> None:
+def test_the_default_settings_are_created_only_once() -> None:
     """A setting given by name is checked even where it equals the default."""
     scene = Scene(2.0, 1.0, omega=3.2)
     motion = simulate(scene, [1.0])
@@ -233,7 +233,7 @@ def test_the_default_settings_are_made_once() -> None:
     assert said.settings == motion.settings and said == motion
 
 
-def test_reason_and_stats_are_found_when_asked_for() -> None:
+def test_reason_and_stats_are_computed_on_demand() -> None:
     motion = simulate(Scene(2.0, 1.0, omega=3.2), [1.0])
     assert not {"reason", "stats"} & (vars(motion).keys() | vars(motion.sol(0.5)).keys())
     assert motion.reason == f"It rolls over. {rl.certify(motion.scene).reason}"
@@ -241,7 +241,7 @@ def test_reason_and_stats_are_found_when_asked_for() -> None:
     assert motion.sol(0.5).reason is motion.reason
 
 
-def test_names_of_any_kind_of_text_become_plain() -> None:
+def test_names_of_any_text_type_become_plain_strings() -> None:
     """A name of a text type becomes plain, since a reader of its pickle may not have the type."""
 
     class Mine(str):
@@ -256,7 +256,7 @@ def test_names_of_any_kind_of_text_become_plain() -> None:
     assert pickle.loads(pickle.dumps(motion)) == motion
 
 
-def test_events_have_the_angle_and_place_that_they_print() -> None:
+def test_events_have_the_angle_and_position_that_they_print() -> None:
     """Both are the same before and after an event: only velocities change there."""
     seen = set()
     for scene in random_scenes(80, 5):

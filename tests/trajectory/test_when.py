@@ -53,9 +53,9 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
 
 
 @pytest.mark.parametrize("first", range(1000, 1200, 20))
-def test_tables_of_values_beside_brute_force(first: int) -> None:
+def test_passages_of_many_values_agree_with_brute_force(first: int) -> None:
     """Tables of seven values, with the first, last and extreme samples among them, are found in two
-    hundred motions of all kinds for all quantities."""
+    hundred motions of all kinds, for all quantities."""
     passages = 0
     for seed in range(first, first + 20):
         rng = np.random.default_rng(seed)
@@ -79,7 +79,7 @@ def test_tables_of_values_beside_brute_force(first: int) -> None:
 # --------------------------------------------------------------------------------- known motions
 
 
-def test_rocking_by_its_period() -> None:
+def test_passages_of_a_rocking_body_follow_its_period() -> None:
     """A body released at 0.5 rad rests every half period and is upright a quarter period later; the
     lowest point of the centre, z = b, is a touch. Times of 1e5 s are known to their rounding."""
     motion = simulate(rl.scenes.rocking, 1e5)
@@ -98,7 +98,7 @@ def test_rocking_by_its_period() -> None:
     assert motion.when(theta=0.5 + 1e-12).size == 0
 
 
-def test_turns_of_the_reports_ellipse() -> None:
+def test_passages_of_the_reports_ellipse_follow_its_turns() -> None:
     """From flat with 3.2 rad/s the body stands upright a quarter period after the start and once
     per half turn. The contact and the centre then have moved by known parts of the perimeter."""
     motion = simulate(rl.scenes.report, 30.0)
@@ -117,7 +117,7 @@ def test_turns_of_the_reports_ellipse() -> None:
     assert motion.when(x=9.6884482205476762) == pytest.approx([2 * half], rel=2e-15)
 
 
-def test_events_by_their_kinds() -> None:
+def test_events_can_be_selected_by_their_kinds() -> None:
     """A body thrown uphill passes its tip and comes back; all kinds of events are the events."""
     back = simulate(Scene(1.0, 2.0, theta=-1.0, omega=4.0, slope=-0.3), 4.0)
     over, again = back.when(event="roll_over")
@@ -129,7 +129,7 @@ def test_events_by_their_kinds() -> None:
     assert sorted(np.concatenate(found)) == [event.t for event in drop.events]
 
 
-def test_far_away_and_too_often() -> None:
+def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() -> None:
     """In 1e9 half turns one angle is quickly found at one time; a height is passed too often."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
@@ -142,7 +142,7 @@ def test_far_away_and_too_often() -> None:
         motion.when(function=lambda m: np.sin(m.theta))
 
 
-def test_what_is_kept_counts_where_it_begins() -> None:
+def test_a_constant_value_counts_only_where_it_begins() -> None:
     still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
     for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
         assert still.when(**given).tolist() == [0.0]  # type: ignore[call-overload]
@@ -159,7 +159,7 @@ def test_what_is_kept_counts_where_it_begins() -> None:
     assert circle.when(x=5.0) == pytest.approx([2.5], rel=2 * EPS)
 
 
-def test_a_turning_point_at_the_start_comes_again() -> None:
+def test_a_turning_point_at_the_start_recurs_every_period() -> None:
     """A body pushed from its equilibrium in the well of a slope, so gently that its inertia is
     constant to rounding, is fastest there: each period after the start, and between two passages of
     1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
@@ -178,7 +178,7 @@ def test_a_turning_point_at_the_start_comes_again() -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
-def test_far_down_a_slope() -> None:
+def test_a_body_far_down_a_slope_passes_its_start_only_once_more() -> None:
     """A body passes its start once more, and never again; heights are passed too often."""
     motion = simulate(Scene(2.0, 1.0, slope=0.1, omega=-8.0), [0.0, 1e6], model="rolling")
     start, again = motion.when(theta=0.0)
@@ -193,7 +193,7 @@ def test_far_down_a_slope() -> None:
             motion.when(**{name: 1.5})  # type: ignore[call-overload]
 
 
-def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
+def test_steps_that_are_too_long_are_not_searched_forever() -> None:
     """The last step of a motion that stopped spans millions of quarter turns."""
     thin = Scene(0.002832888141846167, 1.0, theta=math.pi / 2, gravity=1e-19, inertia=1e-5)
     with pytest.raises(rl.IntegrationError) as stopped:
@@ -205,7 +205,7 @@ def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
         assert turns.when(function=lambda m: m.t - 7.0) == pytest.approx([7.0])
 
 
-def test_touches_between_two_looks_of_a_function() -> None:
+def test_touches_between_two_evaluations_of_a_function_are_found() -> None:
     """The function (theta - 1)^2 - 1e-9 has two zeros 6e-5 rad apart, (theta - 1)^2 has one."""
     motion = simulate(rl.scenes.report, 1.0)
     (once,) = motion.when(theta=1.0)
@@ -219,15 +219,15 @@ def test_touches_between_two_looks_of_a_function() -> None:
     assert touch == pytest.approx([once], abs=1e-7)
 
 
-def test_a_function_of_any_size_is_looked_at() -> None:
-    """The search gives no other warning (an error here), though products of changes overflow."""
+def test_a_function_with_values_of_any_size_is_searched() -> None:
+    """The search gives no other warning (an error here) although products of changes overflow."""
     motion = simulate(Scene(1.7, 1.0, theta=math.pi / 2, friction=0.0), [1e299, 1e300])
     with pytest.warns(CompletenessWarning, match="while it rests"):
         (half,) = motion.when(function=lambda at: at.t - 5e299)
     assert half == pytest.approx(5e299, rel=1e-15)
 
 
-def test_it_warns_only_where_nothing_is_proved() -> None:
+def test_when_warns_only_where_completeness_is_not_proved() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for scene in (rl.scenes.report, rl.scenes.rocking, rl.scenes.slope, rl.scenes.slip):
@@ -241,7 +241,7 @@ def test_it_warns_only_where_nothing_is_proved() -> None:
         simulate(rl.scenes.bounce, 3.0).when(function=lambda at: at.contact_x - 0.5)
 
 
-def test_a_motion_that_stopped_early() -> None:
+def test_a_motion_that_stopped_early_can_be_searched() -> None:
     motion = simulate(rl.scenes.bounce, 5.0, max_events=1, raise_on_failure=False)
     assert motion.status is Status.MAX_EVENTS and motion.t_end < 1.0
     assert motion.when(theta=rl.scenes.bounce.theta)[0] == 0.0
@@ -252,7 +252,7 @@ def test_a_motion_that_stopped_early() -> None:
 
 
 @pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce", "rest", "five"])
-def test_one_state_is_a_row_of_the_samples(name: str) -> None:
+def test_a_single_state_equals_a_row_of_samples(name: str) -> None:
     """The state has plain floats with the bits of `sol`, also in five coordinates."""
     scene = Scene(2.0, 1.0) if name == "rest" else getattr(rl.scenes, name, rl.scenes.rolling)
     motion = simulate(scene, 3.0, model="multipliers" if name == "five" else "auto")
@@ -268,7 +268,7 @@ def test_one_state_is_a_row_of_the_samples(name: str) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_a_value_as_large_as_numbers_get_is_never_passed() -> None:
+def test_the_largest_double_is_never_passed() -> None:
     coarse = simulate(
         Scene(0.5, 1.0, omega=-8.0), 1.8, model="multipliers", method="dopri5", step=0.1,
         raise_on_failure=False,

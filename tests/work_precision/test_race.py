@@ -1,4 +1,4 @@
-"""Runs of `work_precision`: contenders, measurements, refusals, runs that are left out.
+"""Runs of `work_precision`: contenders, measurements, refusals, and runs left out.
 
 No test depends on measured durations: only on the choice of timed runs, and on known errors.
 """
@@ -65,7 +65,7 @@ def raced(*peers: Any, **how: Any) -> WorkPrecision:
 
 
 def only(found: WorkPrecision, name: str) -> Any:
-    """The first run with the name."""
+    """The first run of that name."""
     return next(run for run in found.runs if run.name == name)
 
 
@@ -73,7 +73,7 @@ def only(found: WorkPrecision, name: str) -> Any:
 
 
 @pytest.mark.parametrize("off", [1e-3, 1e-7])
-def test_an_error_is_seen_as_large_as_it_is(off: float) -> None:
+def test_an_error_is_measured_at_its_true_size(off: float) -> None:
     """A constant error of theta is measured at the end, in the mean and at worst."""
     run = only(raced(Peer(off=off)), "toy")
     for name in ("largest", "final", "l2", "linf"):
@@ -99,7 +99,7 @@ def test_each_component_counts_in_its_own_unit() -> None:
     assert only(raced(reference=other), "flow").errors.final == pytest.approx(5e-4, rel=1e-6)
 
 
-def test_a_reference_may_have_more_digits_than_doubles() -> None:
+def test_a_reference_may_be_more_precise_than_doubles() -> None:
     """A reference may consist of objects that can be subtracted, as those of mpmath or decimal."""
     import mpmath
 
@@ -113,7 +113,7 @@ def test_a_reference_may_have_more_digits_than_doubles() -> None:
 
 
 @pytest.mark.parametrize("method", ["dop853", "dopri5", "rk4", "gauss", "radau"])
-def test_finer_settings_err_less(method: str) -> None:
+def test_finer_settings_give_smaller_errors(method: str) -> None:
     ladder: dict[str, Any] = {"tolerances": [1e-4, 1e-10], "steps": [0.05, 0.005]}
     coarse, fine = work_precision(ROTATION, END, methods=[method], rounds=1, **ladder).runs
     told(method, coarse.errors.final, fine.errors.final)
@@ -123,7 +123,7 @@ def test_finer_settings_err_less(method: str) -> None:
     assert fine.errors.l2 <= fine.errors.linf
 
 
-def test_the_constraints_of_what_drifts_are_missed() -> None:
+def test_drifting_coordinates_miss_the_constraints() -> None:
     """Drifting coordinates miss the constraints; projected ones do not."""
     found = work_precision(
         ROTATION, 4.0, methods=["multipliers/rk4/none", "multipliers/rk4/projection"],
@@ -136,7 +136,7 @@ def test_the_constraints_of_what_drifts_are_missed() -> None:
     assert projected.errors.gap < 1e-14 and projected.errors.slip < 1e-13
 
 
-def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
+def test_a_peer_that_returns_only_the_final_state_has_no_other_errors() -> None:
     errors = only(raced(Peer(off=1e-3, samples=None)), "toy").errors
     assert errors.final == pytest.approx(1e-3, rel=1e-6)
     assert errors.largest == errors.final
@@ -147,7 +147,7 @@ def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
 # -------------------------------------------------------------------------------- runs of a race
 
 
-def test_every_rung_of_every_ladder_is_a_run() -> None:
+def test_every_rung_of_every_ladder_is_run() -> None:
     peer, fixed = Peer(), Peer("fixed")
     fixed.ladder = "steps"  # type: ignore[attr-defined]
     found = raced(peer, fixed, methods=["exact", "dop853", "rk4"], steps=[0.05, 0.1])
@@ -163,7 +163,7 @@ def test_every_rung_of_every_ladder_is_a_run() -> None:
     assert all(run.time > 0 and run.setup >= 0 and run.samples_time > 0 for run in found.runs)
 
 
-def test_several_ends_have_runs_and_references_of_their_own() -> None:
+def test_several_end_times_have_separate_runs_and_references() -> None:
     found = work_precision(ROTATION, [1.0, 3.0], methods=["flow", "rk4"], **QUICK)
     assert [reference.t_end for reference in found.references] == [1.0, 3.0]
     assert [run.t_end for run in found.runs] == [1.0, 1.0, 3.0, 3.0]
@@ -180,7 +180,7 @@ SUITABLE = {
 
 
 @pytest.mark.parametrize(("scene", "first"), SUITABLE.values(), ids=SUITABLE)
-def test_what_suits_the_scene_runs_without_being_named(scene: Scene, first: str) -> None:
+def test_the_suitable_method_runs_without_being_named(scene: Scene, first: str) -> None:
     found = work_precision(scene, 0.5, **QUICK)
     told(found.names)
     assert found.names[0] == first
@@ -189,7 +189,7 @@ def test_what_suits_the_scene_runs_without_being_named(scene: Scene, first: str)
         assert run.completed == (run.reason == "" or run.status == "COMPLETED")
 
 
-def test_a_model_that_is_too_poor_has_no_answer() -> None:
+def test_an_inadequate_model_has_no_answer() -> None:
     """Exact rolling has no answer, rather than a slow one, where the body slips."""
     scene = SUITABLE["slips"][0]
     exact = only(work_precision(scene, 1.0, **QUICK), "exact")
@@ -197,7 +197,7 @@ def test_a_model_that_is_too_poor_has_no_answer() -> None:
     assert math.isnan(exact.errors.final) and math.isnan(exact.time)
 
 
-def test_mappings_say_anything_that_simulate_takes() -> None:
+def test_mappings_may_hold_any_argument_of_simulate() -> None:
     methods = [{"name": "two", "method": "gauss", "stages": 2}, {"method": "gauss", "stages": 4}]
     found = work_precision(ROTATION, END, methods=methods, rounds=1, steps=[0.05])
     assert found.names == ("two", "gauss/4")
@@ -226,7 +226,7 @@ class Broken:
         return run
 
 
-def test_whatever_a_peer_does_is_a_run_with_a_reason() -> None:
+def test_every_failure_of_a_peer_is_a_run_with_a_reason() -> None:
     found = raced(
         Broken("refuses", ValueError("only circles")),
         Broken("breaks", RuntimeError("singular matrix")),
@@ -291,7 +291,9 @@ SET_UPS = {
 
 
 @pytest.mark.parametrize("how", SET_UPS.values(), ids=SET_UPS)
-def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
+def test_set_up_time_does_not_cause_runs_to_be_left_out(
+    how: dict[str, float], clock: Clock
+) -> None:
     """A set-up of 4 s does not count in the 2 s for all runs: each run of 1 us is made."""
     found = raced(Timed("late", clock, **how), tolerances=LADDER, max_seconds=2.0)
     late = [run for run in found.runs if run.name == "late"]
@@ -302,7 +304,7 @@ def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
     assert "late is unbeaten from 1e-02" in alone and ", set-up 4 s);" in alone
 
 
-def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> None:
+def test_a_short_time_limit_leaves_out_the_costliest_runs_with_a_reason(clock: Clock) -> None:
     """A call takes 10, 100, 1000 ms, …, and a run is four calls: of 0.6 x 1.5 s two runs leave 0.46
     s, and the third is expected to need 0.4 s x 10^(1/4)."""
     slow = Timed("slow", clock, call=1e-6, power=1.0)
@@ -316,7 +318,7 @@ def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> 
     assert only(found, "flow").completed
 
 
-def test_each_of_many_has_its_share(clock: Clock) -> None:
+def test_each_of_many_contenders_gets_its_share_of_the_time(clock: Clock) -> None:
     """The first and the last of 30 contenders of equal cost get equally many runs, whoever runs
     before them; expensive ones get the time that cheap ones leave."""
     dear = [Timed(f"dear {i}", clock, call=1e-3, power=0.25) for i in range(30)]
@@ -334,7 +336,7 @@ def test_each_of_many_has_its_share(clock: Clock) -> None:
         assert sum(run.completed for run in alone.runs if run.name == peer.name) > max(counts)
 
 
-def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock) -> None:
+def test_a_slow_contender_takes_no_time_from_the_others(clock: Clock) -> None:
     """One contender's first call outlasts the race; the others have a third of the time each."""
     hog = Timed("hog", clock, call=100.0)
     others = [Timed(f"way {i}", clock, call=1e-2) for i in range(2)]
@@ -345,7 +347,7 @@ def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock)
     assert "hog was not run beyond 1e-02: no time left (100 s a call so far)" in found.verdict()
 
 
-def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
+def test_every_contender_runs_at_the_coarsest_setting(clock: Clock) -> None:
     """The coarsest setting runs for every end, however little time there is."""
     peers = [Timed(f"way {i}", clock, call=1.0) for i in range(5)]
     found = work_precision(
@@ -358,7 +360,7 @@ def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
     assert found.machine["rounds"] == "1"
 
 
-def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
+def test_costly_contenders_take_part_in_fewer_rounds(clock: Clock) -> None:
     """Cheap contenders have all of 10 rounds; expensive ones have fewer, and share the time."""
     calls = dict.fromkeys(("cheap", "dear", "dearest"), 0)
 
@@ -386,7 +388,7 @@ def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
 # ------------------------------------------------------------------------------ judged times
 
 
-def test_an_end_known_before_does_not_win() -> None:
+def test_knowing_the_end_in_advance_does_not_win() -> None:
     """Wrong samples count as their error; samples that are NaN are no answer."""
     rubbish = Peer("rubbish", samples=lambda t, *_: (0 * t + 32, 0 * t, 0 * t))
     nothing = Peer("nothing", samples=lambda t, *_: (t * math.nan, 0 * t, 0 * t))
@@ -408,7 +410,7 @@ def test_the_verdict_says_what_was_judged() -> None:
 # ------------------------------------------------------------------------------- refusals
 
 
-def test_names_are_looked_at_before_the_motion() -> None:
+def test_names_are_checked_before_the_motion_is_computed() -> None:
     """Wrong names are refused before the motion is computed, which may take long."""
 
     def known(_: Any) -> Any:
@@ -418,7 +420,7 @@ def test_names_are_looked_at_before_the_motion() -> None:
         work_precision(ROTATION, END, methods=["euler"], reference=known)
 
 
-def test_an_end_that_the_motion_does_not_reach_is_refused() -> None:
+def test_an_end_time_that_the_motion_does_not_reach_is_rejected() -> None:
     """A slide that jams has no end to judge."""
     jams = Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)
     assert simulate(jams, 1.0).status is rl.Status.JAMMED

@@ -43,7 +43,7 @@ FOUND = WorkPrecision(
 )
 
 
-def test_best_is_the_fastest_of_those_that_are_good_enough() -> None:
+def test_best_is_the_fastest_run_that_is_accurate_enough() -> None:
     assert FOUND.best(1e-2) is RUNS[2] and FOUND.best(1e-3) is RUNS[2]
     assert FOUND.best(9.9e-4) is RUNS[0] and FOUND.best(1e-8) is RUNS[0]
     assert FOUND.best() is RUNS[0]
@@ -52,20 +52,20 @@ def test_best_is_the_fastest_of_those_that_are_good_enough() -> None:
     assert FOUND.best(1e-2, y="evaluations") is RUNS[0]  # all take 100, so the first one counts
 
 
-def test_least_is_the_table() -> None:
+def test_least_gives_the_least_time_of_each_method() -> None:
     assert FOUND.least(1e-2) == {"sure": 1e-5, "also": 5e-5, "fast": 4e-6, "slow": 1e-4}
     assert FOUND.least(1e-5) == {"sure": 1e-5, "also": 5e-5, "fast": 5e-5}
     assert FOUND.least(1e-12) == {"sure": 1e-5, "also": 5e-5}
 
 
-def test_unbeaten_are_those_within_the_margin() -> None:
+def test_unbeaten_methods_are_those_within_the_margin() -> None:
     decades = [10.0**-k for k in range(2, 15)]
     assert FOUND.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:11])}
     equal = FOUND.unbeaten(2.6)
     assert equal["sure"] == tuple(decades[:11]) and equal["fast"] == tuple(decades[:2])
 
 
-def test_a_notebook_shows_the_least_of_each_way() -> None:
+def test_a_notebook_shows_the_least_time_of_each_method() -> None:
     html = FOUND._repr_html_()
     assert repr(FOUND)[1:-1] in html
     for name, *cells in (
@@ -76,14 +76,14 @@ def test_a_notebook_shows_the_least_of_each_way() -> None:
         assert f">{name}</th>{row}</tr>" in html
 
 
-def test_the_verdict_gives_no_number_for_what_nobody_has_computed() -> None:
-    """The verdict names neither figure where a given reference outlasts the package's motion."""
+def test_the_verdict_states_no_value_that_was_not_computed() -> None:
+    """The verdict states neither number where a given reference outlasts the package's motion."""
     unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
     said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
     assert said == ("To t = 2 s, judged by exact rolling, at the sample times and the end:")
 
 
-def test_the_verdict_says_what_the_table_says() -> None:
+def test_the_verdict_agrees_with_the_table() -> None:
     lines = FOUND.verdict().splitlines()
     assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")
     assert lines[1] == "fast is unbeaten from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
@@ -118,8 +118,8 @@ CUT = replace(
 )
 
 
-def test_who_was_not_run_is_not_beaten() -> None:
-    """A method that was not run is not said to have come no nearer, or to have reached nothing."""
+def test_a_method_that_was_not_run_is_not_beaten() -> None:
+    """The verdict does not say that a method that was not run came no nearer or reached nothing."""
     assert CUT.not_run(1e-2) == ("rough", "lost", "never")
     assert CUT.not_run(1e-5) == ("rough", "lost", "never")
     assert CUT.not_run(1e-6) == ("late", "rough", "lost", "never")
@@ -144,8 +144,8 @@ def test_who_was_not_run_is_not_beaten() -> None:
     assert list(frame["runs"]) == [1, 1, 1, 1, 1, 1, 1] and frame["answers"][0] == 3
 
 
-def test_where_all_were_run_one_is_unbeaten() -> None:
-    """A method that was cut counts at the errors that it has reached."""
+def test_a_method_is_unbeaten_only_where_all_were_run() -> None:
+    """A method that was cut short counts at the errors that it reached."""
     found = replace(FOUND, runs=(*RUNS, *CUT.runs[9:12]))
     decades = [10.0**-k for k in range(2, 15)]
     assert found.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:4])}
@@ -161,7 +161,7 @@ def test_a_table_has_a_row_for_each_run() -> None:
     assert frame["tags"][2] == "peer"
 
 
-def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
+def test_loading_a_file_restores_the_saved_race(tmp_path: Path) -> None:
     path = tmp_path / "race.json"
     found = replace(FOUND, scene=replace(FOUND.scene, impulse=rl.Impulse.press(1.0, 0.5)))
     found.save(path)

@@ -1,4 +1,4 @@
-"""The error that `work_precision` calls attainable, judged by units from 80 digits."""
+"""The error that `work_precision` calls attainable, judged by the units of an 80-digit table."""
 
 import math
 from typing import Any
@@ -21,7 +21,7 @@ def scene_of(row: dict[str, str]) -> tuple[Scene, float]:
     return Scene(inertia=float(row["gyration2"]), **numbers, **start), float(row["t"])
 
 
-def test_attainable_is_what_the_inputs_carry() -> None:
+def test_the_attainable_error_is_that_of_rounding_the_inputs() -> None:
     """The attainable error is the largest of the table's units of theta, omega and x: the same sums
     over the inputs, by differences that err by a few per cent."""
     ratios = []
@@ -45,7 +45,7 @@ def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
     assert found.name == "exact rolling" and math.isfinite(found.attainable)
 
 
-def test_near_the_separatrix_less_is_attainable() -> None:
+def test_less_accuracy_is_attainable_near_the_separatrix() -> None:
     """Near the tip differences grow as e^(lambda t), and a half turn takes ln(1/d)/lambda and a
     little, at a part d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
     speed = math.sqrt(2 * 9.81 / 2.25)  # roll-over speed of uniform discs, 2:1, physics (44)
@@ -58,7 +58,7 @@ def test_near_the_separatrix_less_is_attainable() -> None:
     assert np.all(np.abs(growth - 0.9) < 0.01)
 
 
-def test_in_the_middle_less_may_be_attainable_than_at_the_end() -> None:
+def test_less_accuracy_may_be_attainable_in_the_middle_than_at_the_end() -> None:
     """The attainable error agrees with 40-digit derivatives at its times, by another quadrature."""
     scene = Scene(2.0, 1.0, omega=math.sqrt(2 * 9.81 / 2.25) * (1 + 1e-9))
     t_end = 0.72 * period(scene)
