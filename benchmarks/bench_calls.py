@@ -2,9 +2,9 @@
 
     python benchmarks/bench_calls.py [--rounds 20] [--only flow]
 
-Each case is timed once in each of many rounds, one after the other, and the least time is kept.
-Machines and their load differ: compare ratios (to the first line of a table) of one run. The core's
-share of a call has its own line; the difference to the whole call is Python's share. Imports of the
+Each case is timed once in each of many rounds, in turn, and the least time is kept. Machines and
+their load differ: compare ratios (to the first line of a table) within one run. The core's share of
+a call has its own line; the difference from the whole call is Python's share. Imports of the
 package and of NumPy are timed in new interpreters. bench_peers.py measures the cost of accuracy.
 """
 
@@ -42,7 +42,7 @@ def calls() -> dict[str, Case]:
     settings = DEFAULTS.core
     for kind, scene in {"rolling": ROLLING, "10 events": BOUNCING, "on a slope": DOWNHILL}.items():
         end, core = END, scene.core
-        if scene is not ROLLING:  # time just after the last of the first events
+        if scene is not ROLLING:  # time just after the last of the first EVENTS events
             end = simulate(scene, END).events[EVENTS - 1].t + 1e-6
             last = f"simulate, {kind}, its events"
             found[last] = Case(lambda s=scene, t=end: simulate(s, [t]).events)
@@ -79,7 +79,7 @@ LEVEL = {"a": 2.0, "b": 1.0, "friction": 0.3, "restitution": 0.5, "z": 3.0}
 
 
 def batches() -> dict[str, Case]:
-    """Motions that roll, and others that slip and jump; throws with three events each."""
+    """Motions that roll, motions that slip and jump, and throws with three events each."""
     rolls, slips = (
         [
             Scene(2.0, 1.0, friction=friction, omega=omega)
@@ -122,7 +122,7 @@ def starts() -> dict[str, dict[str, Any]]:
 
 
 def among_many(start: dict[str, Any], t: float) -> Case:
-    """End states of motions whose omega differs in the last digits, so that each is set up anew."""
+    """End states of motions whose omega differs in the last digits, so that each needs a set-up."""
     omega = start["omega"] * (1 + np.arange(STATES) * 2.0**-50)
     columns = {name: np.full(STATES, value) for name, value in start.items()} | {"omega": omega}
     return Case(partial(flow, np.full(STATES, t), **columns), STATES)
@@ -140,7 +140,7 @@ def flows() -> dict[str, dict[str, Case]]:
         turns = HALF_TURNS + 1e9 * ("1e9" in name)
         t = end_time(Scene(**start), turns)
         one[name] = Case(partial(flow, t, **start))
-        # near a singular start a relative change of omega by 1e-12 is no longer small
+        # near a singular start a relative change of omega by 1e-12 is not small
         if "separatrix" not in name:
             many[name] = among_many(start, t)
     swing, speeds, grid = R | {"omega": 1.0}, np.linspace(2.5, 4.0, STATES), np.linspace(0, 8, 1001)
@@ -176,8 +176,8 @@ def flows() -> dict[str, dict[str, Case]]:
 
 ROCKING = Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=1.0)
 TURNING = Scene(2.0, 1.0, theta=0.2, omega=3.2)
-HALF_SWINGS = 400.37  # span so long that the start of a call costs next to nothing
-STEPS = 4000  # a call takes milliseconds: its start and its one sample cost a hundredth of it
+HALF_SWINGS = 400.37  # span so long that the overhead of a call is negligible
+STEPS = 4000  # a call takes milliseconds: its overhead and its one sample are a hundredth of it
 STEP = 2.0**-8  # fixed step [s]; 422 steps in half a turn
 EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
 METHODS = {"rk4": EXPLICIT, "dopri5": EXPLICIT, "dop853": EXPLICIT, "radau": ("ggl",)}
@@ -222,7 +222,7 @@ def steps() -> dict[str, dict[str, Case]]:
 
 
 def import_seconds(statement: str) -> float:
-    """Time of a new interpreter that imports [s]."""
+    """Time of a new interpreter that runs an import statement [s]."""
     return seconds(lambda: subprocess.run([sys.executable, "-c", statement], check=True))
 
 

@@ -4,10 +4,10 @@
 
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
 table has the median, the 95th percentile and the longest time from the signal to the
-KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if the
-bits differ, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line:
+KeyboardInterrupt. A call afterwards must give the same result bit for bit. The exit code is 1 if it
+differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line:
 Jupyter takes longer to draw the source. The last line has the time with the source and is not
-judged. The times need a machine without other load.
+judged. Run it on an otherwise idle machine.
 """
 
 import argparse
@@ -98,8 +98,8 @@ CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 
 def delay(call: Callable[[], Any], after: float) -> float:
-    """Time from Ctrl-C, sent at a moment of a call, to the end of the call [s]."""
-    # the alarm calls Python's handler of SIGINT
+    """Time from Ctrl-C, sent `after` seconds into a call, to its end [s]."""
+    # the alarm calls Python's SIGINT handler
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
     begin = time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, after)
@@ -118,7 +118,7 @@ def usable() -> bytes:
 
 
 class Notebook:
-    """A kernel as Jupyter starts it."""
+    """A kernel started as by Jupyter."""
 
     def __init__(self) -> None:
         self.manager, self.client = start_new_kernel(kernel_name="python3")
@@ -147,7 +147,7 @@ class Notebook:
         return found
 
     def wait(self, receive: Callable[..., dict[str, Any]], asked: str, kind: str) -> Any:
-        """Content of the first message of a kind that answers a request."""
+        """Content of the first message of a kind in reply to a request."""
         while True:
             message = receive(timeout=60)
             if message["msg_type"] == kind and message["parent_header"].get("msg_id") == asked:

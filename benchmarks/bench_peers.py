@@ -1,10 +1,10 @@
-"""The package beside other people's integrators: python benchmarks/bench_peers.py
+"""The package compared with third-party integrators: python benchmarks/bench_peers.py
 
 Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers), missing
 ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
-tolerances or steps, in turns (`rolling_ellipse.work_precision`). The largest error at samples and
-at the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is
-timed separately. Machines and their load differ: compare the ratios of one run.
+tolerances or steps, in turn (`rolling_ellipse.work_precision`). The largest error at samples and at
+the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is timed
+separately. Machines and their load differ: compare ratios within one run.
 """
 
 import argparse
@@ -35,7 +35,7 @@ SCENES = {
     "L": Scene(2.0, 1.0, theta=0.2, omega=1.0),
     "S": Scene(2.0, 1.0, theta=0.2, omega=3.2, slope=0.1, friction=10.0),  # downhill
 }
-HALF_TURNS = (1.37, 10.37, 100.37)  # no symmetric states: they would hide errors of the phase
+HALF_TURNS = (1.37, 10.37, 100.37)  # no symmetric states: they would hide phase errors
 METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
@@ -58,7 +58,7 @@ def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
-    """theta, omega and x on a slope by power series in other coordinates, the judge there."""
+    """theta, omega and x on a slope by power series in other coordinates, the judge on slopes."""
     numbers = (scene.a, scene.b, scene.mass, scene.gyration2 * scene.mass, scene.gravity)
     start = slope_reference.Scene(*numbers, scene.slope, scene.theta, scene.omega)
     road = slope_reference.TABLE_ROAD
@@ -72,7 +72,7 @@ def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def end_of(scene: Scene, half_turns: float) -> float:
-    """Time of a number of half turns or half swings, on a slope from the start [s]."""
+    """Time of a number of half turns or half swings [s]; on a slope, counted from the start."""
     if not scene.slope:
         return half_turns * period(scene) / 2
     low, high = 0.0, 1e3
@@ -108,7 +108,7 @@ def commit() -> str:
 
 
 def microseconds(seconds: float) -> str:
-    """A time with at least three digits, never as a power of ten."""
+    """A time with at least three digits, without an exponent."""
     return f"{seconds * 1e6:.3g}" if seconds < 1e-3 else f"{seconds * 1e6:.0f}"
 
 

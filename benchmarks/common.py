@@ -73,7 +73,7 @@ def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
 def interleaved(
     calls: Mapping[Any, Callable[[], Any]], rounds: int, shortest: float = SHORTEST
 ) -> dict[Any, list[float]]:
-    """Seconds of each call in every round; the calls take turns, so that the load is shared."""
+    """Seconds of each call in every round; the calls take turns, so that load affects all alike."""
     repeats = {}
     for name, call in calls.items():
         call()
@@ -93,7 +93,7 @@ class Case(NamedTuple):
 
 
 def print_tables(tables: Mapping[str, Mapping[str, Case]], rounds: int) -> None:
-    """Time all cases in turns; print the least time of each, and its ratio to the first."""
+    """Time all cases in turn; print the least time of each, and its ratio to the first."""
     calls = {(title, name): case.call for title, t in tables.items() for name, case in t.items()}
     times = interleaved(calls, rounds)
     for title, table in tables.items():

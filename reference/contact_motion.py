@@ -1,7 +1,7 @@
 """Rolling, sliding, flight and impacts, followed by Taylor series in any number of digits.
 
 make_contact_reference.py makes a table with this module, judge_contact.py judges random scenes. It
-needs only gmpy2 and shares no code and no formula with the package.
+needs only gmpy2 and shares no code or formula with the package.
 
 Motion. x along the ground, z away from it, theta clockwise, g down a slope alpha; per mass, with
 k^2 = I/m. The point that touches is P(phi) = (a sin phi, -b cos phi) of the body. With
@@ -10,12 +10,12 @@ w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind th
     w^2 = a^2 cos^2 phi + b^2 sin^2 phi,   tan theta = (b/a) tan phi,   phi' = omega w^2 / (a b)
     h = a b / w,   o = dh/dtheta = c^2 sin phi cos phi / w,   r = w^3 / (a b)                    (1)
 
-r is the radius of curvature. The ground pushes with N and F per mass:
+r is the radius of curvature. The ground acts with N and F per mass:
 
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - o N                    (2)
 
 Slip v = x' - h omega, and without pressure the gap z - h would open with -c, where
-c = g cos alpha + (r - h) omega^2. A mode ends when one of its last-named margins reaches zero:
+c = g cos alpha + (r - h) omega^2. A mode ends when one of its margins, listed last, reaches zero:
 
     rolling   v = 0: (k^2 + h^2 + o^2) omega' = h g sin alpha - o (g cos alpha + r omega^2), N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
@@ -23,22 +23,23 @@ c = g cos alpha + (r - h) omega^2. A mode ends when one of its last-named margin
               Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
     flight    N = F = 0; z - h
 
-A start without slip rolls if that needs no more friction than there is; else it slips to the
-side on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
-motion exists: a jam. Without friction slip has no side, and no event where it changes its sign.
+A start without slip rolls if that needs no more friction than available; else it slips to the side
+on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
+motion exists: a jam. Without friction slip has no side, and changes its sign without an event.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
 that taken before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first ends
-the slip, as far as that needs no pull. Rebounds below 1e-6 sqrt(g min(a, b)) of a body dropped
-flat are summed, and it is at rest; other scenes end before rebounds are a thousand times that.
+the slip, as far as possible without a pull. Rebounds below 1e-6 sqrt(g min(a, b)) of a body dropped
+flat are summed, after which it rests; other scenes end before rebounds fall to a thousand times
+that.
 
 Method. Taylor series in time of (1) and (2) by the recurrences for products, quotients and roots
 (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each step.
-The first event of a step is the first root of polynomials, found without sampling: Bernstein
+The first event of a step is the first root of polynomials, located without sampling: Bernstein
 coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
 the interval is halved. Where s v or z - h starts at zero those zeros are divided out: one where
-slip or rebound begins with a speed or a jump of the force, two where rolling turns to slip or a
+slip or rebound starts with a speed or a jump of the force, two where rolling turns to slip or a
 gap opens at once, three where a slide lifts off. This resolves the shortest slips.
 """
 
@@ -58,7 +59,7 @@ LEAST_REBOUND = 1e-3  # least rebound speed / sqrt(g min(a, b)) in all other sce
 
 
 class Undecided(Exception):
-    """The scene is too close to a scene of another kind, or is not modelled here."""
+    """The scene is too close to one of another kind, or is not modelled here."""
 
 
 class Scene(NamedTuple):
@@ -126,8 +127,8 @@ def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
 def first_root(coefficients: list[Any], end: Any) -> Any:
     """The first root in (0, end] of a polynomial that is positive at 0, or None.
 
-    A polynomial has at most as many roots in an interval as its Bernstein coefficients there have
-    changes of sign, and an odd number if they are odd in number: 0 means none and 1 means one.
+    The sign changes of its Bernstein coefficients in an interval bound the number of its roots
+    there, with the same parity: 0 means none and 1 means one.
     """
     scaled = [one * end**i for i, one in enumerate(coefficients)]
     if scaled[0] <= 0:
@@ -179,7 +180,7 @@ class Touch(NamedTuple):
 
 
 class Body:
-    """The constants of a motion, in the precision of the current context."""
+    """The constants of a motion, at the precision of the current context."""
 
     def __init__(self, scene: Scene) -> None:
         self.a, self.b, self.mass, self.g = map(mpfr, scene[:4])
@@ -193,12 +194,12 @@ class Body:
         self.mu, self.e = mpfr(scene.friction), mpfr(scene.restitution)
 
     def phi(self, theta: Any) -> Any:
-        """phi of an angle theta, with as many whole turns as theta has."""
+        """phi of an angle theta, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(theta)
         return gmpy2.atan2(self.a * sin, self.b * cos) + theta - gmpy2.atan2(sin, cos)
 
     def theta(self, phi: Any) -> Any:
-        """theta of an angle phi, with as many whole turns as phi has."""
+        """theta of an angle phi, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(phi)
         return gmpy2.atan2(self.b * sin, self.a * cos) + phi - gmpy2.atan2(sin, cos)
 
@@ -359,13 +360,13 @@ class Hit(NamedTuple):
 
 
 def collide(body: Body, touch: Touch, v: Any, u: Any, law: str = "stronge") -> Hit:
-    """Impulses of a collision that starts with slip v and gap rate u < 0; the laws "poisson" and
-    "newton" of restitution are known for finite friction only."""
+    """Impulses of a collision that starts with slip v and gap rate u < 0; the restitution laws
+    "poisson" and "newton" are implemented for finite friction only."""
     if gmpy2.is_finite(body.mu):
         return collide_with_friction(body, touch, v, u, law)
     assert law == "stronge"
     tangential, normal, coupling = touch[2:]
-    stopped = u - v * coupling / tangential  # gap rate when friction alone has ended the slip
+    stopped = u - v * coupling / tangential  # gap rate once friction alone has ended the slip
     if stopped <= 0:
         away = (1 + body.e) * -stopped / (normal - coupling**2 / tangential)
         along = -(v + coupling * away) / tangential
@@ -379,8 +380,8 @@ def collide(body: Body, touch: Touch, v: Any, u: Any, law: str = "stronge") -> H
 def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) -> Hit:
     """Impulses of a collision with Coulomb friction, in pieces on which v and u are linear in p.
 
-    Restitution ends by its law: with e^2 of the work of compression done (Stronge), e times the
-    impulse of compression (Poisson), or u = -e times its first value (Newton).
+    Restitution ends by its law: after e^2 of the work of compression (Stronge), e times the impulse
+    of compression (Poisson), or at u = -e times its first value (Newton).
     """
     tangential, normal, coupling = touch[2:]
     along, away, work, compressing = mpfr(0), mpfr(0), mpfr(0), True
@@ -422,7 +423,7 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) ->
 
 
 class Followed(NamedTuple):
-    """Events, the state at the end, the error of the energy, and the time of an undecided end."""
+    """Events, the state at the end, the energy error, and the time of an undecided end."""
 
     rows: list[Row]
     last: Row
@@ -435,7 +436,7 @@ class Follower:
 
     most_steps = MOST_STEPS
     least_rebound = LEAST_REBOUND
-    law = "stronge"  # of restitution
+    law = "stronge"  # restitution law
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.body = body = Body(scene)
@@ -476,12 +477,12 @@ class Follower:
         self.rows.append(self.now(kind))
 
     def now(self, kind: str) -> Row:
-        """The present state as a row of the given kind."""
+        """The current state as a row of the given kind."""
         s = self.state
         return Row(kind, self.t, s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot)
 
     def follow(self, end: Any, most_events: int) -> Followed:
-        """Follow the motion to a time, or until it can no longer be followed."""
+        """Follow the motion to a time, or as long as it can be followed."""
         while self.arc is not None and self.t < end and len(self.rows) < most_events:
             if self.lost is not None:
                 break
@@ -489,7 +490,7 @@ class Follower:
         return Followed(self.rows, self.now("state"), self.energy_error / self.size, self.lost)
 
     def step(self, end: Any) -> None:
-        """Take one series up to the end of its step, the wanted end or the first event."""
+        """Take one series up to the end of its step, the requested end or the first event."""
         arc, body = self.arc, self.body
         assert arc is not None
         self.steps += 1
@@ -521,7 +522,7 @@ class Follower:
         return reach / growth if growth > 0 else mpfr("inf")
 
     def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Margins of the arc by the event that ends it, divided by their zeros at the start."""
+        """Margins of the arc by the event that ends it, with zeros at the start divided out."""
         mu, normal, friction = self.body.mu, found.normal, found.friction
         if arc.mode == FLIGHT:
             s = self.state
@@ -552,7 +553,7 @@ class Follower:
         return step * value([one / (n + 1) for n, one in enumerate(power)], step)
 
     def move(self, found: Series, step: Any) -> None:
-        """Move the state by a step that the series reaches."""
+        """Move the state by a step within the series' reach."""
         assert self.arc is not None
         phi, theta, omega, x, x_dot = (value(column, step) for column in found[:5])
         if self.arc.mode == FLIGHT:
@@ -634,7 +635,7 @@ class Follower:
 
 
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
-    """The motion up to a time, in the precision `road`."""
+    """The motion up to a time, at the precision `road`."""
     return Follower(scene, road).follow(mpfr(end), most_events)
 
 

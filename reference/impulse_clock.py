@@ -2,9 +2,9 @@
 
     python reference/impulse_clock.py
 
-The clock is the impulse of the normal force: by it the rates stay finite where B vanishes, and
-contact_motion.py, whose clock is the time, stops. Extrapolated midpoint rules (W. Gragg) carry the
-motion. Prints the numbers of tests/contact/test_slides.py.
+The clock is the impulse of the normal force: rates by it stay finite where B vanishes, at which
+contact_motion.py, whose clock is time, stops. Extrapolated midpoint rules (W. Gragg) integrate the
+motion. Prints the numbers in tests/contact/test_slides.py.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ import rolling_ellipse as rl
 
 mp.mp.dps = 45
 TOLERANCE, AT_REST = mp.mpf(10) ** -36, mp.mpf(10) ** -38
-POINTS = (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32)  # of the midpoint rules of a step
+POINTS = (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32)  # substeps of the midpoint rules
 NAMES = ("theta", "omega", "x_dot", "t", "x")
 LIGHT: dict[str, Any] = {"inertia": 2e-4, "friction": 0.43, "theta": 1.618, "x_dot": 0.485}
 SCENES = (

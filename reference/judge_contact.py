@@ -3,29 +3,30 @@
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
-one scene of a seed and prints all of its values, `--family well` draws from one family, `--scenes
-0` only prints the findings in a file. The report counts the judged scenes by family, shape and
+one scene of a seed and prints all its values, `--family well` draws from one family, `--scenes 0`
+only prints the findings in a file. The report counts the judged scenes by family, shape and
 friction, and reproduces each scene above `--limit` units.
 
 Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
 unlimited, inertia, mass, gravity and lengths over many powers of ten. Each scene is followed with
-42 digits until the inputs no longer fix the answer, the events are enough, or the kind of an event
-is undecided. Events, the states after them and states at times between are compared with the
+42 digits until the inputs no longer fix the answer, there are enough events, or the kind of an
+event is undecided. Events, the states after them and states at times between are compared with the
 package's, which come from a table of times, from single times, and from `sol` in any order.
 
 Units. The unit of a value is a sum: the effect of 2.2e-16 of each input, each in its own run, two
-ulp of the value and, at events, the effect of two ulp of the time. On the ground it has the effect
-of half an ulp of theta on h, h' omega and, without slip, h omega, too: returned states carry those
-of their theta as rounded. theta0 is changed by 2.2e-16 rad. The strict unit changes theta0 by
+ulp of the value and, at events, the effect of two ulp of the time. On the ground it includes the
+effect of half an ulp of theta on h, h' omega and, without slip, h omega: in returned states these
+follow from the rounded theta. theta0 is changed by 2.2e-16 rad. The strict unit changes theta0 by
 2.2e-16 of its distance from the nearest quarter turn and has no ulp of times: there a double
-resolves more than an ulp of the angle.
+resolves more finely than an ulp of the angle.
 
-Rolling that never ends has the bits of the model "rolling", which other tables judge over any time.
+Rolling that never ends equals the model "rolling" bit for bit, which other tables judge over any
+time.
 
-Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged from there on.
-Where the package finds other events, the inputs are changed at random by up to 64 times 2.2e-16:
-within this distance the package treats a start as being at a limit. If changed inputs lead to the
-package's events, the scene is at a limit as well; if not, the package has a fault.
+Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged beyond it. If
+the package reports other events, the inputs are changed at random by up to 64 times 2.2e-16: within
+this distance the package treats a start as being at a limit. If changed inputs lead to the
+package's events, the scene is at a limit, too; if not, the package has a fault.
 """
 
 import argparse
@@ -69,15 +70,15 @@ CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # the values of every 20th scene are checked in a third precision
 FARTHEST = 0.1  # most units between two precisions; the finer one is then millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # least unit / size of a scene: some values are zero for all inputs
-RATE_STEP = 1e-8  # change of time / step in differences for rates
-UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not fix the answer
+RATE_STEP = 1e-8  # change of time / step, in differences for rates
+UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not determine the answer
 KIND_LIMIT = 1e-4  # largest unit of a time / time; up to it the inputs fix the kind of an event
 MOST_STEPS = 260  # most steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
 ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
 SHORTEST = 1e-6  # least interval with samples / natural time: a hop may be lower than tolerances
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
-NEARBY = 12  # slightly changed scenes that distinguish a limit from a fault
+NEARBY = 12  # number of slightly changed scenes that tell a limit from a fault
 ROUTES = ("event", "table", "alone", "sol")
 
 
@@ -104,13 +105,13 @@ class Case(NamedTuple):
 
 
 class Judge(Follower):
-    """A motion that may begin with a blow, or with slip that unlimited friction stops."""
+    """A motion that may start with a blow, or with slip that unlimited friction stops."""
 
     most_steps = 4000
 
     def __init__(self, case: Case, road: Road) -> None:
         self.blow = case.blow and Blow(*map(mpfr, case.blow))
-        # without loss of energy bounces are never summed
+        # bounces without energy loss are never summed
         self.least_rebound = 0.0 if case.scene.restitution == 1 else LEAST_REBOUND
         self.rates: list[list[Any]] = []  # rates of the components of a row, just before each event
         a, b, gravity = case.scene.a, case.scene.b, case.scene.gravity
@@ -161,12 +162,12 @@ class Judge(Follower):
         return Arc(FLIGHT, zeros=1) if hit.rebound > 0 else standing(body, self.state, hit.slip)
 
     def step(self, end: Any) -> None:
-        """Keep the state at the start of the step."""
+        """Take a step, and keep the state at its start."""
         self.started = self.state
         super().step(end)
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
-        """Record the rates of the state just before an event."""
+        """Change the arc, and record the rates of the state just before the event."""
         now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t is not moved
         self.state, self.arc = self.started, arc
         self.move(found, step - short)
@@ -256,7 +257,7 @@ def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
                 continue
             if old is None or not gmpy2.is_finite(mpfr(old)) or old == 0:
                 continue
-            # k^2 = I/m changes with the mass as with the inertia
+            # k^2 = I/m changes with the mass as much as with the inertia
             both = name == "inertia" and scene.inertia is not None and case.blow is None
             yield name, 2 if both else 1, with_input(case, name, mpfr(old) * (1 + mpfr(ROUNDING)))
         for name in Blow._fields if case.blow else ():
@@ -282,7 +283,7 @@ class Judged(NamedTuple):
 
 
 def differences(new: Row, old: Row) -> list[float]:
-    """Sizes of the differences between two rows."""
+    """Magnitudes of the differences between two rows."""
     return [float(abs(p - q)) for p, q in zip(new[1:], old[1:], strict=True)]
 
 
@@ -309,7 +310,7 @@ def sizes(scene: Scene) -> list[float]:
 
 
 def rows_of(found: Answer) -> dict[str, Row]:
-    """All rows of an answer, by the name of the row."""
+    """All rows of an answer, by name."""
     rows = {f"event {i}": row for i, row in enumerate(found.events)}
     return rows | {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
 
@@ -339,7 +340,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 
 
 def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
-    """The effect of half an ulp of theta on what it determines on the ground."""
+    """The effect of half an ulp of theta on the values that it determines on the ground."""
     theta, omega, z, x_dot = map(float, (row.theta, row.omega, row.z, row.x_dot))
     h, slope, bend = support(float(scene.a), float(scene.b), theta)
     if abs(z - h) > ON_GROUND * h:
@@ -352,7 +353,7 @@ def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
 
 
 def reference(case: Case, times: list[float], end: float, check: bool, level: int = 0) -> Reference:
-    """Events, samples and their units, in a finer precision where this one is too coarse."""
+    """Events, samples and their units, at a finer precision if this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -392,7 +393,7 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
     apart = distance(judged, case, bases)
     if apart > FARTHEST and level + 3 < len(ROADS):
         return reference(case, times, end, check, level + 1)
-    # rows that still differ are left out
+    # rows that differ even so are left out
     judged = [one for one in judged if distance([one], case, bases) <= FARTHEST]
     if check:
         finest = answer(case, ROADS[level + 2], times, end)
@@ -421,7 +422,7 @@ def in_words(case: Case) -> rl.Scene:
 
 
 class Found(NamedTuple):
-    """The package's answers, by the name of the row and the route to it."""
+    """The package's answers, by row name and the route to it."""
 
     kinds: list[str]
     values: dict[tuple[str, str], list[float]]  # (name of the row, route): t, theta, ...
@@ -466,7 +467,7 @@ def found_by_package(case: Case, times: list[float], end: float, rng: random.Ran
 
 
 def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
-    """Sample times between events, an end, and its reason."""
+    """Sample times between events, an end time, and the reason for it."""
     first = answer(case, CHANGED_ROAD, [], case.longest, MOST_STEPS)
     ends = [float(one.t) for one in first.events]
     if first.events and first.events[-1].kind == "jam":
@@ -493,7 +494,7 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
         v = case.scene._asdict()
         if v["x_dot"] is not None and v["z"] is None:
             rolls = support(v["a"], v["b"], v["theta"])[0] * v["omega"]
-            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # a start taken as rolling
+            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # a start that counts as rolling
                 near = with_input(near, "x_dot", rng.choice([None, v["x_dot"]]))
         with CHANGED_ROAD.context():
             for name in ("a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope"):
@@ -514,7 +515,7 @@ def too_slow(*_: Any) -> None:
 
 
 def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, Any]:
-    """The record of one scene: the number of a seed, drawn from one family or from any."""
+    """The record of one scene, given by its number for a seed, drawn from one family or any."""
     seed, number, family = task
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
@@ -555,7 +556,7 @@ def first_wrong(known: Reference, found: Found, end: float) -> int | None:
 
 def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
     """The verdict on a case, with the errors in units."""
-    words = in_words(case)  # the package refuses an invalid scene here
+    words = in_words(case)  # the package rejects an invalid scene here
     record: dict[str, Any] = {"scene": repr(words)}
     times, end, why = plan(case, rng)
     known = reference(case, times, end, check)
@@ -613,7 +614,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
 
 
 def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
-    """Most units of a record's errors by `sol`, or by all other routes."""
+    """Largest error of a record in units, by `sol` or by all other routes."""
     found = [value for name, value in record[key].items() if name.startswith("sol") == sol]
     return max(found, default=0.0)
 
@@ -627,7 +628,7 @@ def power(rng: random.Random, low: float, high: float) -> float:
 
 
 def sign(rng: random.Random) -> int:
-    """1 or -1 with equal chances."""
+    """1 or -1 with equal probability."""
     return rng.choice([-1, 1])
 
 
@@ -710,7 +711,7 @@ def rate(v: Values) -> float:
 
 
 def speed(v: Values) -> float:
-    """Speed after falling as deep as the body is long [m/s]."""
+    """Speed after falling by the body's length [m/s]."""
     return math.sqrt(v["gravity"] * max(v["a"], v["b"]))
 
 
@@ -728,7 +729,7 @@ def slide(rng: random.Random, v: Values) -> None:
 
 
 def frictionless(rng: random.Random, v: Values) -> None:
-    """Draw a start that slides for long with next to no friction."""
+    """Draw a start that slides for a long time with almost no friction."""
     slide(rng, v)
     v["friction"] = rng.choice([0.0, power(rng, -20, -6)])
     v["omega"] = rate(v) * rng.uniform(-1, 1)
@@ -741,7 +742,7 @@ def roll(rng: random.Random, v: Values) -> None:
 
 
 def short_slip(rng: random.Random, v: Values) -> None:
-    """Draw a start that rolls and needs slightly more friction than there is."""
+    """Draw a start that rolls and needs slightly more friction than available."""
     pose(rng, v)
     peak = peak_of_friction(Scene(**v))
     if peak > 1e-6:
@@ -769,8 +770,8 @@ def blow(rng: random.Random, v: Values) -> None:
 
 
 def tip(rng: random.Random, v: Values) -> None:
-    """Draw a start on the tip, at most a few doubles beside it, with hardly any spin."""
-    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that rolls on over its flat side
+    """Draw a start on the tip, or within a few doubles of it, with hardly any spin."""
+    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that continues rolling over its flat side
         with_axes(v, v["b"] * rng.uniform(1.05, 3.0) ** sign(rng), v["b"])
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
@@ -781,14 +782,14 @@ def tip(rng: random.Random, v: Values) -> None:
 
 
 def beside_tip(rng: random.Random, v: Values) -> None:
-    """Draw a start that falls over from beside the tip."""
+    """Draw a start that falls over from next to the tip."""
     tip(rng, v)
     v["theta"] += sign(rng) * power(rng, -13, -1)
     v["omega"] = rng.choice([0.0, v["omega"]])
 
 
 def lying(rng: random.Random, v: Values) -> None:
-    """Draw a start beside the flat position, at rest or nearly at rest."""
+    """Draw a start near the flat position, at rest or nearly at rest."""
     if v["a"] == v["b"]:
         v["a"] *= 2
     v["theta"] = 0.0 if v["a"] > v["b"] else rng.choice([-1, 1]) * math.pi / 2
@@ -799,7 +800,7 @@ def lying(rng: random.Random, v: Values) -> None:
 
 
 def well(rng: random.Random, v: Values) -> None:
-    """Draw small rocking where a slope holds a body that is not round."""
+    """Draw small rocking in the equilibrium of a non-round body on a slope."""
     a, b = drawn_axes(rng)
     while max(a, b) / min(a, b) < 1.01:
         a, b = drawn_axes(rng)
@@ -822,7 +823,7 @@ def well(rng: random.Random, v: Values) -> None:
 
 
 def light(rng: random.Random, v: Values) -> float:
-    """Draw an angle at which a spin can take the weight off the ground, with about that spin."""
+    """Draw an angle at which some spin makes the body weightless, and return that spin."""
     if v["a"] == v["b"]:
         v["a"] *= 2
     for _ in range(1000):
@@ -834,7 +835,7 @@ def light(rng: random.Random, v: Values) -> float:
 
 
 def weightless(rng: random.Random, v: Values) -> None:
-    """Draw a start on the ground with hardly any pressure, or hardly free of the ground."""
+    """Draw a start on the ground that hardly presses on it, or hardly leaves it."""
     spin = light(rng, v) * sign(rng)
     v["omega"] = spin * (1 + sign(rng) * power(rng, -13, -0.5))
     if rng.random() < 0.3:
@@ -842,7 +843,7 @@ def weightless(rng: random.Random, v: Values) -> None:
 
 
 def skips(rng: random.Random, v: Values) -> None:
-    """Draw many low hops without loss of energy."""
+    """Draw many low hops without energy loss."""
     v["restitution"] = 1.0
     if rng.random() < 0.5:
         weightless(rng, v)
@@ -889,12 +890,12 @@ def needed_friction(v: Values) -> float:
 
 
 class Family(NamedTuple):
-    """The start of a family, its share of the scenes, its most events and its time spans."""
+    """The start of a family, its share of the scenes, its most events, and its time spans."""
 
     draw: Callable[[random.Random, Values], None]
     share: float
     most_events: int = 8
-    spans: tuple[float, float] = (3.0, 12.0)  # least and greatest end in natural times
+    spans: tuple[float, float] = (3.0, 12.0)  # least and largest end in natural times
 
 
 FAMILIES = {
@@ -920,7 +921,7 @@ def drawn_blow(rng: random.Random, v: Values) -> Blow:
     mass, fall = v["mass"], speed(v)
     size = mass * fall * power(rng, -3, 0.5)
     angle = rng.uniform(-math.pi, math.pi)
-    if rng.random() < 0.4:  # a body that the ground presses
+    if rng.random() < 0.4:  # the body is pressed to the ground
         reach = math.hypot(v["a"] * math.cos(v["theta"]), v["b"] * math.sin(v["theta"]))
         return Blow(0.0, -size, rng.uniform(-0.9, 0.9) * reach, 0.0)
     shorter = min(v["a"], v["b"])
@@ -956,7 +957,7 @@ def aspect(record: dict[str, Any]) -> str:
 
 
 def mu(record: dict[str, Any]) -> str:
-    """A word for the friction."""
+    """A word that describes the friction."""
     value = record["inputs"]["friction"]
     words = ((0, "0"), (1e-3, "tiny"), (3, "common"), (1e7, "large"))
     return next((word for most, word in words if value <= most), "unlimited")

@@ -5,12 +5,12 @@
 A film takes one to six seconds. A run continues an existing file, and each study has its own seeds;
 `--films 0` only prints what is in the file. The studies:
 
-right    films of all kinds with normal noise: how many are called wrong, and, where sigma is
+right    films of all kinds with normal noise: how many are called wrong, and, if sigma is
          estimated, how far parameters are from those of the scene, in standard errors
-wrong    films that do not fit their scene, of the kinds below in turns: how many are called wrong,
+wrong    films that do not fit their scene, of the kinds below in turn: how many are called wrong,
          and for how many the reading that makes them fit is named
-example  the film of docs/film.md: cost of the minimum over that of the one below the truth
-wild     the same with 4 of 80 angles off by a quarter turn, by "soft_l1" and "cauchy" in turns
+example  the film of docs/film.md: cost of the minimum above that of the one downhill from the truth
+wild     the same with 4 of 80 angles off by a quarter turn, by "soft_l1" and "cauchy" in turn
 """
 
 import argparse
@@ -45,7 +45,7 @@ def noisy(scene: rl.Scene, t: Any, sigma: dict[str, float], random: Any) -> Trac
 
 
 def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """Scene of a kind, what is unknown of it, noise of a tracker, and times of a camera."""
+    """Scene of a kind, its unknowns, the tracker's noise, and the camera's times."""
     a = float(np.exp(random.uniform(np.log(0.02), np.log(1.0))))
     b, speed = a * random.uniform(0.5, 0.95), math.sqrt(9.81 * a)
     body: dict[str, Any] = {"a": a, "b": b, "theta": random.uniform(-1, 1)}
@@ -77,7 +77,7 @@ def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, 
 
 
 def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
-    """Scene with guesses of somebody who has seen the film once."""
+    """Scene with the guesses of somebody who has seen the film once."""
     guess = {name: 1.2 * value_of(scene, name) for name in free}
     for name, off in {"x": 0.1 * scene.a, "z_dot": 0.1 * math.sqrt(9.81 * scene.a)}.items():
         guess |= {name: guess[name] + off} if name in free else {}
@@ -125,7 +125,7 @@ def _drag(film: Tracks, random: Any) -> Tracks:
             for n in TRACKS}  # fmt: skip
 
 
-# by kind: the change of a film, and the reading that makes it fit, if there is one
+# by kind: the change of a film, and the reading that makes it fit, if any
 WRONG: dict[str, tuple[Callable[[Tracks, Any], Tracks], str]] = {
     "counter-clockwise": (lambda f, _: {"theta": -f["theta"]}, "theta = -theta"),
     "degrees": (lambda f, _: {"theta": np.degrees(f["theta"])}, "theta = np.radians(theta)"),
@@ -158,7 +158,7 @@ def wrong(seed: int) -> dict[str, Any]:
 
 
 def _over_truth(film: Tracks, loss: str) -> dict[str, Any]:
-    """How far the cost of the minimum is over that below the truth."""
+    """How far the cost of the minimum is above that of the one downhill from the truth."""
     start = time.process_time()
     fit = rl.fit_motion(**film, scene=GUESS, free=FREE, sigma=SIGMA, loss=loss)
     seconds, cost = time.process_time() - start, _cost(fit, loss)
@@ -178,7 +178,7 @@ _LOSS: dict[str, Callable[[Any], Any]] = {
 
 
 def _local(film: Tracks, loss: str) -> float:
-    """Cost of the minimum to which SciPy alone goes down from the truth."""
+    """Cost of the minimum that SciPy alone reaches from the truth."""
     from scipy.optimize import least_squares
 
     def residuals(u: Any) -> Any:

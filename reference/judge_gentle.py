@@ -2,9 +2,9 @@
 
     python reference/judge_gentle.py --cases 100 --seed 1      (10 minutes, one core)
 
-The cases are drawn as those of `gentle_reference.csv`, with other seeds, and computed in 44 digits.
-The report counts the numbers that are beyond `--limit` units, with the worst of each kind. A unit
-is that of the table, and two ulp of the number.
+The cases are drawn like those of `gentle_reference.csv`, with other seeds, and computed in 44
+digits. The report counts the numbers beyond `--limit` units, with the worst of each kind. A unit is
+that of the table plus two ulp of the number.
 """
 
 import argparse
@@ -36,7 +36,7 @@ def found(case: Case) -> dict[str, tuple[float, ...]]:
 
 
 def main() -> None:
-    """Judge cases that the inputs fix, and report."""
+    """Judge cases that the inputs determine, and report."""
     asked = argparse.ArgumentParser(description="Judge rolling on gentle slopes.")
     asked.add_argument("--cases", type=int, default=100)
     asked.add_argument("--seed", type=int, default=1)

@@ -5,31 +5,30 @@
 A run takes some minutes and continues an existing file; without `--file` nothing is kept, and
 `--scenes 0` only prints what is in the file. The studies:
 
-ends    ends after t1 start motions of length t2: do they end like one motion of length t1 + t2,
-        a sum that is exact?
+ends    ends after t1 start motions of length t2: do they end like one motion of length t1 + t2
+        (an exact sum)?
 events  states at events (those of the event, of `at` and of `scene_at`) start motions: do these
         have the later events?
 cut     motions cut by `max_events` continue from their end, and from a rounding before the next
         event: do these have the due event and the later ones?
 
-Every second start is of its own kind: aspects up to 800, any size, slope and friction, angles up
-to 1e9. A new start is judged as one of these:
+Scenes are drawn with aspects up to 800, any size, slope and friction, and angles up to 1e9. A new
+start is judged as one of these:
 
 same            the same events and, in `ends`, a state within 8 units
-over 8 units    the same events, but a state further away
+over 8 units    the same events, but a state farther away
 silent          in `cut`, the due change of mode happens without an event, as documented
-one more ...    an impact more by a start among bounces that the motion sums, as documented
+one more ...    one more impact from a start among bounces that the motion sums, as documented
 jams ...        a start at the edge of Painleve's paradox: its roundings decide whether it jams, as
                 documented
-beside a tie    other events, as also by the motion itself with an input changed by 1e-12
+beside a tie    other events, but the motion itself has others, too, with an input changed by 1e-12
 wrong           other events without a reason
 refused         no scene accepts the state
 
 A unit of a number is the effect of a rounding of each input of the motion, and of each input of the
-new start, by differences, and two ulp of the number. On the ground it has that of an ulp of theta
-on h, h' omega and, without slip, h omega, too: both states carry those of their theta as rounded,
-by half an ulp. A state that depends on the inputs by more
-than a linear effect is beside a tie.
+new start, by differences, plus two ulp of the number. On the ground it includes the effect of an
+ulp of theta on h, h' omega and, without slip, h omega: in both states these follow from the rounded
+theta, by half an ulp. A state whose dependence on the inputs is not linear is beside a tie.
 """
 
 import argparse
@@ -48,15 +47,15 @@ from rolling_ellipse._ask.settings import DEFAULTS
 from runs import add_record, read_records
 
 Values = dict[str, Any]
-Finding = tuple[str, str, float, str]  # label, verdict, distance, and the case to be pasted
+Finding = tuple[str, str, float, str]  # label, verdict, distance, and the case to paste
 INPUTS = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution")
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 ULP = 2.0**-52
-CHANGE = 1e-12  # of an input, to see whether a motion is beside a tie
+CHANGE = 1e-12  # change of an input that shows whether a motion is beside a tie
 LIMIT = 8.0  # units
 BLOCK = 50  # scenes that are drawn together
-MOST = 30  # events of a motion
-SAME_TIME = 1e-5  # relative; tells events apart, errors of the inputs grow from impact to impact
+MOST = 30  # most events of a motion
+SAME_TIME = 1e-5  # relative; separates events: errors of the inputs grow from impact to impact
 SUMMED = "one more among summed bounces"
 JAMS = "jams by roundings"
 EXCUSED = ("same", "silent", SUMMED, JAMS, "beside a tie")
@@ -70,7 +69,7 @@ def powers(rng: Any, n: int, low: float, high: float) -> Any:
 
 
 def either(rng: Any, n: int, *arrays: Any) -> Any:
-    """Each number from one of the arrays."""
+    """Each number drawn from one of the arrays."""
     return np.choose(rng.integers(len(arrays), size=n), arrays)
 
 
@@ -100,7 +99,7 @@ def clocks(v: Values) -> Any:
 
 
 def draw(rng: Any, n: int) -> Values:
-    """Draw scenes that roll, slide, fly or leave the ground; nan: what a scene leaves out."""
+    """Draw scenes that roll, slide, fly or leave the ground; nan for omitted arguments."""
     v, sign = body(rng, n), rng.choice([-1, 1], n)
     quarter = np.round(rng.uniform(-4, 4, n)) * math.pi / 2
     far, near = sign * powers(rng, n, 0, 9), quarter + sign * powers(rng, n, -12, -1)
@@ -137,7 +136,7 @@ def scene_of(v: Values, i: int) -> rl.Scene | None:
 
 
 def ends(v: Values, t: Any) -> tuple[Any, Any]:
-    """States and codes (mode, events, first, ending) of `rl.ends`; of refused starts nan and -1."""
+    """States and codes (mode, events, first, ending) of `rl.ends`; nan, -1 for refused starts."""
     columns = [v.get(name, np.full(len(t), np.nan)) for name in _core.FIELDS["Scene"]]
     table = np.column_stack(columns + [np.full(len(t), np.nan)] * 4)  # no impulse
     found = _core.ends_table(table, DEFAULTS.core, t, 1)
@@ -145,7 +144,7 @@ def ends(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:
-    """Effect of a rounding of each input on the ends, and where events change with an input."""
+    """Effect of a rounding of each input on the ends, and whether an input changes events."""
     states, codes = ends(v, t)
     total, tie = np.zeros_like(states), np.zeros(len(t), bool)
     for name, column in v.items():
@@ -170,7 +169,7 @@ def units(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
-    """Effect of an ulp of theta on what it determines on the ground."""
+    """Effect of an ulp of theta on the values that it determines on the ground."""
     theta, omega = state[:2]
     slope = rl.geometry.support_slope(theta, a=v["a"], b=v["b"])
     bend = rl.geometry.support_curvature(theta, a=v["a"], b=v["b"])
@@ -180,7 +179,7 @@ def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
 
 
 def freed(v: Values, mode: Any) -> Values:
-    """Starts without what their mode determines, so that inputs can be changed."""
+    """Starts without the values that their mode determines, so that inputs can be changed."""
     ground, rolls = mode != rl.Mode.FLIGHT, ~np.isin(mode, [rl.Mode.FLIGHT, rl.Mode.SLIDING])
     left_out = {"z": ground, "z_dot": ground, "x_dot": rolls}
     return v | {name: np.where(out, np.nan, v[name]) for name, out in left_out.items()}
@@ -231,7 +230,7 @@ def follow(scene: rl.Scene, t: float, most: int = MOST) -> rl.Trajectory:
 def same(
     m: rl.Trajectory, got: rl.Trajectory, k: int = 0, skip: int = 0, start: float = 0.0
 ) -> bool:
-    """Whether a motion that starts at a time has the events from k on: times of 3, kinds of 8."""
+    """Whether a motion that starts at a time has the events from k on (8 kinds, 3 times)."""
     complete = len(m.events) < MOST
     if complete and m.status is not got.status:
         return False
@@ -275,7 +274,7 @@ def beside_a_tie(m: rl.Trajectory, k: int) -> bool:
 
 
 def jams_by_roundings(new: rl.Scene, got: rl.Trajectory) -> bool:
-    """Whether a start jams, and does not with its angle changed by eight of its roundings."""
+    """Whether a start jams, but not if its angle is changed by eight roundings."""
     if got.status is not rl.Status.JAMMED or got.t_end > 0:
         return False
     off = 8 * np.spacing(abs(new.theta))
@@ -287,7 +286,7 @@ def jams_by_roundings(new: rl.Scene, got: rl.Trajectory) -> bool:
 def judged(
     m: rl.Trajectory, k: int, label: str, start: Callable[[], rl.Scene], t: float, due: bool
 ) -> Finding:
-    """Judge a start at t, before event k of a motion; due: this event may be silent."""
+    """Judge a start at t, before event k of a motion; if `due`, this event may be silent."""
     case, off = f"rl.{m.scene!r}  # to {m.span!r} s, a start at {t!r} s, before event {k}", 0.0
     try:
         new = start()

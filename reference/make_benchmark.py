@@ -1,26 +1,27 @@
 """Make `python/rolling_ellipse/benchmark/problems/*.json`: problems with known answers.
 
 contact_motion.py computes the motions, in series of order 50 and 60 with 64 and 76 digits. States,
-forces and events have to agree to `AGREEMENT`, relative where they are above 1: the largest
-difference was 3.5e-49. The energy less all work changed by at most 1.5e-52 of its size.
+forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest difference
+was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
 
     python make_benchmark.py            makes all files (3 minutes, one core)
 
 Rows hold x, z, theta, x_dot, z_dot, omega (SI units) and the normal and the friction force on the
-body [N], 0 in flight. A given time is a multiple of a round step, and no nearer than
+body [N], 0 in flight. A given time is a multiple of a round step, and no closer than
 0.02 sqrt(L/g) to an event, where L = max(a, b). All numbers are the doubles nearest to the motion
-of the scene in the file, with its inertia; of a start on the ground those of its numbers follow
-that theta, omega and the contact determine.
+of the scene in the file, with its inertia; for a start on the ground the numbers that theta, omega
+and the contact determine are derived from these.
 
-Condition. The sum over the inputs p of |dy/dln p| by `scales`, worst of the six of a state, for an
-event of its time by sqrt(L/g); at least 1. theta counts by radians, other zeros of the start by L,
-sqrt(g L) or sqrt(g/L); slope, friction and restitution that are zero are kept, and so are the mass
-and the inertia of a uniform disc, which follows a and b. Differences of 1e-12 on both sides, in 42
-digits; an input at the end of its range, or whose other side has other events, changes on one side.
+Condition. The sum over the inputs p of |dy/dln p| over `scales`, the worst of the six of a state,
+or for an event of its time over sqrt(L/g); at least 1. theta changes in radians, other zeros of the
+start in units of L, sqrt(g L) or sqrt(g/L); zero slope, friction and restitution are not changed,
+nor are the mass and the inertia of a uniform disc, which follows a and b. Differences of 1e-12 on
+both sides, in 42 digits; an input at the end of its range, or whose other side has other events,
+changes on one side.
 
-Infinitely many bounces of a disc that has ceased to slip are a geometric series, with its sum in
-closed form. Events are listed as a simulation with the default rest_speed lists them: impacts as
-long as the rebound is above 1e-6 sqrt(g b), and one event, STICK, where the series ends.
+The infinitely many bounces of a disc that no longer slips are a geometric series, with its sum in
+closed form. Events are listed as by a simulation with the default rest_speed: impacts as long as
+the rebound is above 1e-6 sqrt(g b), and one event, STICK, at the end of the series.
 """
 
 import json
@@ -46,7 +47,7 @@ STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 3: 0.1, 2.5: 0.1}  #
 LARGEST_CONDITION = 1000.0
 LEAST_GAP = 0.002  # over L; a lower flight is not scored as one
 LAWS = ("stronge", "poisson", "newton")
-GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # and the change of the input
+GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # with the change of the input
 
 
 class Problem(NamedTuple):
@@ -141,7 +142,7 @@ class Sampler(Follower):
         self.before = self.begun()
         self.samples = [] if self.arc else [self.before]
         self.sides = [(self.before, self.before) for _ in self.rows]  # a jam at the start
-        self.grips = False  # whether friction holds the contact at any time
+        self.grips = False  # whether friction ever holds the contact
 
     @property
     def kinds(self) -> list[str]:
@@ -149,20 +150,20 @@ class Sampler(Follower):
         return [row.kind.upper() for row in self.rows]
 
     def row(self, normal: Any = 0, friction: Any = 0) -> list[Any]:
-        """The present state with the forces of the given forces per mass."""
+        """The current state with the forces from given forces per mass."""
         s, mass = self.state, self.body.mass
         forces = mass * normal, mass * friction
         return [s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, *forces]
 
     def begun(self) -> list[Any]:
-        """The row at the begin of the present arc."""
+        """The row at the start of the current arc."""
         if self.arc is None:
             return self.row()
         found = motion(self.body, self.state, self.arc, 1)
         return self.row(found.normal[0], found.friction[0])
 
     def move(self, found: Any, step: Any) -> None:
-        """Move the state, past the given times."""
+        """Move the state, recording rows at the given times on the way."""
         start = self.state
         while self.times and self.times[0] <= self.t + step:
             then = self.times.pop(0) - self.t
@@ -191,7 +192,7 @@ class Sampler(Follower):
         touch = body.touch(s.phi)
         rebound = s.z_dot - touch.o * s.omega
         slow = rebound < REST_SPEED * gmpy2.sqrt(body.g * min(body.a, body.b))
-        nearly_round = abs(body.c2) < 1e-9 * body.ab  # a derivative needs a neighbour of the disc
+        nearly_round = abs(body.c2) < 1e-9 * body.ab  # derivatives change the disc slightly
         if self.arc == Arc(FLIGHT, zeros=1) and slow and nearly_round:
             assert s.x_dot == touch.h * s.omega
             lasts = 2 * rebound / body.level / (1 - body.e)
@@ -214,7 +215,7 @@ def followed(
 
 
 def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[Sampler, float]:
-    """The motion, and the largest difference of its two computations."""
+    """The motion, and the largest difference between its two computations."""
     found, numbers = [], []
     for road in (TABLE_ROAD, CHECK_ROAD):
         with road.context():
@@ -233,7 +234,7 @@ def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[S
 def neighbours(
     problem: Problem, base: Sampler, times: list[float], name: str, size: Any
 ) -> tuple[Any, ...]:
-    """A changed input on both sides, or on one and unchanged, with the answers."""
+    """An input changed on both sides, or changed on one side and unchanged, with the answers."""
     scene, end, old = problem.scene, problem.t_end, mpfr(getattr(problem.scene, name))
     found = []
     for new in (old - size, old + size):
@@ -282,12 +283,12 @@ def gradient(problem: Problem, name: str) -> list[str]:
 
 
 def doubles(row: list[Any]) -> list[float]:
-    """The nearest doubles; 0 for what is zero but for its last digits."""
+    """The nearest doubles; 0 for values that are zero to within their last digits."""
     return [float(one) if abs(one) > AGREEMENT else 0.0 for one in row]
 
 
 def tags(scene: Scene, found: Sampler) -> list[str]:
-    """Abilities that a simulator needs: "spin" is one that is not that of rolling."""
+    """Abilities that a simulator needs; "spin" is a spin that differs from that of rolling."""
     has = {
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
         "non-round": scene.a != scene.b,
@@ -300,9 +301,9 @@ def tags(scene: Scene, found: Sampler) -> list[str]:
 
 
 def answer(name: str, found: Sampler) -> dict[str, Any]:
-    """What a simulator has to answer, by the question of the problem.
+    """What a simulator must answer, depending on the question of the problem.
 
-    Bounces that settle: those after a flight higher than `LEAST_GAP`, and the time of their end.
+    For settling bounces: those after a flight higher than `LEAST_GAP`, and the time of their end.
     """
     family, last = name.split(".")[0], found.samples[-1]
     if name == "roll.circle":
@@ -323,7 +324,7 @@ def answer(name: str, found: Sampler) -> dict[str, Any]:
 
 
 def make(name: str, problem: Problem) -> tuple[str, float, float]:
-    """The text of a problem, its largest difference and its change of energy."""
+    """The text of a problem, its largest difference and its energy change."""
     inertia = problem.scene.mass * (problem.scene.a**2 + problem.scene.b**2) / 4
     scene, end, longer = problem.scene, problem.t_end, max(problem.scene[:2])
     speed = math.sqrt(scene.gravity * longer)
@@ -335,7 +336,7 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
     times = [round(k * step, 2) for k in range(round(end / step) + 1)]
     times = [t for t in times if all(abs(t - one.t) > 0.02 * longer / speed for one in happened)]
     rows, events = conditions(problem, times, scales)
-    problem = problem._replace(scene=scene._replace(inertia=inertia))  # the double of the file
+    problem = problem._replace(scene=scene._replace(inertia=inertia))  # as the double in the file
     found, apart = checked(problem, times)
     wild = [t for t, condition in zip(times, rows, strict=True) if condition > LARGEST_CONDITION]
     start = dict(zip(STATE, doubles(found.samples[0][:6]), strict=True))
@@ -368,7 +369,7 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
         apart = max(apart, *(one[1] for one in others.values()))
         data["laws"] = {law: timed(one[0].samples) for law, one in others.items()}
     text = re.sub(r'"(-?[\d.]+(e[-+]\d+)?)"', r"\1", json.dumps(data, ensure_ascii=False))
-    for gap in ("], [", "}, {", '], "', '}, "'):  # a row a line
+    for gap in ("], [", "}, {", '], "', '}, "'):  # one row per line
         text = text.replace(gap, gap.replace(" ", "\n"))
     return text + "\n", apart, float(found.energy_error / found.size)
 

@@ -4,21 +4,21 @@ The table judges the contact model. contact_motion.py computes the motions.
 
     python make_contact_reference.py            makes and checks the table (15 minutes, one core)
 
-Every value was computed twice, in series of order 50 and 60 with 64 and 76 digits, and has to
-agree to `AGREEMENT`, relative where it is above 1: the worst difference was 6.0e-47. The energy
-less the work of friction and of the impacts has to stay what it was to `AGREEMENT` of its size:
-the worst sum of changes was 2.6e-51.
+Every value was computed twice, in series of order 50 and 60 with 64 and 76 digits, and must agree
+to `AGREEMENT`, relative where it is above 1: the worst difference was 6.0e-47. The energy minus the
+work of friction and of the impacts must be constant to `AGREEMENT` of its magnitude: the worst sum
+of changes was 2.6e-51.
 
 Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y,
-the time of the event or the state just after it, which changes with this time too:
+the time of the event or the state just after it, which also changes with this time:
 
     unit_y = 2.2e-16 (sum over p of |dy/dp| |p| + |dy/dtheta0|)
 
 over p in (a, b, mass, I, g, alpha, mu, e, omega0, x0, z0, x_dot0, z_dot0), by one-sided
 differences of 1e-12 in 42 digits. Inputs other than I that are zero, infinite or not given are left
-out, and theta0 of a body dropped flat too. A scene whose kinds of events change with an input is
-not taken. A scene ends before the first event with a unit above `UNIT_LIMIT`: from there on the
-inputs do not fix the answer.
+out, as is theta0 of a body dropped flat. A scene whose kinds of events change with an input is
+rejected. A scene ends before the first event with a unit above `UNIT_LIMIT`: from there on the
+inputs do not determine the answer.
 
 A scene has a row for each event and one, `state`, for its end. A jam is the end.
 """
@@ -52,7 +52,7 @@ MOST_EVENTS = 6
 
 
 def is_flat_drop(scene: Scene) -> bool:
-    """Whether a body drops on its flat side without spin and slip: no other angle moves like it."""
+    """Whether a body drops on its flat side without spin or slip: no other angle moves alike."""
     moving = scene.theta or scene.omega or scene.x_dot or scene.slope
     return scene.z is not None and not moving
 
@@ -76,7 +76,7 @@ def units(scene: Scene, end: float) -> list[list[float]]:
             changed = [*again.rows, again.last]
             if [row.kind for row in rows] != [row.kind for row in changed]:
                 raise Undecided("events of another kind nearby")
-            # k^2 = I/m changes with the mass as with the inertia
+            # k^2 = I/m changes with the mass as much as with the inertia
             times = 2 if name == "inertia" and scene.inertia is not None else 1
             for sums, new, was in zip(total, changed, rows, strict=True):
                 for i, (p, q) in enumerate(zip(new[1:], was[1:], strict=True)):
@@ -91,7 +91,7 @@ FRICTIONS = (0.0, 0.05, 0.2, 0.5, 1.0, math.inf)
 
 
 class Family(NamedTuple):
-    """Number of the scenes of a name, their given inputs, and the kinds required in this order."""
+    """Name and number of scenes, their given inputs, and the kinds of events required, in order."""
 
     name: str
     scenes: int
@@ -148,7 +148,7 @@ def random_scene(rng: random.Random, family: Family) -> Scene:
 
 
 def contains(kinds: list[str], wanted: tuple[str, ...]) -> bool:
-    """Whether the wanted kinds happen in this order."""
+    """Whether the required kinds occur in this order."""
     rest = iter(kinds)
     return all(kind in rest for kind in wanted)
 
@@ -224,13 +224,13 @@ class Checked(NamedTuple):
 
 
 def cut(rows: list[Row], kept: int, stop: Any) -> float:
-    """A time between the last event to be kept and the next event."""
+    """A time between the last event to keep and the next event."""
     last = rows[kept - 1].t if kept else mpfr(0)
     return float(last + (stop - last) * 0.6)
 
 
 def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list[list[float]]]:
-    """The end of the few events that the inputs fix, and the units up to it."""
+    """An end time after the few events that the inputs determine, and the units up to it."""
     with UNIT_ROAD.context():
         found = follow(scene, longest, UNIT_ROAD, most_events + 1)
         rows, end = found.rows, longest
@@ -295,7 +295,7 @@ def make_scene(name: str, scene: Scene, longest: float, family: Family) -> Check
 
 
 def drawn(rng: random.Random, family: Family, name: str) -> Checked:
-    """A scene of a family that is decided and has the wanted kinds."""
+    """A scene of a family that is decided and has the required kinds of events."""
     while True:
         scene = random_scene(rng, family)
         if family.name == "short":

@@ -1,21 +1,22 @@
 """Make `gentle_reference.csv`: rolling on gentle slopes, over tips that are passed slowly.
 
-Slopes are from 1e-18 to 1e-3. A body that starts on or beside its tip, or that just passes one or
-just fails to, moves by a very small difference of energies. The script needs gmpy2, mpmath and the
-Taylor series of `make_slope_reference.py`, and shares no code and no formula with the package.
+Slopes are from 1e-18 to 1e-3. The motion of a body that starts on or near its tip, or that just
+passes one or just fails to, depends on a very small difference of energies. The script needs gmpy2,
+mpmath and the Taylor series of `make_slope_reference.py`, and shares no code or formula with the
+package.
 
     python make_gentle_reference.py            makes and checks the table (10 minutes, one core)
 
-Method. The series follow the angle and its rate, without the energy, so that nothing cancels beside
+Method. The series follow the angle and its rate, without the energy, so that nothing cancels near
 the tip. Every value was computed twice, in 64 digits and in 76, with series of order 54 and 62, and
-has to agree to `AGREEMENT`, relative to itself or to its unit; the worst difference was 1.4e-40.
+must agree to `AGREEMENT`, relative to itself or to its unit; the worst difference was 1.4e-40.
 
 Units. The effect of a relative change of 2.2e-16 of each input, and of 2.2e-16 rad of theta0,
 
     unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
 
-by one-sided differences of 1e-20 in 44 digits. Scenes whose inputs do not fix theta to `UNIT_LIMIT`
-are left out.
+by one-sided differences of 1e-20 in 44 digits. Scenes whose inputs do not determine theta to
+`UNIT_LIMIT` are left out.
 
 Speeds. A body at phi passes the upright equilibrium at psi slowly, in the coordinates of
 `make_slope_reference.py`, if J omega^2 / 2 is about the difference of the potentials
@@ -85,7 +86,7 @@ def flat_angle(body: Scene) -> float:
 
 
 def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float | None:
-    """|omega| at which a body at theta just passes so many tips, None if it cannot fail to."""
+    """|omega| at which a body at theta just passes `tips` tips, None if it cannot fail to."""
     a, b, mass, inertia, g, alpha = map(mpmath.mpf, body[:6])
     c2, side = a * a - b * b, math.copysign(1.0, body.slope)
     sine = 2 * a * b * mpmath.tan(abs(alpha)) / abs(c2)
@@ -108,7 +109,7 @@ def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float |
 
 
 def random_start(rng: random.Random, kind: str, body: Scene) -> Scene | None:
-    """The start of a kind, some many half turns away from theta 0."""
+    """The start of a kind, in some cases many half turns away from theta 0."""
     rate, sign = math.sqrt(body.gravity / max(body.a, body.b)), rng.choice([-1, 1])
     turns = 0 if rng.random() < 0.8 else round(sign * log_uniform(rng, 1.0, 3000.0))
     theta = flat_angle(body) + turns * math.pi
@@ -150,7 +151,7 @@ class Known(NamedTuple):
 
 
 def known(case: Case, road: Road) -> Known | None:
-    """Answers and units of a case, or None where the inputs do not fix the motion."""
+    """Answers and units of a case, or None if the inputs do not determine the motion."""
     unit = units(case.scene, [case.t], UNIT_ROAD, UNIT_PART)[0]
     if unit[0] > UNIT_LIMIT:
         return None

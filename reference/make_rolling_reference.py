@@ -5,24 +5,24 @@ package.
 
     python make_rolling_reference.py            makes the table again (4 minutes, one core)
 
-Motion. theta is the rotation of the ellipse, clockwise positive, theta = 0 with axis a parallel to
+Motion. theta is the rotation of the ellipse, positive clockwise, theta = 0 with axis a parallel to
 the ground, k^2 = I/m independent of a and b:
 
     D theta'' + h' (g + rho omega^2) = 0,  D = k^2 + h^2 + h'^2                                 (1)
     h = sqrt(a^2 sin^2 theta + b^2 cos^2 theta),  h' = dh/dtheta,  rho = a^2 b^2 / h^3
     E = D omega^2 / 2 + g h  conserved,  x = integral of h dtheta, 0 at the start               (2)
 
-Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits and
-its inversion after whole half turns or half swings are taken out. Libration is written in u,
+Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits,
+inverted after whole half turns or half swings are subtracted. Libration is written in u,
 sin phi = kappa sin u, phi counted from the flat position, so that turning points are ordinary
 points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the two places
 where the integrand has nearby complex singularities, the flat (thin ellipses) and the tip (near the
 separatrix). Every state in the table was computed twice, with different panels, node counts and
-working precision, and has to agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
+working precision, and must agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
 
-Method 2: Taylor series of another form of the equation, with no use of the energy, on up to four
-scenes of every kind that a few hundred steps can cross (`make_slope_reference.py --level`): all
-theta, omega and x of 75 scenes of 20 of the 22 kinds were equal within 1.9e-38 (a fast spin and 1e9
+Method 2: Taylor series of another form of the equation, without using the energy, on up to four
+scenes of every kind that a few hundred steps can cover (`make_slope_reference.py --level`): all
+theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within 1.9e-38 (a fast spin and 1e9
 half turns take too many steps).
 
 Units. The effect of one rounding of every input on the answer y, plus two ulp of y:
@@ -31,7 +31,7 @@ Units. The effect of one rounding of every input on the answer y, plus two ulp o
 
 by central differences of method 1. For one scene of each of 19 kinds, central differences of
 a Taylor series agreed within 5e-7. Where unit_theta would exceed 1e-4 the time is cut: there the
-inputs do not fix the answer.
+inputs do not determine the answer.
 """
 
 import math
@@ -76,7 +76,7 @@ class State(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """Gauss-Legendre nodes and weights on [-1, 1], and the growth of neighbouring panels."""
+    """Gauss-Legendre nodes and weights on [-1, 1], and the growth from panel to panel."""
 
     nodes: list[Any]
     weights: list[Any]
@@ -115,7 +115,7 @@ class RollingEllipse:
         phi0 = self.theta0 - self.flat
         sin0, h0, d0 = self._geometry(phi0)
         self.h_max = h0 + d0 * self.omega0**2 / (2 * self.g)  # largest height: E / g
-        # lead = kappa^2 - sin^2 phi0 without cancellation, by E - g h0 = D omega0^2 / 2
+        # lead = kappa^2 - sin^2 phi0 without cancellation, from E - g h0 = D omega0^2 / 2
         lead = d0 * self.omega0**2 * (self.h_max + h0) / (2 * self.g * self.c2)
         self.kappa2, self.q2 = sin0**2 + lead, mp.cos(phi0) ** 2 - lead  # kappa^2 + q^2 = 1
         self.rocks = self.q2 > 0
@@ -296,7 +296,7 @@ def units(changes: list[State], state: State) -> list[float]:
 
 
 class AboveEnergy(ValueError):
-    """The height of the start lies above the wanted energy, and the start must be drawn again."""
+    """The start's height is above the requested energy, so the start must be drawn again."""
 
 
 class Body(NamedTuple):
@@ -327,7 +327,7 @@ class Body(NamedTuple):
 
 
 def random_body(rng: random.Random, kind: str) -> Body:
-    """A body of 0.01 to 100 m, a third with a < b, mostly a uniform disc and on Earth."""
+    """A body of 0.01 to 100 m, a third of them with a < b, mostly uniform discs on Earth."""
     a = log_uniform(rng, 0.01, 100.0)
     ratio = log_uniform(rng, 1.001e-3, 0.999)
     if kind == "thin":
@@ -337,7 +337,7 @@ def random_body(rng: random.Random, kind: str) -> Body:
     elif kind.startswith("circle"):
         ratio = 1.0
     b = a * ratio
-    swap = kind != "flat_start" and rng.random() < 1 / 3  # flat at a < b is pi/2, no double
+    swap = kind != "flat_start" and rng.random() < 1 / 3  # flat for a < b is pi/2, not a double
     a, b = (b, a) if swap else (a, b)
     size = a * a + b * b
     gyration2 = size / 4 if rng.random() < 0.65 else size * log_uniform(rng, 1e-3, 10.0)
@@ -372,7 +372,7 @@ def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, floa
 
 
 def energy_level(rng: random.Random, kind: str, height: float, high: float) -> Any:
-    """E / g above or below the tip as the kind demands, otherwise by chance."""
+    """E / g above or below the tip as the kind requires, else at random."""
     if kind.startswith("separatrix"):
         _, side, distance = kind.split("_")
         return high * (1 + mpf(distance) * (1 if side == "above" else -1))
@@ -404,13 +404,13 @@ def random_time(rng: random.Random, kind: str, scene: Scene, rule: Rule) -> floa
 
 
 def at_symmetry(one: RollingEllipse | RollingCircle, t: float) -> bool:
-    """A time whose phase is within a hundredth of the flat, the tip or a turning point."""
+    """Whether the phase at a time is within a hundredth of the flat, the tip or a turning point."""
     phase = one.phase(mpf(t))
     return bool(abs(phase - mp.nint(phase)) < mpf("0.01"))
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A scene of a kind, drawn again while its start lies above the wanted energy."""
+    """A scene of a kind, redrawn while its start is above the requested energy."""
     while True:
         body = random_body(rng, kind)
         try:

@@ -1,20 +1,20 @@
 """Make `slope_reference.csv`: rolling without slip on a slope, to 30 digits.
 
-The table judges the integrators. The script needs only gmpy2 and shares no code and no formula with
-the package.
+The table judges the integrators. The script needs only gmpy2 and shares no code or formula with the
+package.
 
     python make_slope_reference.py              makes and checks the table (10 minutes, one core)
-    python make_slope_reference.py --level      meets the table of level ground alone (2 minutes)
+    python make_slope_reference.py --level      only compares with the level table (2 minutes)
 
-Motion. The outline of the ellipse is written as P(phi) = (a sin phi, -b cos phi), a point of the
-body. With w = |dP/dphi|, P touches the ground when the body has turned (clockwise) by theta, and
-then the centre is z above the ground and an offset o behind the contact:
+Motion. A point of the outline of the ellipse is P(phi) = (a sin phi, -b cos phi) in the body. With
+w = |dP/dphi|, P touches the ground when the body has turned (clockwise) by theta, and then the
+centre is z above the ground and an offset o behind the contact:
 
     W = w^2 = a^2 cos^2 phi + b^2 sin^2 phi,   tan theta = (b/a) tan phi,   dtheta/dphi = a b / W
     z = a b / w,   o = (a^2 - b^2) sin phi cos phi / w                                          (1)
 
 Without slip the contact moves by the arc rolled, x = int w dphi - o, and the body turns about the
-contact, whose distance from the centre is |P|. So with J = k^2 + |P|^2 = k^2 + a^2 + b^2 - W
+contact, whose distance from the centre is |P|. Thus, with J = k^2 + |P|^2 = k^2 + a^2 + b^2 - W
 
     Lagrangian / m = J (a b phi' / W)^2 / 2 - g (z cos alpha - x sin alpha)                      (2)
     J phi'' = g w (sin alpha - c^2 p cos alpha / (a b)) - c^2 p phi'^2 (1 + 2 J / W)             (3)
@@ -25,19 +25,19 @@ coefficients of (1) in time.
 
 Method. Taylor series in time of phi and of the arc by the recurrences for products, quotients and
 roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each
-step. Every value was computed twice, in series of order 50 and 60 with 60 and 72 digits, and has to
+step. Every value was computed twice, in series of order 50 and 60 with 60 and 72 digits, and must
 agree to `AGREEMENT`: the worst relative difference was 5.2e-45. The energy, with the kinetic energy
-of the moving centre instead of (2), has to stay what it was to `AGREEMENT`: the worst change was
-2.9e-46. On level ground 75 scenes of `rolling_reference.csv`, which comes from the energy integral,
-are met within 1.9e-38.
+of the moving centre instead of (2), must be constant to `AGREEMENT`: the worst change was 2.9e-46.
+On level ground 75 scenes of `rolling_reference.csv`, which comes from the energy integral, are
+reproduced within 1.9e-38.
 
 Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
 
 by one-sided differences of 1e-10 in 32 digits. For one scene of each of 12 kinds, central
-differences of 1e-18 in 60 digits agreed within 4e-7. Where unit_theta would exceed `UNIT_LIMIT`
-another scene is drawn: there the inputs do not fix the answer.
+differences of 1e-18 in 60 digits agreed within 4e-7. If unit_theta would exceed `UNIT_LIMIT`
+another scene is drawn: there the inputs do not determine the answer.
 """
 
 import csv
@@ -119,7 +119,7 @@ class Series(NamedTuple):
 
 
 class Rolling:
-    """One motion, followed forwards in the context of its precision."""
+    """One motion, followed forwards in the context of its own precision."""
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.road = road
@@ -137,7 +137,7 @@ class Rolling:
         self.state = State(phi, omega0 * w2 / self.ab, self.c2 * sin * cos / gmpy2.sqrt(w2))
 
     def series(self, order: int) -> Series:
-        """Coefficients 0 to order of the motion from the present state, 0 to order - 1 of p and
+        """Coefficients 0 to order of the motion from the current state, 0 to order - 1 of p and
         w."""
         phi, rate, arc = [self.state.phi], [self.state.rate], [self.state.arc]
         sin, cos = ([each] for each in gmpy2.sin_cos(self.state.phi))
@@ -230,14 +230,14 @@ def follow(scene: Scene, times: list[float], road: Road) -> Iterator[tuple[Answe
 def units(
     scene: Scene, times: list[float], road: Road = UNIT_ROAD, part: float = UNIT_CHANGE
 ) -> list[list[float]]:
-    """The units of the answers at each time, by changes of the inputs by a part of them."""
+    """The units of the answers at each time, from relative changes `part` of the inputs."""
     with road.context():
         answers = [answer for answer, _ in follow(scene, times, road)]
         total = [[mpfr(0)] * len(Answer._fields) for _ in times]
         for name in Scene._fields:
             old = mpfr(getattr(scene, name))
             change = part if name == "theta0" else part * old
-            if name == "mass" or change == 0:  # k^2 changes with the mass as with the inertia
+            if name == "mass" or change == 0:  # k^2 changes as much with the mass as with I
                 continue
             changed = scene._replace(**{name: old + change})
             for i, (answer, _) in enumerate(follow(changed, times, road)):
@@ -274,7 +274,7 @@ def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
 
 
 def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
-    """Moment of inertia: equal to a uniform disc's, much less or much more."""
+    """Moment of inertia: that of a uniform disc, much less or much more."""
     if kind == "light":
         return 0.01 * disc
     if kind == "heavy":
@@ -297,7 +297,7 @@ def random_slope(rng: random.Random, kind: str, a: float, b: float) -> float:
 
 
 def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
-    """theta of the stable equilibrium of (3) and of the unstable one beside it."""
+    """theta of the stable equilibrium of (3) and of the unstable one next to it."""
     tilt = math.asin(2 * a * b * math.tan(slope) / abs(a * a - b * b)) / 2
     if a > b:
         dip, hill = tilt, math.copysign(math.pi / 2, tilt) - tilt
@@ -345,7 +345,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def random_times(rng: random.Random, scene: Scene) -> list[float]:
-    """Times of about 0.3, 2 and 10 natural times, less beyond `MOST_HALF_TURNS`."""
+    """Times of about 0.3, 2 and 10 natural times, shortened beyond `MOST_HALF_TURNS`."""
     natural = natural_time(scene) * rng.uniform(0.9, 1.1)
     with UNIT_ROAD.context():
         motion, last = Rolling(scene, UNIT_ROAD), 0.0

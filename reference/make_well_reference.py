@@ -1,23 +1,23 @@
-"""Make `well_reference.csv`: rocking about the lying equilibrium of a slope, to 30 digits.
+"""Make `well_reference.csv`: rocking about the lying equilibrium on a slope, to 30 digits.
 
-Amplitudes reach from 1e-12 rad up to the rim of the well, with 1 to 1e9 swings and aspects of 1e-3
+Amplitudes range from 1e-12 rad up to the rim of the well, with 1 to 1e9 swings and aspects of 1e-3
 to 1e3. The script needs gmpy2 and the Taylor series of `make_slope_reference.py`, and shares no
-code and no formula with the package.
+code or formula with the package.
 
     python make_well_reference.py              makes and checks the table (3 minutes, one core)
 
 Method. The series of `Rolling`, in steps of half their reach, are followed over one swing. A
 turning point is the root of the rate in a step, by Newton's method. The motion repeats itself after
 a period T, twice the time between two turning points: the states at t and t - n T are equal.
-Every value was computed twice, in 80 digits and in 95, with series of order 60 and 72, and has to
+Every value was computed twice, in 80 digits and in 95, with series of order 60 and 72, and must
 agree to `AGREEMENT`, relative to the largest value in the swing.
 
 Units. The effect of a relative change of 2.2e-16 of each input on an answer,
 
     unit_y = 2.2e-16 sum over p in (a, b, I, g, alpha, theta0, omega0) of |dy/dp| |p|
 
-by one-sided differences of 1e-24 in 60 digits. Scenes whose inputs do not fix the motion to
-`UNIT_LIMIT` of its size are left out: next to the rim, and where the well nearly vanishes.
+by one-sided differences of 1e-24 in 60 digits. Scenes whose inputs do not determine the motion to
+`UNIT_LIMIT` of its magnitude are left out: next to the rim, and where the well nearly vanishes.
 """
 
 import math
@@ -70,7 +70,7 @@ class Stage(NamedTuple):
 
 
 class Swing(Rolling):
-    """One motion that rocks, followed from turning point to turning point."""
+    """One rocking motion, followed from turning point to turning point."""
 
     def __init__(self, scene: Scene, road: Road) -> None:
         super().__init__(scene, road)
@@ -87,7 +87,7 @@ class Swing(Rolling):
         self.width = max(abs(each.series.phi[0] - self.start) for each in self.stages)
 
     def go_on(self) -> Stage:
-        """Take one more step of half the reach of its series: it has at most one turning point."""
+        """Take one more step, of half its series' reach, with at most one turning point."""
         series = self.series(self.road.order)
         self.stages.append(Stage(self.time, self._reach(series) / 2, series))
         self.time += self.stages[-1].lasts
@@ -139,7 +139,7 @@ def units(scene: Scene, t: float) -> list[float]:
         total = [mpfr(0)] * len(ANSWERS)
         for name in Scene._fields:
             old = mpfr(getattr(scene, name))
-            if name == "mass" or old == 0:  # k^2 changes with the mass as with the inertia
+            if name == "mass" or old == 0:  # k^2 changes with the mass as much as with the inertia
                 continue
             changed = answers(scene._replace(**{name: old * (1 + mpfr(CHANGE))}), t, UNIT_ROAD)
             effects = (abs(new - was) for new, was in zip(changed, known, strict=True))
@@ -151,7 +151,7 @@ def units(scene: Scene, t: float) -> list[float]:
 
 
 class Well(NamedTuple):
-    """theta of the lying equilibrium and of the rim downhill, and the frequency of small rocking
+    """theta of the lying equilibrium and of the downhill rim, and the frequency of small rocking
     [1/s]."""
 
     lying: Any
@@ -234,7 +234,7 @@ class Line(NamedTuple):
 
 
 def line(rng: random.Random) -> Line | None:
-    """A line after 1 to 1e9 swings, or None where the scene does not swing or is not fixed."""
+    """A line after 1 to 1e9 swings, or None if the scene does not swing or is not determined."""
     with UNIT_ROAD.context():
         scene = random_start(rng, random_body(rng))
         if not is_told_from_rest(scene):

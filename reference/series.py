@@ -1,4 +1,4 @@
-"""Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99)."""
+"""Taylor coefficients one by one (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99)."""
 
 import math
 from operator import mul
@@ -9,14 +9,14 @@ from gmpy2 import mpfr
 
 
 class Road(NamedTuple):
-    """Precision of a motion: working digits, order of the series, tolerance of the last terms."""
+    """Precision of a motion: working digits, order of the series, tolerance for the last terms."""
 
     digits: int
     order: int
     tolerance: float
 
     def context(self) -> Any:
-        """The gmpy2 context of the working digits."""
+        """The gmpy2 context with the working digits."""
         return gmpy2.context(precision=math.ceil(self.digits * math.log2(10)))
 
 

@@ -1,8 +1,8 @@
 """Write the project's public address into every place that needs one: python tools/address.py URL
 
 The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
-`main`. Until it is known, the README has relative links, which PyPI cannot follow. Run again with
-another address, it replaces the first one. --site URL is the address of the built site.
+`main`. Until it is known, the README has relative links, which PyPI cannot follow. A second run
+with another address replaces the first one. --site URL is the address of the built site.
 """
 
 import argparse
@@ -36,7 +36,7 @@ def with_urls(text: str, address: str, site: str) -> str:
 
 
 def with_field(text: str, field: str, value: str, before: str) -> str:
-    """YAML with a field before a line, in the indent of that line."""
+    """YAML with a field added before a line, indented like that line."""
     text = re.sub(rf"^ *{field}: .*\n", "", text, flags=re.MULTILINE)
     return re.sub(rf"^( *){before}", rf"\g<1>{field}: {value}\n\g<0>", text, flags=re.MULTILINE)
 

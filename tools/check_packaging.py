@@ -4,14 +4,14 @@
 
 makes FOLDER, which must not exist, and in it
 
-- the source distribution, whose files must be those of git;
+- the source distribution, whose files must be those in git;
 - an environment with spaces in its path, in which the distribution is built, installed and tried;
 - for every INTERPRETER (a command; default: the running Python) a wheel, made by auditwheel for as
   many Linux systems as possible, and a new environment in which it is installed and tried without a
   compiler.
 
 [tool.cibuildwheel] in pyproject.toml holds the command of the trial and its packages; the tests are
-part of the source distribution. The script needs git, a compiler and the net (PyPI).
+part of the source distribution. The script needs git, a compiler and network access (PyPI).
 """
 
 import argparse
@@ -33,7 +33,7 @@ PACKAGE = "python/rolling_ellipse/"
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
-    """Output of a command; if the command fails, the script ends with this output."""
+    """Output of a command; if it fails, the script ends with this output."""
     words = [str(word) for word in command]
     done = subprocess.run(
         words,
@@ -101,7 +101,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:
         files = {each.filename for each in archive.infolist() if not each.is_dir()}
-    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # files of pip
+    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # pip's files
     core = {name for name in files if Path(name).match("rolling_ellipse/_core.*.so")}
     known = {name.removeprefix("python/") for name in files_of_git() if name.startswith(PACKAGE)}
     require_same(repaired.name, files - core - {"rolling_ellipse/examples.zip"}, known)

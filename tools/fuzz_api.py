@@ -1,13 +1,13 @@
 """Call all public functions with odd and extreme arguments.
 
 A case is a few lines: a call, then questions about its result. Hypothesis draws the cases, the same
-for the same seed, and shortens one that fails. The cases run in a process of their own, so that a
-crash or an endless call is a finding like any other. `fuzz/calls.py`, `fuzz/scenes.py` and
-`fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` say what must not happen. A finding is
-printed as lines to be pasted.
+for the same seed, and shortens one that fails. The cases run in a separate process, so that a crash
+or an endless call is a finding like any other. `fuzz/calls.py`, `fuzz/scenes.py` and
+`fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` define what must not happen. A finding
+is printed as lines to paste.
 
 Run:  python tools/fuzz_api.py --calls 20000 --seed 1
-      python tools/fuzz_api.py --code "rl.certify(1)"        (judge these lines alone)
+      python tools/fuzz_api.py --code "rl.certify(1)"        (judges only these lines)
 """
 
 import argparse
@@ -33,7 +33,7 @@ SLOW = ("deaf", "hang")  # findings that are not shortened: each try takes as lo
 
 
 def signature(found: Finding) -> tuple[str, str, str]:
-    """The identity of a finding: its kind, the call and the sentence without numbers and values."""
+    """The identity of a finding: its kind, the call and the sentence without numbers or values."""
     what = re.sub(r"got .*", "", found.what, flags=re.DOTALL)
     what = re.sub(r"0x[0-9a-f]+|[-+]?\d[\d.e+-]*|'[^']*'", "#", what)
     does = re.sub(r"^\w+ = |\(.*", "", found.lines[-1], flags=re.DOTALL)
@@ -51,7 +51,7 @@ class Failed(AssertionError):
 
 
 class Hunt:
-    """Cases of one seed; each search ends at a new finding, until all cases are run."""
+    """Cases of one seed; each search ends at a new finding, until all cases have run."""
 
     def __init__(self, process: Process, seed: int) -> None:
         self.process, self.seed = process, seed
@@ -89,7 +89,7 @@ class Hunt:
 
         try:
             one()
-        except (Exception, KeyboardInterrupt):  # the same holds for a case that does not fail again
+        except (Exception, KeyboardInterrupt):  # raised also by a case that does not fail again
             if target is None:
                 raise
         if target is not None:

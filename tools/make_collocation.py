@@ -1,6 +1,6 @@
 """Write src/integrator/collocation.hpp: Gauss and Radau IIA methods, rounded from 40 digits.
 
-Gauss's method of s stages has its nodes c at the roots of P_s(2c - 1), Radau IIA at the roots of
+Gauss's method with s stages has its nodes c at the roots of P_s(2c - 1), Radau IIA at those of
 P_s - P_(s-1); the matrix a and the weights b integrate polynomials of degree s - 1 exactly (Hairer,
 Norsett, Wanner, Solving ODEs I, II.7).
 
@@ -24,7 +24,7 @@ GAUSS = """\
 
 // Gauss-Legendre: nodes c, weights b; a_ij = b_j mu_ij with mu_ij + mu_ji = 1 exactly, which keeps
 // the rounded method symplectic (Antonana, Makazaga, Murua, Numer. Algorithms 76 (2017) 861).
-// nu_ij b_j are the stages of the next step as the polynomial of this one foresees them.
+// nu_ij b_j extrapolates the polynomial of this step to predict the stages of the next one.
 template <int Stages>
 struct GaussCoefficients;
 """
@@ -104,7 +104,7 @@ def print_radau() -> None:
     values, vectors = eig(inverse(butcher_matrix(c)))
     real = min(range(s), key=lambda k: abs(values[k].imag))
     lower = min(range(s), key=lambda k: values[k].imag)  # the eigenvalue alpha - i beta
-    # eigenvectors are scaled to the last element 1
+    # eigenvectors are scaled so that the last element is 1
     first = [vectors[i, real].real / vectors[s - 1, real].real for i in range(s)]
     pair = [vectors[i, lower] / vectors[s - 1, lower] for i in range(s)]
     transform = matrix([[first[i], pair[i].real, pair[i].imag] for i in range(s)])

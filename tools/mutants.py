@@ -6,11 +6,11 @@
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds the copy and runs
-the tests nearest to it, the programs of tests/core, and some tests of every folder, up to the first
-that fails. With --thorough the whole suite is run last. Mutants that no test notices are listed;
-mutants that do not compile do not count. At the end the tests must pass without a mutant. Results
-are kept in FOLDER/SIDE.json; the same command continues where it was stopped. The script needs the
-requirements of the build and of the tests.
+the nearest tests, the programs of tests/core, and some tests of every folder, up to the first that
+fails. With --thorough the whole suite is run last. Mutants that no test notices are listed; mutants
+that do not compile do not count. At the end the tests must pass without a mutant. Results are kept
+in FOLDER/SIDE.json; the same command continues where it was stopped. The script needs the build and
+test requirements.
 """
 
 import argparse
@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Folders of tests for a folder of sources, of which the innermost counts, or for a file in none.
-# One that is not listed has its tests in a folder of its name.
+# Test folders for a source folder (the innermost counts), or for a file outside of any. Folders not
+# listed here have their tests in a folder of the same name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -70,7 +70,7 @@ NEAREST = {
 # Programs of tests/core that take only seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
-# Guard of the tests: an editable installation would be found before the copy.
+# Guard for the tests: an editable installation would be imported instead of the copy.
 NOT_EDITABLE = """\
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type(finder).__name__]
@@ -97,7 +97,7 @@ class Mutant:
 
 
 def changes(line: str) -> Iterator[tuple[str, str]]:
-    """All changes of a line: the kind and the new line."""
+    """All possible changes of a line: the kind and the new line."""
     code = re.split(r"//|  # ", line)[0]
     for kind, rules in CHANGES.items():
         for pattern, replacement in rules:
@@ -122,7 +122,7 @@ def mutants_of(path: Path) -> Iterator[Mutant]:
 
 
 def drawn(side: str, count: int, seed: int) -> list[Mutant]:
-    """Mutants of all files in mixed order; each file's share is the root of its total."""
+    """Mutants of all files in mixed order; each file's share is the square root of its total."""
     folder, suffixes = ("src", (".cpp", ".hpp")) if side == "core" else ("python", (".py",))
     random_ = random.Random(seed)
     order = []
@@ -140,7 +140,7 @@ class Workshop:
 
     def __init__(self, folder: Path, processes: int):
         self.took: dict[tuple[str, ...], float] = {}  # duration of tests that passed [s]
-        self.printed: dict[str, bytes] = {}  # output of PROGRAMS from the unchanged sources
+        self.printed: dict[str, bytes] = {}  # output of PROGRAMS for the unchanged sources
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
         self.objects = folder / "objects"
@@ -207,7 +207,7 @@ class Workshop:
         return ""
 
     def failing_program(self) -> str:
-        """The first of PROGRAMS that fails or prints other bits than in the first call, or ""."""
+        """The first of PROGRAMS that fails or prints other bits than on the first call, or ""."""
         for name in PROGRAMS:
             if not (program := self.objects / name).exists():
                 continue
@@ -241,7 +241,7 @@ class Workshop:
 
 
 def renew(source: str, target: str) -> None:
-    """Copy a file if it differs, so that a mutant that was left behind is undone and built anew."""
+    """Copy a file if it differs, so that a leftover mutant is undone and rebuilt."""
     if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
         shutil.copyfile(source, target)
 

@@ -19,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
 
-# The test of types is left out: the types are written for the stubs of today's NumPy.
+# The type check is left out: the types are written for the stubs of current NumPy.
 TYPES = "tests/project/test_codebase.py::test_the_tools_accept_the_sources[mypy]"
 NO_TYPES = ("--deselect", TYPES)
 
-# Old versions warn of newer versions of their neighbours.
+# Old versions warn about newer versions of other packages.
 NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecationWarning")
 
 

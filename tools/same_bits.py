@@ -5,9 +5,9 @@
     python tools/same_bits.py FOLDER --write         g++ -O3 only, writes tests/core/golden.txt
 
 The builds stay in FOLDER; with ccache a second run is quick. Builds for one target must agree to
-the last bit. Two other targets have C libraries with another rounding of sin and cos: aarch64,
-which has no lanes either (g++-aarch64-linux-gnu and qemu-user), and Windows
-(g++-mingw-w64-x86-64-posix and wine64). Builds for each of them must agree too, and differ from
+the last bit. Two other targets have C libraries that round sin and cos differently: aarch64, which
+also has no lanes (g++-aarch64-linux-gnu and qemu-user), and Windows (g++-mingw-w64-x86-64-posix
+and wine64). Builds for each of them must agree too, and differ from
 builds for x86-64 Linux by no more than the bound of tests/oracles/golden.py. Otherwise the exit
 code is 1. The packages libc++-dev and libc++abi-dev provide libc++.
 """
@@ -29,7 +29,7 @@ from oracles.golden import GOLDEN, OTHER_LIBRARY, difference, read  # noqa: E402
 ARM = "aarch64-linux-gnu-g++"
 WINDOWS = "x86_64-w64-mingw32-g++-posix"
 
-# Settings of CMake for cross compilers.
+# CMake settings for cross compilers.
 SETTINGS = {
     ARM: ["-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64"],
     WINDOWS: [

@@ -1,4 +1,4 @@
-"""Other people's integrators on the rolling ellipse, one file for each library.
+"""Third-party integrators for the rolling ellipse, one file per library.
 
 `available()` loads the installed libraries; nothing heavy is imported before.
 """

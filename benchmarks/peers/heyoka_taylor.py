@@ -55,8 +55,8 @@ class HeyokaRun(Integration):
         return finite(*self.state.tolist())
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion; dense output is compiled anew in every run and needs many samples to
-        pay."""
+        """Sample the motion; dense output is recompiled in every run and pays off only for many
+        samples."""
         self.begin()
         grid = np.concatenate(([0.0], times[int(times[0] == 0) :]))
         if len(times) < MANY and np.all(np.diff(grid) > 0):

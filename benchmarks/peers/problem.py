@@ -1,12 +1,12 @@
 """The common problem of all peers: equation of rolling, numbers of a scene, refusals.
 
 With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B the inertia of rolling is
-D = S - AB/u, so that the equation of motion needs no h' and no radius of curvature:
+D = S - AB/u, so that the equation of motion needs neither h' nor the radius of curvature:
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
 where sigma and gamma are gravity along the ground and into it. It is the equation of the notebook
-with fewer products, which makes the peers faster: heyoka takes half of its time. S u - AB loses a
+with fewer products, which makes the peers faster: heyoka takes half the time. S u - AB loses a
 factor A/(k^2 + B) of the last place near the flat: at most 4 for a uniform disc, however thin.
 """
 
@@ -78,7 +78,7 @@ class Integration(ABC):
 
     @abstractmethod
     def __call__(self) -> tuple[float, float, float]:
-        """theta, omega and x at the end, integrated anew in each call."""
+        """theta, omega and x at the end, integrated again in each call."""
 
 
 @dataclass(frozen=True)

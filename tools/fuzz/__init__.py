@@ -1,4 +1,4 @@
-"""The fuzzer of the public API; `tools/fuzz_api.py` is its command."""
+"""The fuzzer for the public API; `tools/fuzz_api.py` is its command."""
 
 import sys
 from pathlib import Path

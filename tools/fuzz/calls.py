@@ -1,4 +1,4 @@
-"""Cases: a call of a public function by its signature, or a motion and questions about it.
+"""Cases: a call to a public function by its signature, or a motion and questions about it.
 
 A case is a list of lines of Python. Each is an expression, with a name if later lines use its
 value. A line with the word "forged" works on damaged data, which may hold NaN and break promises.
@@ -20,7 +20,7 @@ from .scenes import Body
 from .values import SHAPES, Draw, call
 
 MODULES = {"rl": rl, "rl.geometry": rl.geometry, "rl.impacts": rl.impacts, "rl.report": rl.report}
-#: Public functions by their names in the lines.
+#: Public functions by their names in lines.
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     f"{prefix}.{name}": getattr(module, name)
     for prefix, module in MODULES.items()
@@ -30,7 +30,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
-#: Functions that write many files or take seconds a call; tests/refusals has their arguments.
+#: Functions that write many files or take seconds per call; tests/refusals has their arguments.
 SLOW = (
     "rl.examples", "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
     "rl.report.errata_table",
@@ -145,7 +145,7 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
 
 
 def any_function(draw: Draw, of: Body) -> list[str]:
-    """One call of a public function and a text of its answer."""
+    """One call to a public function, and the text of its answer."""
     asked = (*["rl.flow"] * 6, *["rl.classify", "rl.certify", "rl.period", "rl.blow_to"] * 3)
     asked += ("rl.outcome", "rl.thresholds", "rl.impacts.collide", "rl.report.simulate") * 2
     name = draw.pick(*asked, *PLAIN)
@@ -190,7 +190,7 @@ QUANTITY = "trajectory.{quantity}"
 FORGED = ("forged.{quantity}",) * 3
 SAME = "promises.same(trajectory, other)"
 
-# : Questions about a motion, with their weights; `filled` draws the names in braces.
+#: Questions about a motion, with their weights; `filled` draws texts for the names in braces.
 QUESTIONS: tuple[tuple[int, tuple[str, ...]], ...] = (
     (20, (QUANTITY, QUANTITY, QUANTITY)),
     (4, ("(repr(trajectory), hash(trajectory), trajectory._repr_html_())",
@@ -294,7 +294,7 @@ def scene(draw: Draw, of: Body) -> list[str]:
 
 
 def many(draw: Draw, of: Body) -> list[str]:
-    """Several scenes, in a list or of arrays, and a folder of their motions."""
+    """Several scenes, in a list or from arrays, and a folder of their motions."""
     t, last = scenes.times(draw, of)
     columns = {name: draw.array([NUMBERS[name](draw, of) for _ in range(3)])
                for name in ("a", "b", "theta", "omega")}  # fmt: skip

@@ -1,6 +1,6 @@
-"""Damage to files of the package; a place is given as a share of the whole.
+"""Damage to the package's files; a place is given as a fraction of the whole.
 
-`tests/refusals/files.py` has the single kinds of broken archives.
+`tests/refusals/files.py` has the individual kinds of broken archives.
 """
 
 from __future__ import annotations

@@ -63,15 +63,15 @@ NAMES: dict[str, Any] = {
 
 
 class Case:
-    """The values of one case after the lines that have run."""
+    """The values of one case after the lines run so far."""
 
     def __init__(self) -> None:
         self._values = dict(NAMES)
         self._finite = True
 
     def run(self, line: str, limit: float) -> tuple[bool, list[tuple[str, str]]]:
-        """Run a line, for `limit` seconds of processor time; whether the next line can follow, and
-        the findings."""
+        """Run a line, for `limit` seconds of processor time; return whether the next line can
+        follow, and the findings."""
         name, code = _LINE.fullmatch(line).groups()  # type: ignore[union-attr]
         forged = "forged" in line
         self._finite &= not _NOT_FINITE.search(re.sub(r"friction=inf\b", "", code))

@@ -1,7 +1,7 @@
-"""A process of its own runs the cases, since a case may crash or never return.
+"""A separate process runs the cases, since a case may crash or never return.
 
-A timer limits the processor time of each line; its signal is handled as Ctrl-C is. A process that
-does not answer the signal is ended by faulthandler's watchdog.
+A timer limits the processor time of each line; its signal is handled like Ctrl-C. A process that
+does not respond to the signal is ended by faulthandler's watchdog.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 from unittest import mock
 
-PATIENT = 8  # wall-clock seconds allowed for a second of processor time on a busy machine
+PATIENT = 8  # wall-clock seconds allowed per second of processor time, for a busy machine
 MEMORY = 4 * 2**30  # memory limit of the process [bytes]
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 # Lines of a crash report that name its cause.
@@ -36,11 +36,11 @@ class Finding(NamedTuple):
 
 
 def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> None:
-    """Body of the process: runs the cases that arrive, one after the other.
+    """Body of the process: runs the cases that arrive, one by one.
 
-    It answers with the number of each line before it runs it, and with the findings at the end.
+    It sends the number of each line before running it, and the findings at the end.
     """
-    os.setsid()  # a Ctrl-C in the terminal is for the parent alone
+    os.setsid()  # a Ctrl-C in the terminal reaches only the parent
     os.chdir(folder)
     complaints = os.open("complaints", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(complaints, 1)
@@ -72,7 +72,7 @@ def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> 
 
 
 class Process:
-    """A process that runs cases; it is started anew after a case that ends it."""
+    """A process that runs cases; it is restarted after a case that ends it."""
 
     def __init__(self, seconds: float, limit_memory: bool = True) -> None:
         self.options = seconds, limit_memory
@@ -99,7 +99,7 @@ class Process:
         return process
 
     def findings(self, lines: list[str]) -> list[Finding]:
-        """The findings in the lines of a case."""
+        """The findings from the lines of a case."""
         self._process = process = self._process or self._start()
         i = 0
         try:

@@ -1,6 +1,6 @@
-"""Promises of results: finite numbers, arrays that fit together, copies that are equal.
+"""Promises about results: finite numbers, arrays that fit together, copies that are equal.
 
-The checks of a result yield what is broken, as kind and sentence; the comparisons, which are lines
+The checks of a result yield broken promises as kind and sentence; the comparisons, which are lines
 of cases, raise `Broken`.
 """
 
@@ -27,7 +27,7 @@ class Broken(Exception):
 
 
 def of_result(value: Any, finite: bool) -> Finds:
-    """Check any result; with `finite` arguments it must hold no NaN. A scene never holds any."""
+    """Check any result; for `finite` arguments it must hold no NaN. A scene never holds any."""
     if isinstance(value, rl.Trajectory):
         yield from of_trajectory(value)
     elif (finite or isinstance(value, rl.Scene)) and (where := _nan_in(value)) is not None:
@@ -100,10 +100,11 @@ def energy_growth(found: rl.Trajectory) -> float:
 
 @np.errstate(all="ignore")
 def _blur(found: rl.Trajectory) -> float:
-    """Relative error of the energy by rounded angles and by a given `rest_speed`.
+    """Relative error of the energy due to rounded angles and a given `rest_speed`.
 
-    The relative change in a radian is 1.6 a/b for D, a/2b for h; forces of infinite friction depend
-    on the distance to a tip; bounces below rest_speed are summed, with an error of at most 1/100.
+    The relative change per radian is 1.6 a/b for D, a/2b for h; with infinite friction forces
+    depend on the distance to a tip; bounces below rest_speed are summed, with an error of at most
+    1/100.
     """
     scene, theta = found.scene, found.theta
     ulp = np.spacing(np.abs(theta).max())
@@ -163,7 +164,7 @@ def _comparable(thing: Any) -> Any:
 
 
 def _nan_in(value: Any, path: str = "the result") -> str | None:
-    """Path to a NaN in a result, or None without a NaN."""
+    """Path to a NaN in a result, or None if there is none."""
     if isinstance(value, float | np.floating):
         return path if math.isnan(value) else None
     if isinstance(value, np.ndarray):

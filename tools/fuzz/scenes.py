@@ -36,7 +36,7 @@ POWERS = {
 
 @dataclass(frozen=True)
 class Body:
-    """The numbers of a drawn scene, with the scales that make other numbers ordinary for it."""
+    """The numbers of a drawn scene, with scales for drawing other numbers that suit it."""
 
     values: dict[str, Any]  # numbers of the scene, without the impulse
     blow: dict[str, float]
@@ -89,7 +89,7 @@ def friction(draw: Draw, _: Body) -> float:
 
 
 def impulse(draw: Draw, of: Body) -> str:
-    """Draw an impulse: 1 N s for a body of 1 kg, and mostly within the body."""
+    """Draw an impulse: about 1 N s for a body of 1 kg, mostly within the body."""
     strength = 3 * of.length / of.clock
     reach = draw.pick(0.7 * min(of.values["a"], of.values["b"]), of.length)
     values = [repr(size * draw.between(-1, 1)) for size in (strength, strength, reach, reach)]

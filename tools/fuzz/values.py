@@ -1,4 +1,4 @@
-"""Arguments as source text: ordinary numbers, extremes, and values that are no numbers.
+"""Arguments as source text: ordinary numbers, extremes, and values that are not numbers.
 
 Everything drawn is a Python expression, so that a finding can be pasted into a shell.
 """
@@ -24,7 +24,7 @@ EXTREMES = (
     "nextafter(1.5, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e22", "1e6", "1e-6",
 )  # fmt: skip
 
-# Numbers of other types: the package takes them as numbers, or refuses them by name.
+# Numbers of other types: the package accepts them as numbers, or refuses them by name.
 DRESSED = (
     "True", "np.bool_(True)", "np.float16(1.5)", "np.float32(1.5)", "np.int8(1)",
     "np.uint64(2**64 - 1)", "np.longdouble(1) / 3", "Fraction(1, 3)", "Decimal('0.5')",
@@ -32,7 +32,7 @@ DRESSED = (
     "type('Mine', (float,), {})(2.0)", "type('Whole', (), {'__index__': lambda self: 3})()",
 )  # fmt: skip
 
-# Values that are no number, or more than one number.
+# Values that are not a number, or more than one number.
 WRONG = (
     "None", "'1'", "'nan'", "''", "b'1'", "bytearray(b'1')", "1j", "complex(1, 0)",
     "np.complex64(1)", "np.complex128(2)", "np.array([1 + 2j, 3])", "np.ma.masked",
