@@ -11,6 +11,7 @@ print(*(p for d in sys.path for p in glob.glob(d + '/cmeel.prefix/include/eigen3
 list=$(sed -n '/add_library(rolling_ellipse_core/,/)/p' CMakeLists.txt)
 export FLAGS="-std=c++17 -O2 -DNDEBUG -fwasm-exceptions -ffp-contract=off -fno-math-errno \
   -DEIGEN_DONT_VECTORIZE -Isrc -I${eigen:-/usr/include/eigen3}"
+command -v ccache > /dev/null && export EM_COMPILER_WRAPPER=ccache  # compiles what has changed
 FOLDER=$(mktemp -d)
 export FOLDER
 trap 'rm -r "$FOLDER"' EXIT
