@@ -1,6 +1,5 @@
 #include "describe.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace rolling_ellipse {
@@ -74,6 +73,14 @@ Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certifi
     return found;
 }
 
+// The event after which a body that starts in the air is on the ground; null if there is none.
+const Event* landing_of(const Solution& solution) {
+    for (const Event& each : solution.motion.events) {
+        if (each.after.mode != Mode::flight) return &each;
+    }
+    return nullptr;
+}
+
 // The scene of a body that continues on the ground after an event.
 Scene scene_after(Scene scene, const State& state) {
     scene.impulse.reset();
@@ -117,18 +124,16 @@ const char* key_of_early_end(Ending ending) {
 }  // namespace
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint) {
-    const std::vector<Event>& events = solution.motion.events;
     Start start(scene);
     Description found{{}, {}, {effect_of(scene, start)}};
     Scene ground = scene;
     double landed = 0.0;
     const bool flies = !start.touching;
     if (flies) {
-        const auto landing = std::find_if(events.begin(), events.end(), [](const Event& each) {
-            return each.after.mode != Mode::flight;
-        });
-        if (landing == events.end()) {
-            found.headline.push_back({events.empty() ? "flies_on" : "bounces", {}});
+        const Event* const landing = landing_of(solution);
+        if (landing == nullptr) {
+            const bool bounces = !solution.motion.events.empty();
+            found.headline.push_back({bounces ? "bounces" : "flies_on", {}});
             return found;
         }
         landed = landing->t;
@@ -152,6 +157,13 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
         found.reasons.push_back({key_of_early_end(ending), {{"t", end}}});
     }
     return found;
+}
+
+std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
+                                             const Checkpoint& checkpoint) {
+    const Event* const landing = landing_of(solution);
+    if (landing == nullptr) return {};
+    return outcome(scene_after(scene, landing->after), checkpoint);
 }
 
 Sentences describe_start(const Scene& scene) {

@@ -24,6 +24,10 @@ struct Description {
 
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint);
 
+// The first outcome for a body that starts in the air, after it lands; empty if it never lands.
+std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
+                                             const Checkpoint& checkpoint);
+
 // Says what the blow does, and how the body moves after it.
 Sentences describe_start(const Scene& scene);
 

@@ -34,7 +34,8 @@ import { gunzipSync } from "node:zlib";
 const core = await Core.of(gunzipSync(readFileSync(process.argv[2])));
 console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, times }) => {
   scene.friction ??= Infinity;
-  return { ...core.ask(scene, times.at(-1)), columns: core.samples(times) };
+  const found = core.ask(scene, times.at(-1)), alone = core.first(scene, times.at(-1));
+  return { ...found, alone, columns: core.samples(times) };
 })));
 """
 
@@ -69,6 +70,7 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
         kinds |= {kind for kind, _ in events}
         first, headline, reasons = _core.describe(motion.scene.core, motion._solution)
         assert found["first"] == ("IN_THE_AIR" if first is None else first.name)
+        assert found["alone"] == found["first"], motion.scene
         sentences = headline + reasons
         keys |= {key for key, _ in sentences}
         for (key, numbers), (said, given) in zip(
@@ -125,6 +127,15 @@ def test_the_map_shows_the_first_outcome_of_each_blow(opened: Opened) -> None:
     shown = page.locator("[data-outcome]:not([hidden])")
     names = shown.evaluate_all("all => all.map(({ dataset }) => dataset.outcome)")
     assert len(met) > 1 and met <= {*names}
+
+
+def test_the_map_is_computed_only_in_view(opened: Opened) -> None:
+    html = rl.explore(rl.scenes.report, t_end=1.0).to_html()
+    page = opened(html, reduced_motion="reduce", viewport={"width": 1000, "height": 300})
+    page.wait_for_function(f"{PLAYER}.fills === false && {PLAYER}.host.dataset.time")
+    assert page.evaluate(f"{PLAYER}.mapped") is None
+    page.locator(".map").scroll_into_view_if_needed()
+    page.wait_for_function(f"{PLAYER}.mapped && !{PLAYER}.filling && {PLAYER}.cells.next().done")
 
 
 def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened) -> None:

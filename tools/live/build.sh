@@ -18,5 +18,6 @@ trap 'rm -r "$FOLDER"' EXIT
 printf '%s\n' $(grep -o 'src/[a-z_/]*\.cpp' <<< "$list") tools/live/live.cpp |
   xargs -P "$(nproc)" -n 1 sh -c 'em++ $FLAGS -c "$1" -o "$FOLDER/$(echo "$1" | tr / _).o"' -
 em++ $FLAGS --no-entry -sSTANDALONE_WASM -sALLOW_MEMORY_GROWTH \
-  -sEXPORTED_FUNCTIONS=_columns,_ask,_samples,_malloc,_free "$FOLDER"/*.o -o "$FOLDER/live.wasm"
+  -sEXPORTED_FUNCTIONS=_columns,_ask,_first,_samples,_malloc,_free \
+  "$FOLDER"/*.o -o "$FOLDER/live.wasm"
 gzip -9 -n < "$FOLDER/live.wasm" > "$target"

@@ -1,5 +1,5 @@
 // The core for a web page: simulates a scene, describes its motion in sentences, then samples it at
-// any times. tools/live/build.sh compiles it.
+// any times; or tells only the first outcome. tools/live/build.sh compiles it.
 #include "describe.hpp"
 
 namespace rolling_ellipse {
@@ -17,7 +17,8 @@ Settings settings_of_page() {
     return settings;
 }
 
-// The last scene and its motion, and the last answers, which stay valid until the next call.
+// The last scene that was simulated, its motion, and the last answers, which stay valid until the
+// next call.
 Scene scene;
 Solution solution;
 std::string answer;
@@ -33,8 +34,18 @@ Scene scene_from(const double* asked) {
     }
     Impulse blow;
     for (const auto& field : impulse_fields) blow.*field.number = *asked++;
-    return scene_of(known, std::isnan(blow.jx) ? std::nullopt : std::optional(blow));
+    const Scene found = scene_of(known, std::isnan(blow.jx) ? std::nullopt : std::optional(blow));
+    validate(found);
+    return found;
 }
+
+// The motion of the scene with these numbers up to an end time, which follows them.
+Solution motion_of(const Scene& of, const double* asked) {
+    const double end = asked[std::size(scene_fields) + std::size(impulse_fields)];
+    return simulate(of, settings_of_page(), end, [] {});
+}
+
+std::string key(const std::optional<Outcome>& first) { return first ? name(*first) : "IN_THE_AIR"; }
 
 // ------------------------------------------------------------------------------------------- JSON
 
@@ -69,8 +80,8 @@ std::string json(const Values& values) {
 
 std::string json_of_description() {
     const Description found = describe(scene, solution, [] {});
-    return ",\"first\":" + json(found.first ? name(*found.first) : "IN_THE_AIR") +
-           ",\"headline\":" + json(found.headline) + ",\"reasons\":" + json(found.reasons);
+    return ",\"first\":" + json(key(found.first)) + ",\"headline\":" + json(found.headline) +
+           ",\"reasons\":" + json(found.reasons);
 }
 
 }  // namespace
@@ -92,14 +103,26 @@ extern "C" const char* columns() {
 extern "C" const char* ask(const double* asked, int in_words) {
     try {
         scene = scene_from(asked);
-        validate(scene);
-        const double end = asked[std::size(scene_fields) + std::size(impulse_fields)];
-        solution = simulate(scene, settings_of_page(), end, [] {});
+        solution = motion_of(scene, asked);
         answer = "{\"ending\":" + json(name(solution.ending)) +
                  ",\"until\":" + json(solution.followed_until) +
                  ",\"events\":" + json(solution.motion.events);
         if (in_words) answer += json_of_description();
         answer += '}';
+    } catch (const std::exception& error) {
+        answer = error.what();
+    }
+    return answer.c_str();
+}
+
+// The first outcome that `ask` would tell, or the text of a refusal. Only a body that starts in the
+// air is simulated; the last motion stays.
+extern "C" const char* first(const double* asked) {
+    try {
+        const Scene of = scene_from(asked);
+        answer = key(initial_state(of).touching
+                         ? outcome(of, [] {})
+                         : outcome_after_landing(of, motion_of(of, asked), [] {}));
     } catch (const std::exception& error) {
         answer = error.what();
     }

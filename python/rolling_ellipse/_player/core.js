@@ -32,14 +32,25 @@ export class Core {
     return answer;
   }
 
+  /** The numbers of a scene and an end, for a call. */
+  numbers(scene, end) {
+    return [...this.names.scene.map((name) => scene[name] ?? NaN), end];
+  }
+
   /** Simulate a scene up to an end, with sentences if requested; an error states why it cannot. */
   ask(scene, end, inWords = true) {
-    const numbers = this.names.scene.map((name) => scene[name] ?? NaN);
-    const answer = this.text(this.call("ask", [...numbers, end], inWords));
+    const answer = this.text(this.call("ask", this.numbers(scene, end), inWords));
     if (!answer.startsWith("{")) throw new RangeError(answer);
     const found = JSON.parse(answer);
     for (const event of found.events) event[1] = event[1].toLowerCase().replace("_", " ");
     return found;
+  }
+
+  /** The first outcome of a scene up to an end, as `ask` tells it; the last motion stays. */
+  first(scene, end) {
+    const answer = this.text(this.call("first", this.numbers(scene, end)));
+    if (answer !== answer.toUpperCase()) throw new RangeError(answer);
+    return answer;
   }
 
   /** The columns of samples of the last motion at some times. */

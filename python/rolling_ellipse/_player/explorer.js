@@ -40,6 +40,10 @@ export class Explorer extends Player {
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
     const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
     this.grab(this.map, mouse, (event) => this.pointed(event));
+    new IntersectionObserver(([{ isIntersecting }]) => {
+      this.fills = isIntersecting;
+      if (this.fills) this.draw();
+    }).observe(this.map.parentNode);
     this.hands(find);
     this.describe();
   }
@@ -232,9 +236,9 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the map
 
-  /** Paint the map with more of its cells, and continue in later frames until it is complete. */
+  /** Paint the map; while it is in view, compute more of its cells, and go on in later frames. */
   paintMap(until) {
-    const done = this.fill(until), ink = sized(this.map, this.map.clientHeight);
+    const done = !this.fills || this.fill(until), ink = sized(this.map, this.map.clientHeight);
     const area = cellsOf(this.map), { left, top, across, up } = area;
     ink.imageSmoothingEnabled = false;
     ink.drawImage(this.image, left, top, across, up);
@@ -274,7 +278,7 @@ export class Explorer extends Player {
 
   /** Colour of a cell and its strength: that of the first outcome, whose name is then shown. */
   colourOf(given) {
-    const { core, end, outcomes } = this.film, { first } = core.ask(this.sceneOf(given), end);
+    const { core, end, outcomes } = this.film, first = core.first(this.sceneOf(given), end);
     this.box.querySelector(`[data-outcome=${first}]`).hidden = false;
     return [outcomes[first], 1];
   }
