@@ -5,16 +5,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// The start of a scene and the motion that the forces allow after it.
-struct Start : InitialState {
-    explicit Start(const Scene& scene)
-        : InitialState(initial_state(scene)), next(first_continuation(scene, state)) {}
-
-    bool holds() const { return next.mode == Mode::rolling || next.mode == Mode::rest; }
-
-    Continuation next;
-};
-
 void append(Sentences& to, const Sentences& more) { to.insert(to.end(), more.begin(), more.end()); }
 
 // The effect of the blow on the contact.
@@ -123,6 +113,9 @@ const char* key_of_early_end(Ending ending) {
 
 }  // namespace
 
+Start::Start(const Scene& scene)
+    : InitialState(initial_state(scene)), next(first_continuation(scene, state)) {}
+
 Description describe(const Scene& scene, const Solution& solution, const Checkpoint& checkpoint) {
     Start start(scene);
     Description found{{}, {}, {effect_of(scene, start)}};
@@ -166,8 +159,7 @@ std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution&
     return outcome(scene_after(scene, landing->after), checkpoint);
 }
 
-Sentences describe_start(const Scene& scene) {
-    const Start start(scene);
+Sentences describe_start(const Scene& scene, const Start& start) {
     Sentences found{effect_of(scene, start)};
     append(found, surprise(scene, start));
     const bool is_described = start.next.may_fly || start.next.paradox != Painleve::determined;
@@ -175,9 +167,8 @@ Sentences describe_start(const Scene& scene) {
     return found;
 }
 
-Sentences describe_proof(const Scene& scene) {
+Sentences describe_proof(const Scene& scene, const Certificate& proof) {
     const Start start(scene);
-    const Certificate proof = certify(scene);
     Sentences found;
     if (start.slip_removed != 0) found.push_back(effect_of(scene, start));
     if (proof.end.validity == Validity::no_proof) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/sliding.hpp"
 #include "outcome/outcome.hpp"
 #include "simulate.hpp"
 
@@ -14,6 +15,15 @@ namespace rolling_ellipse {
 // The key of a text in the translation tables, and the named values that replace its placeholders.
 using Sentence = std::pair<std::string, std::vector<std::pair<const char*, double>>>;
 using Sentences = std::vector<Sentence>;
+
+// The start of a scene and the motion that the forces allow after it.
+struct Start : InitialState {
+    explicit Start(const Scene& scene);
+
+    bool holds() const { return next.mode == Mode::rolling || next.mode == Mode::rest; }
+
+    Continuation next;
+};
 
 struct Description {
     // The first outcome, after landing if the body starts in the air; empty if it never lands.
@@ -28,10 +38,10 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
 std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
                                              const Checkpoint& checkpoint);
 
-// Says what the blow does, and how the body moves after it.
-Sentences describe_start(const Scene& scene);
+// Says what the blow of the scene with this start does, and how the body moves after it.
+Sentences describe_start(const Scene& scene, const Start& start);
 
 // Says what the certificate of the scene proves about rolling.
-Sentences describe_proof(const Scene& scene);
+Sentences describe_proof(const Scene& scene, const Certificate& proof);
 
 }  // namespace rolling_ellipse

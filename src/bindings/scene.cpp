@@ -66,10 +66,10 @@ struct SceneMaker {
 
 // The state just after the blow, the mode that the forces allow, and sentences about both.
 py::dict start_of(const Scene& scene) {
-    const InitialState start = initial_state(scene);
+    const Start start(scene);
     py::dict fields = numbers_of(start);
-    fields["mode"] = first_continuation(scene, start.state).mode;
-    fields["reason"] = describe_start(scene);
+    fields["mode"] = start.next.mode;
+    fields["reason"] = describe_start(scene, start);
     return fields;
 }
 

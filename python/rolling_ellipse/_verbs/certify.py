@@ -82,10 +82,8 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    core = require_scene(scene).core
-    found = _core.certify(core)
-    validity = _VALIDITIES[found["validity"]]
-    return trusted(Certificate, {"_core": core, **found, "validity": validity})
+    found = _core.certify(require_scene(scene).core)
+    return trusted(Certificate, found | {"validity": _VALIDITIES[found["validity"]]})
 
 
 find_late(Certificate, reason=lambda proof: in_words(_core.describe_proof(vars(proof)["_core"])))
