@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, chunks, singly, states
+from oracles.files import put_together, taken_apart
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from oracles.programs import run
@@ -142,6 +143,21 @@ def test_a_folder_from_another_version_is_rejected(
     monkeypatch.setattr(folders, "_SCHEMA", 99)
     with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 2"):
         load_many(out)
+
+
+@pytest.mark.parametrize("schema", [1, 3])
+def test_a_folder_of_another_schema_is_refused_as_such(schema: int, out: Path) -> None:
+    """Whatever names its request has besides."""
+    simulate_many(GRID, TIMES, out=out)
+    about, arrays = taken_apart((out / "request.npz").read_bytes())
+    about = about | {"schema": schema, "colour": 1}
+    (out / "request.npz").write_bytes(put_together(about, arrays | {"psi": TIMES}))
+    with pytest.raises(
+        ValueError, match=rf"^path must be a folder of schema 2, got .* of {schema}"
+    ):
+        load_many(out)
+    with pytest.raises(ValueError, match=rf"^out must be .* with the schema {schema}, not 2$"):
+        simulate_many(GRID, TIMES, out=out)
 
 
 def test_anything_but_a_folder_of_motions_is_rejected_and_left_alone(tmp_path: Path) -> None:

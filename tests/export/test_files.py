@@ -157,6 +157,17 @@ def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) 
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("schema", [3, 5])
+def test_a_file_of_another_schema_is_refused_as_such(
+    schema: int, contents: Contents, path: Path
+) -> None:
+    """Whatever names it has besides."""
+    about, arrays = taken_apart(contents["rolling"])
+    del about["reason"]
+    other = put_together(about | {"schema": schema, "colour": 1}, arrays | {"psi": arrays["x"]})
+    require_refused(other, path, f"it is of schema {schema}, and this version reads 4$")
+
+
 @each_model
 def test_missing_and_unknown_names_are_rejected(name: str, contents: Contents, path: Path) -> None:
     about, arrays = taken_apart(contents[name])

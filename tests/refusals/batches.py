@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
+from oracles.files import put_together, taken_apart
 from rolling_ellipse import Scene, scenes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
 
@@ -66,6 +67,14 @@ def fewer(folder: Path) -> None:
     chunk = next(path.glob("0*.npz"))
     shutil.copy(chunk, path / f"{7:08d}-{chunk.name[9:]}")
     rl.simulate_many(MANY, TIMES, out=path)
+
+
+def outdated(folder: Path) -> None:
+    """Continue a folder of an older schema."""
+    file = made(folder) / "request.npz"
+    about, arrays = taken_apart(file.read_bytes())
+    file.write_bytes(put_together(about | {"schema": 1}, arrays))
+    rl.simulate_many(MANY, TIMES, out=file.parent)
 
 
 def broken(folder: Path) -> None:
@@ -162,6 +171,7 @@ REFUSALS: list[Row] = [
     ("out", more),
     ("out", mixed),
     ("out", fewer),
+    ("out", outdated),
     (rl.WorkerError, broken),
     ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=ThreadPoolExecutor(1))),
     *wrong(rl.ends, {"scenes": MIXED, "t": 1.0},

@@ -87,8 +87,13 @@ def text(content: str) -> Row:
     return "path", changed(MOTION, lambda *_: content)
 
 
-def members(compression: int = zipfile.ZIP_STORED, **contents: bytes) -> Row:
+def members(
+    compression: int = zipfile.ZIP_STORED, *, text: str | None = '{"schema": 4}', **contents: bytes
+) -> Row:
+    """A row for an archive of these members, after that with the text."""
     file = io.BytesIO()
+    if text is not None:
+        contents = {"about": npy(text), **contents}
     with zipfile.ZipFile(file, "w", compression) as archive:
         for name, content in contents.items():
             archive.writestr(f"{name}.npy", content)
@@ -118,7 +123,8 @@ HEADERS = [
 REFUSALS: list[Row] = [
     ("path", lambda folder: MOTION.save(folder / "a.csv")),
     # members
-    members(), members(t=npy(np.zeros(9))), members(z1=npy(1.0)),
+    members(text=None), members(text=None, t=npy(np.zeros(9))), members(),
+    members(t=npy(np.zeros(9))), members(z1=npy(1.0)),
     members(zipfile.ZIP_DEFLATED, t=npy(np.zeros(9))), members(t=npy(np.zeros(9), (2, 0))),
     members(t=npy(np.array([1j]))), members(t=npy(np.zeros(9))[:-1]),
     *(members(x=head + np.arange(12.0).tobytes()) for head in HEADERS),

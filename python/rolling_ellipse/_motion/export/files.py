@@ -77,9 +77,9 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
+    if (schema := strict.npz_schema(content)) != _SCHEMA:
+        raise ValueError(f"it is of schema {schema!r}, and this version reads {_SCHEMA}")
     arrays = strict.npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
-    if "about" not in arrays:
-        raise ValueError("it must hold the array 'about'")
     return _restored(kind, str(arrays.pop("about")), arrays)
 
 
@@ -110,8 +110,6 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     """
     about = strict.parsed("about", text)
     strict.require_names("about", about, _ABOUT)
-    if about["schema"] != _SCHEMA:
-        raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
     of_model = _OF_MODELS.get(about["model"], ())
     start = {"start"} & set(arrays) if "coordinates" in of_model else ()
     strict.require_names(f"model {about['model']!r}", arrays, {*_VECTORS, *of_model, *start})

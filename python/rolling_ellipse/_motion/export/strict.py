@@ -112,6 +112,20 @@ def scene_of(values: Any) -> Scene:
     return reached_scene({**values, "impulse": impulse})
 
 
+def npz_schema(content: bytes) -> Any:
+    """Return the schema in the JSON text "about" of a file written by `numpy.savez`.
+
+    It is read first, since a file of another schema may hold other names.
+    """
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        if "about.npy" not in archive.namelist():
+            raise ValueError("it must hold the array 'about'")
+        about = parsed("about", str(_member(archive, archive.getinfo("about.npy"))))
+    if not (isinstance(about, dict) and "schema" in about):
+        raise ValueError("about must have 'schema'")
+    return about["schema"]
+
+
 def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
     """Return the read-only arrays in the bytes of a file written by `numpy.savez`.
 
@@ -124,10 +138,16 @@ def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[
             name = member.filename.removesuffix(".npy")
             if name in arrays or name not in names or name == member.filename:
                 raise ValueError(f"it must hold known arrays, once each, got {member.filename!r}")
-            if member.compress_type != zipfile.ZIP_STORED:
-                raise ValueError(f"{name} must not be compressed")
-            arrays[name] = _array(name, archive.read(member))
+            arrays[name] = _member(archive, member)
     return arrays
+
+
+def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray[Any]:
+    """Return the array in a member of an archive."""
+    name = member.filename.removesuffix(".npy")
+    if member.compress_type != zipfile.ZIP_STORED:
+        raise ValueError(f"{name} must not be compressed")
+    return _array(name, archive.read(member))
 
 
 def _array(name: str, content: bytes) -> npt.NDArray[Any]:

@@ -13,14 +13,14 @@ import math
 import os
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from functools import partial
 from importlib.metadata import version
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import numpy as np
 
@@ -45,6 +45,7 @@ _AGAIN = "simulate_many with the same arguments"
 # Names of the files that a folder may hold; hidden files are allowed, too
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
+_Made = TypeVar("_Made")
 _Names = dict[int, list[str]]  # file names of each chunk, by index, ascending
 
 
@@ -126,6 +127,8 @@ class Folder:
                 )
 
     def _require_same(self, about: dict[str, Any], times: FloatArray) -> None:
+        if (schema := _schema_in(self.path)) != _SCHEMA:
+            self._refuse(_SAME, f" with the schema {schema!r}, not {_SCHEMA!r}")
         there, request = _request_in(self.path)
         for name, value in about.items():
             if there[name] != value:
@@ -223,11 +226,11 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     if not (folder / _REQUEST).exists():
         os.listdir(folder)  # raises OSError if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
-    about, request = _request_in(folder)
-    if about["schema"] != _SCHEMA:
+    if (schema := _schema_in(folder)) != _SCHEMA:
         raise ValueError(
-            f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {about['schema']!r}"
+            f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {schema!r}"
         )
+    about, request = _request_in(folder)
     if not (folder / _END).exists():
         raise ValueError(
             f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
@@ -306,8 +309,16 @@ def _of_end(content: bytes) -> dict[str, Any]:
 
 
 def _request_in(folder: Path) -> tuple[dict[str, Any], results.Request]:
+    return _in_request(folder, _of_request)
+
+
+def _schema_in(folder: Path) -> Any:
+    return _in_request(folder, strict.npz_schema)
+
+
+def _in_request(folder: Path, restore: Callable[[bytes], _Made]) -> _Made:
     cure = f": delete it, and call {_AGAIN}"
-    return strict.restored(folder / _REQUEST, _of_request, strict.ARCHIVE, "simulate_many", cure)
+    return strict.restored(folder / _REQUEST, restore, strict.ARCHIVE, "simulate_many", cure)
 
 
 def _chunk(folder: Path, name: str, n: int, samples: int) -> results.Tables:
