@@ -46,8 +46,9 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 // The rate of change of the slip velocity, physics (51).
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
-// The rate at which the contact force changes B by turning the body, in a clock that slows down
-// with B (hence the square root); in time it is larger by a factor 1/B.
+// The rate at which the contact force changes B by turning the body, measured on a clock that slows
+// down as B does: the square root of what the force adds to the second derivative of log B. In real
+// time the rate is 1/B times as large.
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
 // The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment N = c/B

@@ -130,7 +130,7 @@ double too_slow(const Body& body, const FlatView& at) {
 LiftOff scanned(const Climb& climb, double low, double high, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
     const int most_growths = may_jam ? int(std::log(high / low) / std::log(growth)) + 1 : 200;
-    constexpr double known = 1e-5;   // fraction of a speed; closer to a change, rounding decides
+    constexpr double known = 1e-5;   // relative step past a change; nearer, rounding decides
     constexpr int most_changes = 8;  // in one step
     LiftOff lift_off;
     Fate before = Fate::stays;

@@ -395,7 +395,7 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
 
 @pytest.mark.parametrize("option", ["--save", "--plot"])
 @pytest.mark.parametrize("name", ["", ".", "folder.gif"])
-def test_an_impossible_file_is_rejected_before_any_work(
+def test_an_unusable_output_path_is_rejected_before_any_work(
     command: Any, tmp_path: Path, monkeypatch: Any, option: str, name: str
 ) -> None:
     (tmp_path / "folder.gif").mkdir()

@@ -48,8 +48,8 @@ struct SlopeBody {
 
 SlopeBody slope_body(const Body& body, double slope);
 
-// A point of the motion; its angle is given from a flat position (even quarters) or tip (odd
-// quarters).
+// A point of the motion. Its angle is measured from a flat position (even quarters) or from a tip
+// (odd quarters).
 struct SlopePlace {
     DoubleDouble time;
     double quarters;

@@ -85,7 +85,10 @@ def parsed(name: str, text: str) -> Any:
 
 
 def in_lines(value: Any, depth: int) -> str:
-    """Return JSON with one line per value down to a depth, such as that of a list's records."""
+    """Return JSON text with a line for each value down to a nesting depth; deeper ones share it.
+
+    At depth 1 each record of a list has its own line.
+    """
     text = json.dumps(value, indent=1, allow_nan=False)
     deeper, closing = " " * (depth + 1), " " * depth
     return re.sub(rf"\n({deeper} *|{closing}(?=[\]}}]))", " ", text) + "\n"

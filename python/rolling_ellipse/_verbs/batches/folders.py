@@ -190,11 +190,11 @@ class StoredMotions(Sequence[results.Answer]):
         return results.gathered(names, self._request, parts, self._axes, self._shape)
 
     def to_xarray(self, returns: Any = results.DIRECT) -> Dataset:
-        """Return `MotionArrays.to_xarray` of quantities of all motions."""
+        """Return quantities of all motions as a Dataset; see `MotionArrays.to_xarray`."""
         return self.arrays(returns).to_xarray()
 
     def to_dataframe(self, returns: Any = results.DIRECT) -> DataFrame:
-        """Return `MotionArrays.to_dataframe` of quantities of all motions."""
+        """Return quantities of all motions as a DataFrame; see `MotionArrays.to_dataframe`."""
         return self.arrays(returns).to_dataframe()
 
 
