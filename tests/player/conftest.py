@@ -24,24 +24,50 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def blank(chromium: Any) -> Callable[..., Any]:
+    """A page without a network for some options: the same for all tests, as to open one is slow."""
+    pages: dict[str, Any] = {}
+
+    def page_for(**options: Any) -> Any:
+        if (key := repr(options)) not in pages:
+            context = chromium.new_context(**options)
+            context.set_offline(True)
+            pages[key] = context.new_page()
+        return pages[key]
+
+    return page_for
+
+
 @pytest.fixture
-def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
-    """Open HTML as a file; no page may ask for a network address or report an error."""
-    contexts: list[Any] = []
+def opened(blank: Callable[..., Any], tmp_path: Path) -> Iterator[Callable[..., Any]]:
+    """Open HTML as a file; no page may ask for a network address or report an error.
+
+    Pages of a test with equal options replace each other.
+    """
+    used: list[tuple[Any, dict[str, Any]]] = []
     complaints: list[str] = []
 
     def show(html: str, *, strict: bool = True, **options: Any) -> Any:
-        path = tmp_path / f"page{len(contexts)}.html"
+        path = tmp_path / f"page{len(used)}.html"
         path.write_text(html, encoding="utf-8")
-        context = chromium.new_context(**({"viewport": {"width": 1000, "height": 800}} | options))
-        context.set_offline(True)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("pageerror", lambda error: complaints.append(f"error: {error}"))
+        size = options.setdefault("viewport", {"width": 1000, "height": 800})
+        page = blank(**options)
+        page.set_viewport_size(size)
+        page.mouse.move(0, 0)
+        listeners: dict[str, Callable[[Any], None]] = {
+            "pageerror": lambda error: complaints.append(f"error: {error}")
+        }
         if strict:
-            page.on("console", lambda message: complaints.append(f"console: {message.text}"))
-            page.on("request", lambda request: complaints.append(request.url)
-                    if not request.url.startswith(("file:", "data:")) else None)  # fmt: skip
+            listeners["console"] = lambda message: complaints.append(f"console: {message.text}")
+            listeners["request"] = lambda request: (
+                complaints.append(request.url)
+                if not request.url.startswith(("file:", "data:"))
+                else None
+            )
+        for event, listener in listeners.items():
+            page.on(event, listener)
+        used.append((page, listeners))
         page.goto(path.as_uri())
         if options.get("java_script_enabled", True):  # pages unzip their data before they start
             for host in page.locator(".rolling-ellipse").all():  # without eval, for strict policies
@@ -49,6 +75,8 @@ def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
         return page
 
     yield show
-    for context in contexts:
-        context.close()
+    for page, listeners in used:
+        page.goto("about:blank")  # where nothing plays
+        for event, listener in listeners.items():
+            page.remove_listener(event, listener)
     assert complaints == []

@@ -43,6 +43,11 @@ def told(page: Page, words: str) -> Any:
     )
 
 
+def given(page: Page, words: str) -> Any:
+    """The value of a function of the first film's player that needs no drawing."""
+    return page.evaluate(f"({words})({HOST}.player)")
+
+
 def drawn(page: Page) -> np.ndarray:
     """Pixels of the canvas, (height, width, 3)."""
     data = told(page, "player => player.canvas.toDataURL()").partition(",")[2]
@@ -52,7 +57,7 @@ def drawn(page: Page) -> np.ndarray:
 
 def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float, float]:
     """Pixel position of the exact centre in the window of a fixed camera."""
-    (left, right, _, top), width = told(
+    (left, right, _, top), width = given(
         page, "player => [player.film.strips[0].window, player.box.clientWidth]"
     )
     at, slope = motion.sol(t), motion.scene.slope
@@ -60,7 +65,7 @@ def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float,
     across = x * math.cos(slope) + z * math.sin(slope)
     up = -x * math.sin(slope) + z * math.cos(slope)
     scale = width / (right - left)
-    if told(page, "player => player.film.follows") == "middle":
+    if given(page, "player => player.film.follows") == "middle":
         across -= x * math.cos(slope)
         up += x * math.sin(slope)
     return scale * (across - left), scale * (top - up)
@@ -72,8 +77,8 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
     The tip and the contact are drawn on the edge too, but lie in few of the directions.
     """
     picture, ink = drawn(page), LIGHT["ink"]
-    reach = told(page, "p => 1.05 * p.views[0].scale * Math.max(p.film.strips[0].a, "
-                 "p.film.strips[0].b) + 4")  # fmt: skip
+    reach = given(page, "p => 1.05 * p.views[0].scale * Math.max(p.film.strips[0].a, "
+                  "p.film.strips[0].b) + 4")  # fmt: skip
     colour = np.array([int(ink[i : i + 2], 16) for i in (1, 3, 5)])
     dark = np.abs(picture - colour).sum(axis=2) < 120
     offsets, directions = [], []
@@ -134,7 +139,7 @@ def test_the_body_is_drawn_where_the_motion_puts_it(opened: Opened, name: str) -
     times = [0.0, 0.123, 1.0, 2.345, 4.0]
     times += [event.t + 0.01 for event in motion.events if event.t < 3.9][:4]
     for t in times:
-        told(page, f"player => player.seek({t})")
+        given(page, f"player => player.seek({t})")
         body = told(page, "player => player.state().bodies[0]")
         where = expected_centre(page, motion, t)
         assert math.dist((body["px"], body["py"]), where) < 0.5
@@ -305,9 +310,9 @@ def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -
     assert np.abs(drawn(page) - picture).max() > 50
     motion = rl.simulate(replace(scene, impulse=rl.Impulse.press(F, d)), explorer.t_end)
     for t in (0.0, 0.7, 2.0, 5.0):
-        told(page, f"player => player.seek({t})")
+        given(page, f"player => player.seek({t})")
         body = told(page, "player => player.state().bodies[0]")
-        scale = told(page, "player => player.views[0].scale")
+        scale = given(page, "player => player.views[0].scale")
         at = motion.sol(t)
         missed = math.dist((body["x"], body["z"]), (float(at.x[0]), float(at.z[0])))
         turned = abs(body["theta"] - float(at.theta[0])) * max(scene.a, scene.b)
