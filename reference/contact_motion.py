@@ -1,7 +1,8 @@
 """Rolling, sliding, flight and impacts, followed by Taylor series in any number of digits.
 
-make_contact_reference.py makes a table with this module, judge_contact.py judges random scenes. It
-needs only gmpy2 and shares no code or formula with the package.
+make_contact_reference.py and make_resistance_reference.py make tables with this module,
+judge_contact.py judges random scenes. It needs only gmpy2 and shares no code or formula with the
+package.
 
 Motion. x along the ground, z away from it, theta clockwise, g down a slope alpha; per mass, with
 k^2 = I/m. The point that touches is P(phi) = (a sin phi, -b cos phi) of the body. With
@@ -12,20 +13,29 @@ w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind th
 
 r is the radius of curvature. The ground acts with N and F per mass:
 
-    x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - o N                    (2)
+    x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - (o + q) N              (2)
 
-Slip v = x' - h omega, and without pressure the gap z - h would open with -c, where
-c = g cos alpha + (r - h) omega^2. A mode ends when one of its margins, listed last, reaches zero:
+The contact is a small patch. In it N acts by the lever of rolling resistance delta ahead of the
+point that touches, which is a couple q N against the turning: q = delta sign omega. A body that
+does not turn is held by a couple of up to delta N to either side. Slip v = x' - h omega, and
+without pressure the gap z - h would open with -c, where c = g cos alpha + (r - h) omega^2. A mode
+ends when one of its margins, listed last, reaches zero; with delta > 0, q omega is one more margin
+of rolling and sliding:
 
-    rolling   v = 0: (k^2 + h^2 + o^2) omega' = h g sin alpha - o (g cos alpha + r omega^2), N and
+    rolling   v = 0: (k^2 + h^2 + o (o + q)) omega' = h g sin alpha - o h omega^2 - (o + q) c, N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
-    sliding   s = sign v: F = -mu s N, N = c / B, B = 1 + (o^2 - mu s h o) / k^2; s v, c, B.
+    sliding   s = sign v: F = -mu s N, N = c / B, B = 1 + o (o + q - mu s h) / k^2; s v, c, B.
               Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
     flight    N = F = 0; z - h
+    held      omega = 0 for a time, N = g cos alpha: at rest with F = -g sin alpha for ever, or
+              sliding with F = -mu s N; s v
 
-A start without slip rolls if that needs no more friction than available; else it slips to the side
-on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
-motion exists: a jam. Without friction slip has no side, and changes its sign without an event.
+Where slip, turning or both are zero, each is tried without and to both sides. A mode is possible
+if its N and B are above 0, the slip and the turning that start grow to their sides, and neither
+friction nor the couple is larger than available. Where none is possible, the body flies if c <= 0
+and jams if not, as a slide does with B < 0 < c; where several are, the motion is undecided.
+F and N jump where omega changes its sign, so slip may start there. The change of sign is no event,
+but rest is. Without friction slip has no side, and changes its sign without an event.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
@@ -38,12 +48,13 @@ Method. Taylor series in time of (1) and (2) by the recurrences for products, qu
 (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each step.
 The first event of a step is the first root of polynomials, located without sampling: Bernstein
 coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
-the interval is halved. Where s v or z - h starts at zero those zeros are divided out: one where
-slip or rebound starts with a speed or a jump of the force, two where rolling turns to slip or a
-gap opens at once, three where a slide lifts off. This resolves the shortest slips.
+the interval is halved. Where s v, z - h or q omega starts at zero those zeros are divided out: one
+where slip, turning or rebound starts with a speed or a jump of the force, two where rolling turns
+to slip or a gap opens at once, three where a slide lifts off. This resolves the shortest slips.
 """
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 from operator import mul
@@ -73,6 +84,7 @@ class Scene(NamedTuple):
     slope: Any = 0.0
     friction: Any = math.inf
     restitution: Any = 0.0
+    rolling_resistance: Any = 0.0
     theta: Any = 0.0
     omega: Any = 0.0
     x: Any = 0.0
@@ -192,6 +204,7 @@ class Body:
         down, level = gmpy2.sin_cos(mpfr(scene.slope))
         self.down, self.level = self.g * down, self.g * level
         self.mu, self.e = mpfr(scene.friction), mpfr(scene.restitution)
+        self.lever = mpfr(scene.rolling_resistance)
 
     def phi(self, theta: Any) -> Any:
         """phi of an angle theta, with the same number of whole turns."""
@@ -227,11 +240,18 @@ class State(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A mode, the sign of its slip, and the order of the zero of slip or gap at its start."""
+    """A mode, the sign of its slip, and the order of the zero of slip or gap at its start; the sign
+    of the turning that the couple opposes, the order of its zero, and whether the couple holds."""
 
     mode: str
     side: int = 0
     zeros: int = 0
+    turn: int = 0  # 0 without a couple
+    turned: int = 0
+    held: bool = False
+
+
+REST = Arc(ROLLING, held=True)
 
 
 class Series(NamedTuple):
@@ -262,12 +282,13 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
     bend: list[Any] = []  # series of h''
     c: list[Any] = []
     load: list[Any] = []  # series of g cos alpha + (h + h'') omega^2
-    stiffness: list[Any] = []  # series of D (roll), B (slide) or h o (unlimited friction)
+    stiffness: list[Any] = []  # series of D + q o (roll), B (slide) or h o (unlimited friction)
     normal: list[Any] = []
     friction: list[Any] = []
     spin_up: list[Any] = []  # series of the rate of omega
     a2, b2, k2, zero = body.a**2, body.b**2, body.k2, mpfr(0)
     pull = -body.mu * arc.side if gmpy2.is_finite(body.mu) else zero
+    couple = body.lever * arc.turn
     for n in range(order):
         first = n == 0
         level, down = (body.level, body.down) if first else (zero, zero)
@@ -279,10 +300,16 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
         bend.append(product(w2, w) / body.ab - h[n])
         turning = product(bend, spin)
         c.append(level + turning)
-        if arc.mode == ROLLING:
-            stiffness.append((k2 if first else 0) + product(h, h) + product(o, o))
+        if arc.held:
+            stiffness.append(mpfr(first))
+            normal.append(level)
+            friction.append(-down if arc.mode == ROLLING else pull * level)
+            spin_up.append(zero)
+        elif arc.mode == ROLLING:
+            inertia = (k2 if first else 0) + product(h, h) + product(o, o)
+            stiffness.append(inertia + couple * o[n])
             load.append(c[n] + product(h, spin))
-            torque = body.down * h[n] - product(o, load)
+            torque = body.down * h[n] - product(o, load) - couple * c[n]
             spin_up.append(quotient(torque, stiffness, spin_up))
             normal.append(c[n] + product(o, spin_up))
             friction.append(product(h, spin_up) + product(o, spin) - down)
@@ -291,11 +318,11 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
             friction.append(zero)
             spin_up.append(zero)
         elif gmpy2.is_finite(body.mu):
-            arms = product(o, o) + pull * product(h, o)
+            arms = product(o, o) + pull * product(h, o) + couple * o[n]
             stiffness.append((1 if first else 0) + arms / k2)
             normal.append(quotient(c[n], stiffness, normal))
             friction.append(pull * normal[n])
-            spin_up.append(-(product(h, friction) + product(o, normal)) / k2)
+            spin_up.append(-(product(h, friction) + product(o, normal) + couple * normal[n]) / k2)
         else:
             stiffness.append(product(h, o))
             normal.append(zero)
@@ -313,41 +340,69 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
     return Series(phi, theta, omega, x, x_dot, h, c, stiffness, normal, friction)
 
 
+def slip_of(found: Series) -> list[Any]:
+    """Taylor coefficients of the slip."""
+    orders = range(len(found.h))
+    return [found.x_dot[n] - product(found.h[: n + 1], found.omega[: n + 1]) for n in orders]
+
+
+def sign_of(number: Any) -> int:
+    """-1, 0 or 1."""
+    return int(number > 0) - int(number < 0)
+
+
+def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
+    """How the next arc may turn, in fields of `Arc`: these have no meaning without a couple, and
+    from omega = 0 there are three ways."""
+    if body.lever == 0:
+        return [{}]
+    if omega != 0:
+        return [{"turn": sign_of(omega)}]
+    return [{"held": True}, {"turn": 1, "turned": 1}, {"turn": -1, "turned": 1}]
+
+
+def is_possible(body: Body, state: State, arc: Arc) -> bool:
+    """Whether the forces of an arc that rolls or slides are available, and what starts in it grows
+    to its side."""
+    found = motion(body, state, arc, 2)
+    h, o = body.touch(state.phi)[:2]
+    normal, friction = found.normal[0], found.friction[0]
+    if arc.held and abs(h * friction + o * normal) > body.lever * normal:
+        return False
+    if arc.turned and arc.turn * found.omega[1] <= 0:
+        return False
+    if arc.mode == ROLLING:
+        return bool(normal > 0 and abs(friction) <= body.mu * normal)
+    unlimited = not gmpy2.is_finite(body.mu)
+    if (-arc.side * o if unlimited else found.stiffness[0]) <= 0:
+        return False
+    return arc.zeros == 0 or bool(arc.side * slip_of(found)[1] > 0)
+
+
 def standing(body: Body, state: State, slip: Any) -> Arc | None:
     """The next arc of a touching body whose gap rate is 0, or None if the body jams."""
-    h, o, tangential, normal, coupling = body.touch(state.phi)
-    spin = state.omega**2
-    c = body.level + (body.ab**2 / h**3 - h) * spin
+    h, o = body.touch(state.phi)[:2]
+    c = body.level + (body.ab**2 / h**3 - h) * state.omega**2
     unlimited = not gmpy2.is_finite(body.mu)
-    if slip == 0:
-        spin_up = (h * body.down - o * (c + h * spin)) / (body.k2 + h**2 + o**2)
-        pressure, needed = c + o * spin_up, h * spin_up + o * spin - body.down
-        if pressure > 0 and (unlimited or abs(needed) <= body.mu * pressure):
-            if body.mu == 0 and (spin_up != 0 or (spin != 0 and body.c2 != 0)):
-                raise Undecided("no slip for a moment")
-            return Arc(ROLLING)
-    if c <= 0:
-        return Arc(FLIGHT, zeros=2)
-    if slip != 0:
-        side = 1 if slip > 0 else -1
-        if unlimited and side * coupling > 0:
+    turns = turnings(body, state.omega)
+    arcs = [Arc(ROLLING, **turn) for turn in turns] if slip == 0 else []
+    if c > 0:
+        if unlimited and slip * o > 0:
             raise Undecided("unlimited friction would stop the slip at once")
-        return Arc(SLIDING, side) if unlimited or normal > body.mu * side * coupling else None
-    possible = []
-    free = body.down - o * spin
-    for side in (1, -1):
-        if unlimited:
-            allowed = side * coupling < 0
-            slip_up = free + tangential * c / coupling
-        else:
-            answer = normal - body.mu * side * coupling
-            allowed = answer > 0
-            slip_up = free + (coupling - body.mu * side * tangential) * c / answer
-        if allowed and side * slip_up > 0:
-            possible.append(Arc(SLIDING, side, 1))
-    if len(possible) != 1:
-        raise Undecided(f"{len(possible)} ways to slip")
-    return possible[0]
+        sides, zeros = ((1, -1), 1) if slip == 0 else ((sign_of(slip),), 0)
+        turns = [{}] if unlimited else turns  # no couple without pressure
+        arcs += [Arc(SLIDING, side, zeros, **turn) for side in sides for turn in turns]
+    possible = [arc for arc in arcs if is_possible(body, state, arc)]
+    if len(possible) > 1:
+        raise Undecided(f"{len(possible)} ways to go on")
+    if not possible:
+        return Arc(FLIGHT, zeros=2) if c <= 0 else None
+    arc = possible[0]
+    if arc.mode == ROLLING and body.mu == 0 and not arc.held:
+        spin_up = motion(body, state, arc, 1).omega[1]
+        if spin_up != 0 or (state.omega != 0 and body.c2 != 0):
+            raise Undecided("no slip for a moment")
+    return arc
 
 
 class Hit(NamedTuple):
@@ -503,11 +558,11 @@ class Follower:
             if root is not None:
                 step, what = root, kind
         before = self.energy()
-        heat = self.heat(found, step) if arc.mode == SLIDING else 0
+        heat = self.heat(found, arc, step) if arc.mode == SLIDING or arc.turn else 0
         self.move(found, step)
         self.energy_error += abs(self.energy() - before - heat)
         self.t += step
-        self.arc = arc._replace(zeros=0)
+        self.arc = arc._replace(zeros=0, turned=0)
         if what:
             self.change(what, arc, found, step)
 
@@ -528,28 +583,31 @@ class Follower:
             s = self.state
             z = [s.z, s.z_dot, -self.body.level / 2] + [mpfr(0)] * (len(found.h) - 3)
             return [("impact", [p - q for p, q in zip(z, found.h, strict=True)][arc.zeros :])]
+        spin = [arc.turn * one for one in found.omega]
+        turn = [("turn", spin[arc.turned :])] if arc.turn else []
         if arc.mode == ROLLING:
             if not gmpy2.is_finite(mu):
-                return [("slip", normal)]
+                return [*turn, ("slip", normal)]
             if mu == 0:
-                return []
+                return turn
             pairs = list(zip(normal, friction, strict=True))
-            return [("slip", [mu * n + side * f for n, f in pairs]) for side in (1, -1)]
+            slips = [("slip", [mu * n + side * f for n, f in pairs]) for side in (1, -1)]
+            return [*turn, *slips]
         if mu == 0:  # without friction slip has no sign
-            return [("lift_off", found.c)]
-        slip = [arc.side * one for one in self.slip(found)]
-        watched = [("stick", slip[arc.zeros :]), ("lift_off", found.c)]
+            return [*turn, ("lift_off", found.c)]
+        slip = [arc.side * one for one in slip_of(found)]
+        watched = [*turn, ("stick", slip[arc.zeros :]), ("lift_off", found.c)]
         return [*watched, ("jam", found.stiffness)] if gmpy2.is_finite(mu) else watched
 
-    def slip(self, found: Series) -> list[Any]:
-        """Taylor coefficients of the slip."""
-        orders = range(len(found.h))
-        return [found.x_dot[n] - product(found.h[: n + 1], found.omega[: n + 1]) for n in orders]
-
-    def heat(self, found: Series, step: Any) -> Any:
-        """The work of friction in a step."""
-        slip, force = self.slip(found), found.friction
-        power = [product(force[: n + 1], slip[: n + 1]) for n in range(len(slip))]
+    def heat(self, found: Series, arc: Arc, step: Any) -> Any:
+        """The work of friction and of the couple in a step."""
+        slip, force, couple = slip_of(found), found.friction, self.body.lever * arc.turn
+        normal, omega = found.normal, found.omega
+        power = [
+            product(force[: n + 1], slip[: n + 1])
+            - couple * product(normal[: n + 1], omega[: n + 1])
+            for n in range(len(slip))
+        ]
         return step * value([one / (n + 1) for n, one in enumerate(power)], step)
 
     def move(self, found: Series, step: Any) -> None:
@@ -575,10 +633,14 @@ class Follower:
         elif what == "stick":
             self.state = s._replace(x_dot=s.z * s.omega)
             self.arc = standing(body, self.state, mpfr(0))
-            assert self.arc is not None
+            if self.arc is None or self.arc == REST:
+                self.happens("rest" if self.arc else "jam")
+                return
             if self.arc.mode == SLIDING and self.arc.side == arc.side:
                 raise Undecided("a slip that ends and continues")
             self.happens({ROLLING: "stick", SLIDING: "reverse", FLIGHT: "lift_off"}[self.arc.mode])
+        elif what == "turn":
+            self.turns(arc)
         elif what == "slip":
             if gmpy2.is_finite(body.mu):
                 side = 1 if value(found.friction, step) < 0 else -1
@@ -587,13 +649,24 @@ class Follower:
             h = s.z
             c = body.level + (body.ab**2 / h**3 - h) * s.omega**2
             if c > 0:
-                self.arc = Arc(SLIDING, side, 2)
+                turn = arc.turn if gmpy2.is_finite(body.mu) else 0
+                self.arc = Arc(SLIDING, side, 2, turn)
                 self.happens("slip")
             else:
                 self.arc = Arc(FLIGHT, zeros=2)
                 self.happens("lift_off")
         else:
             raise Undecided("a jam on the way")
+
+    def turns(self, arc: Arc) -> None:
+        """Choose the arc at omega = 0."""
+        x_dot = mpfr(0) if arc.mode == ROLLING else self.state.x_dot
+        self.state = self.state._replace(omega=mpfr(0), x_dot=x_dot, z_dot=mpfr(0))
+        self.arc = standing(self.body, self.state, x_dot)
+        if self.arc is None or self.arc == REST:
+            self.happens("rest" if self.arc else "jam")
+        elif self.arc.mode != arc.mode:
+            self.happens("slip")
 
     def push(self, touch: Touch, hit: Hit) -> None:
         """Apply the impulses of a collision to the velocities."""
@@ -628,7 +701,7 @@ class Follower:
         elif flat and hit.rebound < REST_SPEED * natural:
             self.t += 2 * hit.rebound / body.g / (1 - body.e)
             self.state = self.state._replace(z_dot=mpfr(0))
-            self.arc = Arc(ROLLING)
+            self.arc = REST
             self.happens("rest")
         else:
             self.arc = Arc(FLIGHT, zeros=1)
@@ -637,6 +710,18 @@ class Follower:
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
     """The motion up to a time, at the precision `road`."""
     return Follower(scene, road).follow(mpfr(end), most_events)
+
+
+def rows_of(scene: Scene, ends: Sequence[Any], road: Road) -> tuple[list[Row], Any]:
+    """Events and the states at some times, in the order of time, and the energy error."""
+    follower = Follower(scene, road)
+    rows: list[Row] = []
+    known, energy = 0, mpfr(0)
+    for end in ends:
+        found = follower.follow(mpfr(end), 100)
+        rows += [*found.rows[known:], found.last]
+        known, energy = len(found.rows), found.energy
+    return rows, energy
 
 
 # ---------------------------------------------------------------- doubles for drawing scenes

@@ -4,8 +4,12 @@
 
 A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
 one scene of a seed and prints all its values, `--family well` draws from one family, `--scenes 0`
-only prints the findings in a file. The report counts the judged scenes by family, shape and
-friction, and reproduces each scene above `--limit` units.
+only prints the findings in a file. The report counts the judged scenes by family, shape, friction
+and rolling resistance, and reproduces each scene above `--limit` units.
+
+`--resistance` adds a lever of rolling resistance to each scene: up to half of the shorter
+semi-axis, down to 1e-12 of that, or close to the least that holds the body. Such scenes last for
+ten natural times.
 
 Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
 unlimited, inertia, mass, gravity and lengths over many powers of ten. Each scene is followed with
@@ -57,6 +61,7 @@ from contact_motion import (
     Undecided,
     collide,
     peak_of_friction,
+    sign_of,
     standing,
     support,
 )  # fmt: skip
@@ -79,6 +84,9 @@ ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
 SHORTEST = 1e-6  # least interval with samples / natural time: a hop may be lower than tolerances
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # number of slightly changed scenes that tell a limit from a fault
+NEARBY_INPUTS = (
+    "a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope", "rolling_resistance"
+)  # fmt: skip
 ROUTES = ("event", "table", "alone", "sol")
 
 
@@ -139,7 +147,8 @@ class Judge(Follower):
         if slip != 0 and not self.blow and not unlimited:
             side = 1 if slip > 0 else -1
             c = body.level + (body.ab**2 / touch.h**3 - touch.h) * self.state.omega**2
-            if c < 0 and touch.normal < body.mu * side * touch.coupling:
+            couple = body.lever * sign_of(self.state.omega) * touch.o / body.k2
+            if c < 0 and touch.normal + couple < body.mu * side * touch.coupling:
                 return None  # two motions are possible: sliding and flight
         if self.blow is None and not (unlimited and slip * touch.coupling >= 0 and slip != 0):
             return standing(body, self.state, slip)
@@ -497,7 +506,7 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
             if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # a start that counts as rolling
                 near = with_input(near, "x_dot", rng.choice([None, v["x_dot"]]))
         with CHANGED_ROAD.context():
-            for name in ("a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope"):
+            for name in NEARBY_INPUTS:
                 old = getattr(near.scene, name)
                 if old is not None and math.isfinite(old):
                     off = rng.uniform(-most, most) * ROUNDING
@@ -514,11 +523,17 @@ def too_slow(*_: Any) -> None:
     raise TimeoutError
 
 
-def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, Any]:
-    """The record of one scene, given by its number for a seed, drawn from one family or any."""
-    seed, number, family = task
+Task = tuple[int, int, str | None, bool]
+
+
+def judge(task: Task, tell: bool = False) -> dict[str, Any]:
+    """The record of one scene, given by its number for a seed, drawn from one family or any, with
+    or without rolling resistance."""
+    seed, number, family, resistance = task
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
+    if resistance:
+        case = with_resistance(rng, case)
     record: dict[str, Any] = {"number": number, "family": case.family}
     record["inputs"] = case.scene.given()
     if case.blow:
@@ -944,6 +959,20 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
     return Case(name, scene, struck, longest, family.most_events)
 
 
+def with_resistance(rng: random.Random, case: Case) -> Case:
+    """The case with a lever of rolling resistance."""
+    scene = case.scene
+    most = min(scene.a, scene.b) / 2
+    lever = most * power(rng, -12 if rng.random() < 0.5 else -2, 0)
+    h, slope, _ = support(scene.a, scene.b, scene.theta)
+    holds = abs(slope - h * math.tan(scene.slope))  # the least lever that holds the body at rest
+    if rng.random() < 0.2 and 0 < holds < 0.9 * most:
+        off = rng.choice([0, 1, -1, 3, -3, 1e6, sign(rng) * power(rng, 7, 15)]) * 1.1e-16
+        lever = holds * (1 + off)
+    new = scene._replace(rolling_resistance=lever)
+    return case._replace(scene=new, longest=10 * natural(scene)[1])
+
+
 # ---------------------------------------------------------------- the run
 
 
@@ -963,6 +992,13 @@ def mu(record: dict[str, Any]) -> str:
     return next((word for most, word in words if value <= most), "unlimited")
 
 
+def lever(record: dict[str, Any]) -> str:
+    """The power of ten of the lever of rolling resistance / the shorter semi-axis."""
+    v = record["inputs"]
+    size = v.get("rolling_resistance", 0.0) / min(v["a"], v["b"])
+    return f"1e{max(math.floor(math.log10(size)), -12):+03}" if size else "none"
+
+
 def report(records: list[dict[str, Any]], limit: float) -> None:
     """Print the findings of a run."""
     verdicts = Counter(one["verdict"] for one in records)
@@ -975,7 +1011,12 @@ def report(records: list[dict[str, Any]], limit: float) -> None:
         own = [one["apart"] for one in done if (one["number"] % CHECKED == 0) == which]
         print(f"differences of two precisions {word}: {max(own, default=0):.1e} units")
     print(f"{sum(len(o['kinds']) for o in done)} events, {sum(o['rows'] for o in done)} rows")
-    for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
+    for route in ROUTES:
+        by = [v for one in done for name, v in one["by"].items() if name.split()[0] == route]
+        print(f"worst by {route}: {max(by, default=1):.3g} units")
+    print("kinds of events:", dict(Counter(kind for one in done for kind in one["kinds"])))
+    groups = {"family": lambda one: one["family"], "aspect": aspect, "mu": mu, "lever": lever}
+    for title, key in groups.items():
         print(f"\n{title:14} judged  worst units   > 8  by sol: worst  > 8   strict   > 8"
               "  wrong events (at a limit)")  # fmt: skip
         for name in sorted({key(one) for one in done}):
@@ -1013,15 +1054,17 @@ def main() -> None:
     asked.add_argument("--file", type=Path)
     asked.add_argument("--limit", type=float, default=8.0)
     asked.add_argument("--only", type=int)
+    asked.add_argument("--resistance", action="store_true")
     given = asked.parse_args()
     if given.only is not None:
-        record = judge((given.seed, given.only, given.family), tell=True)
+        record = judge((given.seed, given.only, given.family, given.resistance), tell=True)
         print(json.dumps(record, indent=1))
         return
     file = given.file or Path(f"judged-{given.seed}.jsonl")
     records = read_records(file)
     done = {one["number"] for one in records}
-    tasks = [(given.seed, i, given.family) for i in range(given.scenes) if i not in done]
+    left = (i for i in range(given.scenes) if i not in done)
+    tasks = [(given.seed, i, given.family, given.resistance) for i in left]
     began = time.perf_counter()
     with multiprocessing.Pool(given.workers) as pool:
         for count, record in enumerate(pool.imap_unordered(judge, tasks), 1):

@@ -27,11 +27,12 @@ import math
 import random
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import gmpy2
-from contact_motion import VALUES, Body, Row, Scene, Undecided, follow, peak_of_friction
+from contact_motion import VALUES, Body, Row, Scene, Undecided, follow, peak_of_friction, rows_of
 from gmpy2 import mpfr
 from runs import ROUNDING, log_uniform, write_table
 from series import Road
@@ -39,8 +40,9 @@ from series import Road
 TABLE = Path(__file__).with_name("contact_reference.csv")
 AGREEMENT = 1e-34
 UNIT_LIMIT = 1e-9
-INPUTS = [name + "0" if name in VALUES else name for name in Scene._fields]
-COLUMNS = ["name", *INPUTS, "event", *Row._fields, *(f"unit_{name}" for name in VALUES)]
+FIELDS = [name for name in Scene._fields if name != "rolling_resistance"]
+INPUTS = [name + "0" if name in VALUES else name for name in FIELDS]
+RESULTS = ["event", *Row._fields, *(f"unit_{name}" for name in VALUES)]
 TABLE_ROAD = Road(64, 50, 1e-50)
 CHECK_ROAD = Road(76, 60, 1e-57)
 UNIT_ROAD = Road(42, 30, 1e-31)
@@ -57,11 +59,10 @@ def is_flat_drop(scene: Scene) -> bool:
     return scene.z is not None and not moving
 
 
-def units(scene: Scene, end: float) -> list[list[float]]:
-    """The units of all events and of the end."""
+def units(scene: Scene, ends: Sequence[float]) -> list[list[float]]:
+    """The units of all events and of the states at some times."""
     with UNIT_ROAD.context():
-        found = follow(scene, end, UNIT_ROAD)
-        rows = [*found.rows, found.last]
+        rows, _ = rows_of(scene, ends, UNIT_ROAD)
         total = [[mpfr(0)] * len(VALUES) for _ in rows]
         k2 = Body(scene).k2
         for name in Scene._fields:
@@ -72,8 +73,7 @@ def units(scene: Scene, end: float) -> list[list[float]]:
                 continue
             old = mpfr(old)
             change = UNIT_CHANGE if name == "theta" else UNIT_CHANGE * old
-            again = follow(scene._replace(**{name: old + change}), end, UNIT_ROAD)
-            changed = [*again.rows, again.last]
+            changed, _ = rows_of(scene._replace(**{name: old + change}), ends, UNIT_ROAD)
             if [row.kind for row in rows] != [row.kind for row in changed]:
                 raise Undecided("events of another kind nearby")
             # k^2 = I/m changes with the mass as much as with the inertia
@@ -100,6 +100,8 @@ class Family(NamedTuple):
     shape: str = "any"
     given: dict[str, Any] = {}  # noqa: RUF012
     most_events: int = MOST_EVENTS
+    states: tuple[float, ...] = (1.0,)  # times of the states / end
+    lever: tuple[float, float] | None = None  # range of rolling_resistance / min(a, b)
 
 
 def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
@@ -141,6 +143,8 @@ def random_scene(rng: random.Random, family: Family) -> Scene:
         values["z_dot"] = speed * rng.uniform(-1, 0.5)
     elif family.start == "slide":
         values["x_dot"] = speed * rng.uniform(-2, 2)
+    if family.lever:
+        values["rolling_resistance"] = min(a, b) * log_uniform(rng, *family.lever)
     values |= family.given
     if "above" in values:
         values["z"] = b + values.pop("above")
@@ -237,7 +241,7 @@ def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list
         if rows and rows[-1].kind == "jam":
             if len(rows) > 1:
                 raise Undecided("a jam on the way")
-            return 0.0, units(scene, 0.0)
+            return 0.0, units(scene, [0.0])
         if found.lost is not None:
             end = cut(rows, len(rows), found.lost)
         elif len(rows) > most_events:
@@ -246,7 +250,7 @@ def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list
             kept = sum(row.t <= end for row in rows)
             if kept == 0:
                 raise Undecided("nothing happens")
-            found_units = units(scene, end)
+            found_units = units(scene, [end])
             wild = [i for i, row in enumerate(found_units) if max(row) > UNIT_LIMIT]
             if not wild:
                 return end, found_units
@@ -267,26 +271,23 @@ def text(value: Any) -> str:
     return "" if value is None else repr(float(value))
 
 
-def make_scene(name: str, scene: Scene, longest: float, family: Family) -> Checked:
-    """The lines of a scene."""
-    end, unit = planned(scene, longest, family.most_events)
+def checked(
+    name: str, scene: Scene, ends: Sequence[float], unit: list[list[float]], fields: list[str]
+) -> Checked:
+    """The lines of a scene with some of its inputs, from its states at some times."""
     with TABLE_ROAD.context():
-        found = follow(scene, end, TABLE_ROAD)
-        rows = [*found.rows, found.last]
+        rows, change = rows_of(scene, ends, TABLE_ROAD)
         digits = [[f"{one:.29e}" for one in row[1:]] for row in rows]
-        energy = float(found.energy)
+        energy = float(change)
     kinds = [row.kind for row in rows]
-    if not contains(kinds, family.wanted):
-        raise Undecided("not what was wanted")
     with CHECK_ROAD.context():
-        other = follow(scene, end, CHECK_ROAD)
-        others = [*other.rows, other.last]
+        others, _ = rows_of(scene, ends, CHECK_ROAD)
         assert kinds == [row.kind for row in others]
         apart = max(difference(p, q) for p, q in zip(rows, others, strict=True))
     assert max(apart, energy) < AGREEMENT and len(unit) == len(rows), (scene, apart, energy)
     lines = [
         [
-            name, *map(text, scene), str(i), row.kind, *digits[i],
+            name, *(text(getattr(scene, field)) for field in fields), str(i), row.kind, *digits[i],
             *(f"{one:.2e}" for one in unit[i]),
         ]
         for i, row in enumerate(rows)
@@ -294,7 +295,19 @@ def make_scene(name: str, scene: Scene, longest: float, family: Family) -> Check
     return Checked(lines, kinds, apart, energy, max(map(max, unit)))
 
 
-def drawn(rng: random.Random, family: Family, name: str) -> Checked:
+def make_scene(
+    name: str, scene: Scene, longest: float, family: Family, fields: list[str] = FIELDS
+) -> Checked:
+    """The lines of a scene, which ends where the inputs no longer determine it."""
+    end, unit = planned(scene, longest, family.most_events)
+    ends = [share * end for share in family.states]
+    made = checked(name, scene, ends, units(scene, ends) if ends[1:] else unit, fields)
+    if not contains(made.kinds, family.wanted):
+        raise Undecided("not what was wanted")
+    return made
+
+
+def drawn(rng: random.Random, family: Family, name: str, fields: list[str] = FIELDS) -> Checked:
     """A scene of a family that is decided and has the required kinds of events."""
     while True:
         scene = random_scene(rng, family)
@@ -314,7 +327,7 @@ def drawn(rng: random.Random, family: Family, name: str) -> Checked:
                 times = {row.kind: row.t for row in reversed(found.rows)}
                 if not 0 < times["stick"] - times["slip"] < 0.2 * natural:
                     continue
-            return make_scene(name, scene, longest, family)
+            return make_scene(name, scene, longest, family, fields)
         except Undecided:
             continue
 
@@ -336,7 +349,13 @@ def make_table(seed: int) -> None:
         for _ in range(family.scenes):
             made.append(drawn(rng, family, named(family.name)))
         print(f"{family.name}: {time.perf_counter() - began:.0f} s so far", flush=True)
-    write_table(TABLE, COLUMNS, (line for one in made for line in one.lines))
+    columns = ["name", *INPUTS, *RESULTS]
+    write_table(TABLE, columns, (line for one in made for line in one.lines))
+    report(made)
+
+
+def report(made: list[Checked]) -> None:
+    """Print the numbers of scenes and events, and the results of the checks."""
     print(len(made), "scenes", dict(Counter(kind for one in made for kind in one.kinds)))
     print(f"apart {max(one.disagreement for one in made):.1e}")
     print(f"energy {max(one.energy_change for one in made):.1e}")

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from contact_motion import Scene, Undecided, follow
 from gmpy2 import mpfr
-from make_contact_reference import TABLE, UNIT_ROAD
+from make_contact_reference import FIELDS, INPUTS, TABLE, UNIT_ROAD
 from runs import write_table
 
 DERIVATIVES = Path(__file__).with_name("sensitivity_reference.csv")
@@ -28,7 +28,8 @@ CHANGE = 1e-15
 def derivatives(name: str, scene: Scene, end: float) -> Iterator[list[str]]:
     """The rows of a scene."""
     base = follow(scene, end, UNIT_ROAD)
-    for wrt, value in scene._asdict().items():
+    for wrt in FIELDS:
+        value = getattr(scene, wrt)
         known = wrt == "x" or (wrt == "mass" and scene.inertia is None)
         if value is None or math.isinf(value) or known:
             continue
@@ -48,8 +49,9 @@ def lines() -> Iterator[list[str]]:
     for name, group in groupby(rows, itemgetter("name")):
         *events, last = group
         if all(row["kind"] != "jam" for row in events):
-            texts = list(last.values())[1 : 1 + len(Scene._fields)]
-            scene = Scene(*(float(text) if text else None for text in texts))
+            texts = {name: last[column] for name, column in zip(FIELDS, INPUTS, strict=True)}
+            given = {name: float(text) if text else None for name, text in texts.items()}
+            scene = Scene(**given)
             with UNIT_ROAD.context():
                 yield from derivatives(name, scene, float(last["t"]))
         print(name, flush=True)
