@@ -57,6 +57,14 @@ def calls() -> dict[str, Case]:
         }
     watched, steep = simulate(ROLLING, 20.0), Scene(**R, slope=0.1, friction=10.0)
     pair = partial(simulate, Scene(**R), [0.8], method="dopri5")
+    swings = {
+        "without friction": Scene(2.0, 1.0, theta=0.5, friction=0.0),
+        "with rolling resistance": Scene(2.0, 1.0, theta=0.5, rolling_resistance=0.01),
+    }
+    for kind, scene in swings.items():
+        half = simulate(scene, 5.0).when(omega=0.0)[1:2]
+        core = partial(_core.simulate, scene.core, settings, half, None)
+        found[f"half a swing {kind}, the core"] = Case(core)
     return found | {
         "Trajectory.at": Case(partial(watched.at, 3.3)),
         "Trajectory.when(theta=1)": Case(partial(watched.when, theta=1.0)),

@@ -20,6 +20,36 @@ Sentence effect_of(const Scene& scene, const Start& start) {
     return {"slides_off", {along, up, {"mu", scene.friction}}};
 }
 
+// The outcome of rolling that an event signals.
+std::optional<Outcome> outcome_of(EventKind kind) {
+    if (kind == EventKind::slip) return Outcome::slips;
+    if (kind == EventKind::lift_off) return Outcome::loses_contact;
+    if (kind == EventKind::jam) return Outcome::jams;
+    return {};
+}
+
+// What happens to a body with rolling resistance: how it starts, and the first event that ends its
+// rolling, or its rest.
+Sentences course_of(const Scene& scene, const Solution& solution, const Start& start,
+                    double begin) {
+    Sentences found{{name(start.next.mode) + "_starts", {}}};
+    for (const auto& [t, kind, before, after] : solution.motion.events) {
+        if (t < begin) continue;
+        if (kind == EventKind::rest) {
+            const double askew = std::abs(quarter_view({after.theta, 0.0}).rest.high) * (180 / pi);
+            const bool has_angle = scene.slope == 0 && scene.a != scene.b;
+            found.push_back(has_angle ? Sentence{"rests_askew", {{"t", t}, {"angle", askew}}}
+                                      : Sentence{"rests_at", {{"t", t}}});
+            break;
+        }
+        const auto end = outcome_of(kind);
+        if (!end || t == begin) continue;
+        found.push_back({name(*end) + "_at", {{"t", t}}});
+        break;
+    }
+    return found;
+}
+
 // Says why the motion differs from what the initial velocities suggest; empty if it does not.
 Sentences surprise(const Scene& scene, const Start& start) {
     const Continuation& next = start.next;
@@ -82,14 +112,6 @@ Scene scene_after(Scene scene, const State& state) {
     return scene;
 }
 
-// The outcome of rolling that an event signals.
-std::optional<Outcome> outcome_of(EventKind kind) {
-    if (kind == EventKind::slip) return Outcome::slips;
-    if (kind == EventKind::lift_off) return Outcome::loses_contact;
-    if (kind == EventKind::jam) return Outcome::jams;
-    return {};
-}
-
 // How and when the rolling that starts at the time `begin` ends, as far as the motion shows it.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
     const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
@@ -134,9 +156,13 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
         ground = scene_after(scene, landing->after);
         start = Start(ground);
     }
+    append(found.reasons, surprise(ground, start));
+    if (scene.rolling_resistance > 0) {
+        append(found.headline, course_of(scene, solution, start, landed));
+        return found;
+    }
     const Outcome first = outcome(ground, checkpoint);
     found.first = first;
-    append(found.reasons, surprise(ground, start));
     if (start.holds()) {
         found.headline.push_back(end_of_rolling(scene, solution, first, landed));
         append(found.reasons, proof_of_rolling(ground, start, certify(ground)));
@@ -172,7 +198,7 @@ Sentences describe_proof(const Scene& scene, const Certificate& proof) {
     Sentences found;
     if (start.slip_removed != 0) found.push_back(effect_of(scene, start));
     if (proof.end.validity == Validity::no_proof) {
-        found.push_back({"no_proof", {}});
+        found.push_back({scene.rolling_resistance > 0 ? "resisted" : "no_proof", {}});
         return found;
     }
     if (!start.holds()) found.push_back({"cannot_start", {}});

@@ -35,7 +35,7 @@ struct Beginning {
 Beginning beginning(const Scene& scene) {
     Beginning found{initial_state(scene), {}, {}};
     const State& start = found.initial.state;
-    if (!rolls(start)) return found;
+    if (!rolls(start) || scene.rolling_resistance > 0) return found;
     if (scene.slope == 0) {
         found.rolling = rolling_start(scene.body(), start.theta, start.omega);
     } else {
@@ -108,6 +108,7 @@ Integration<Motion> solve(const Scene& scene, const Beginning& from, const Setti
     if (settings.model == Model::contact) {
         return integrate_contact(scene, from.initial, settings, t_end, checkpoint);
     }
+    require_no_resistance(scene, "model '" + name(settings.model) + "'", "model 'contact' has it");
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
                                     "' must start rolling, but " + why_not_rolling(scene, start));
@@ -210,6 +211,7 @@ std::optional<Losses> losses(const Solution& solution) {
 }
 
 double period(const Scene& scene) {
+    require_no_resistance(scene, "a period", "the body comes to rest: see events");
     Beginning from = beginning(scene);
     if (from.rolling) return period(rolling_flow(*from.rolling));
     if (!from.on_slope) {

@@ -92,13 +92,19 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     const Body of = valid_body(a, b, gravity, gyration2);
     validate_friction(friction);
     const Thresholds t = thresholds(of, friction);
-    return py::dict(
-        "roll_over_speed"_a = t.roll_over_speed, "contact_loss_speed"_a = t.contact_loss_speed,
-        "contact_loss_angle"_a = t.contact_loss_angle, "slip_speed"_a = t.slip_speed(),
-        "slip_angle"_a = t.slip_angle, "slip_windows"_a = pairs(t.slip_windows),
-        "friction_to_roll_over"_a = t.friction_to_roll_over,
-        "painleve_friction"_a = t.painleve_friction, "painleve_angle"_a = t.painleve_angle,
-        "rocking_rate"_a = t.rocking_rate, "tip_rate"_a = t.tip_rate);
+    py::dict found;
+    found["roll_over_speed"] = t.roll_over_speed;
+    found["contact_loss_speed"] = t.contact_loss_speed;
+    found["contact_loss_angle"] = t.contact_loss_angle;
+    found["slip_speed"] = t.slip_speed();
+    found["slip_angle"] = t.slip_angle;
+    found["slip_windows"] = pairs(t.slip_windows);
+    found["friction_to_roll_over"] = t.friction_to_roll_over;
+    found["painleve_friction"] = t.painleve_friction;
+    found["painleve_angle"] = t.painleve_angle;
+    found["rocking_rate"] = t.rocking_rate;
+    found["tip_rate"] = t.tip_rate;
+    return found;
 }
 
 // Lift-off speed and the ranges of speeds at which the body jams, given slip_speed and

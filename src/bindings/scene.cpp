@@ -116,6 +116,7 @@ void bind_scene(py::module_& m) {
     m.attr("METHODS") = py::tuple(py::cast(names<Method>));
     m.attr("STABILIZATIONS") = py::tuple(py::cast(names<Stabilization>));
     bind_class<Settings>(m, "Settings").def(py::init(&settings_of), "fields"_a);
+    m.def("require_no_resistance", require_no_resistance, "scene"_a, "who"_a, "instead"_a);
     m.def("feedback_growth", feedback_growth, "settings"_a);
     m.def("initial_state", start_of, "scene"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a, "law"_a);

@@ -278,6 +278,7 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("events",
                                [](const Solution& s) { return event_rows(s.motion.events); })
         .def("losses", losses_in)
+        .def_property_readonly("turns", [](const Solution& s) { return array_of(s.motion.turns); })
         .def("knots", [](const Solution& s) { return array_of(knot_times(s.motion)); })
         .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)
         .def("zeros", zeros_of, "function"_a, "direction"_a)

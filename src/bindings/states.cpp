@@ -135,6 +135,7 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
 
 // Returns theta'' of rolling and its derivatives with respect to theta and omega.
 py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
+    require_no_resistance(scene, "a rolling equation", "simulate has it");
     const RollingEquation equation(scene.body(), scene.slope);
     const auto row = [&](double angle, double speed) {
         const Vector<2> y{angle, speed};

@@ -31,7 +31,7 @@ class ContactRun {
           state_(in_units(start.state, units_)),
           gap_rate_(start.gap_rate / units_.speed()),
           rest_speed_(rest_speed(scene_, units_, settings)),
-          motion_{units_, scene_, {}, {}} {}
+          motion_{units_, scene_, {}, {}, {}} {}
 
     Integration<Motion> run() {
         start();
@@ -95,6 +95,7 @@ class ContactRun {
             case Mode::rest:
                 return rest();
             case Mode::rolling:
+                if (scene_.rolling_resistance > 0) return slide();
                 return scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
             case Mode::sliding:
                 return slide();
@@ -163,8 +164,11 @@ class ContactRun {
         continue_by_forces(false);
     }
 
+    // Slides, or rolls with resistance.
     void slide() {
-        Slide slide = slide_from(scene_, state_, next_.side, sliding_on_);
+        std::optional<double> rolls_by;
+        if (next_.mode == Mode::rolling) rolls_by = friction_to_roll();
+        Slide slide = slide_from(scene_, state_, next_.side, sliding_on_, rolls_by);
         sliding_on_.reset();
         const long steps_left = settings_.max_steps - counts_.steps;
         const SlideStop stop = slide_on(slide, {time_left(), steps_left}, checkpoint_);
@@ -183,11 +187,30 @@ class ContactRun {
         if (stop == SlideStop::time_is_over) return finish();
         if (!advance(lasts)) return;
         end.angle = recount(last, theta);
+        if (stop == SlideStop::law_fails) return continue_by_forces(false);
         const State before = state_;
-        end_slide(stop, before);
-        if (next_.mode != Mode::sliding) return;
+        if (stop == SlideStop::rotation_vanishes) {
+            turn_back();
+        } else {
+            end.slip = {};
+            end_slide(stop, before);
+        }
+        if (next_.mode != before.mode) return;
         if (state_.x_dot != before.x_dot) end.x_dot = {state_.x_dot, 0.0};
         sliding_on_ = end;
+    }
+
+    // Continues where the rotation has vanished and rolling resistance turns its couple or holds
+    // the body. It is an event only if the mode changes.
+    void turn_back() {
+        const Continuation next = continuation(scene_, state_);
+        const bool goes_on = next.mode == state_.mode && next.paradox == Painleve::determined;
+        if (goes_on) {
+            next_ = next;
+            motion_.turns.push_back(now() * units_.time);
+        } else {
+            continue_with(next, kind_of(next.mode, EventKind::slip), State(state_));
+        }
     }
 
     void end_slide(SlideStop stop, const State& before) {

@@ -177,7 +177,7 @@ InitialState start_after(const Scene& scene, const Event& event) {
 }
 
 Motion single(const Scene& scene, decltype(Segment::law) law) {
-    Motion motion{Units{}, scene, {}, {}, false};
+    Motion motion{Units{}, scene, {}, {}, {}, false};
     motion.segments.push_back({0.0, std::move(law)});
     return motion;
 }

@@ -58,7 +58,8 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
-    bool rests = false;  // true if the only law is one of rolling and the body is at rest
+    std::vector<double> turns;  // times [s] of turns of rolling resistance
+    bool rests = false;         // true if the only law is one of rolling and the body is at rest
 };
 
 // The law of a segment, whether stored in the segment itself or behind a pointer (Apart).
@@ -86,10 +87,10 @@ State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turne
 // A motion in SI units with a single segment of this law.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Samples a motion. The times may come in several calls; if their `expected` total number is worth
-// a table, it is made once. A sample is a FlowSample (theta, omega, x), a ContactSample (state and
-// force) or a CoordinateState, in SI units; every segment provides all three. A sample at an event
-// is the one just after it. A motion without segments has no samples.
+// Samples a motion. The times may come in several calls; if the `expected` total number justifies a
+// table, it is built only once. A sample is a FlowSample (theta, omega, x), a ContactSample (state
+// and force) or a CoordinateState, in SI units; every segment provides all three. A sample at an
+// event is the one just after it. A motion without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);

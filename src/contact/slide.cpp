@@ -6,8 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "contact/resisted_rolling.hpp"
 #include "numerics/bisect.hpp"
 #include "numerics/polynomial.hpp"
+#include "proof/law.hpp"
+#include "rolling/stepped/equation.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -52,16 +55,17 @@ LongSeries powers_of(double reach) {
 // from.
 template <class Coefficient>
 std::optional<double> first_end(const LongSeries& powers, const Coefficient& coefficient) {
-    Polynomial<long_order> shares;
-    Tracked least;  // a lower bound of the series
-    for (int k = 0; k <= long_order; ++k) {
+    Tracked least = coefficient(0);  // a lower bound of the series
+    for (int k = 1; k <= long_order; ++k) {
         const auto [value, magnitude] = coefficient(k);
-        const Tracked term{value * powers[k], magnitude * powers[k]};
-        shares.coefficients[k] = term;
-        least.value += k == 0 ? term.value : -std::abs(term.value);
-        least.magnitude += term.magnitude;
+        least = least + Tracked{-std::abs(value) * powers[k], magnitude * powers[k]};
     }
     if (sign(least) == Sign::positive) return std::nullopt;
+    Polynomial<long_order> shares;
+    for (int k = 0; k <= long_order; ++k) {
+        const auto [value, magnitude] = coefficient(k);
+        shares.coefficients[k] = {value * powers[k], magnitude * powers[k]};
+    }
     return first_negative(bernstein(shares));
 }
 
@@ -87,11 +91,22 @@ double energy_of(const SlidingBody& body, const DoubleDouble& angle, double omeg
            body.gravity.into * under_tip(body.axes, at);
 }
 
+// The contact force of a body that rolls with resistance.
+ContactForce rolling_force(const SlidingBody& body, const Geometry& at, double omega) {
+    const RollingEquation rolling({body.axes.a, body.axes.b, body.gyration2, 0.0}, body.gravity);
+    return rolling.force(body.mass, at, omega, body.ahead);
+}
+
 ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
     const double theta = double(slide.theta_base + point.angle);
     const double omega = double(point.omega);
     const Geometry at = geometry(slide.axes, theta);
     const double x = slide.x_base + double(point.path);
+    if (slide.rolls_by) {
+        SlidingBody body = slide.body;
+        body.axes = slide.axes;
+        return {without_slip(at, theta, omega, x, Mode::rolling), rolling_force(body, at, omega)};
+    }
     return {on_ground(at, theta, omega, x, double(point.x_dot), Mode::sliding),
             sliding_force(slide.body, at, omega)};
 }
@@ -104,7 +119,7 @@ class SlideIntegration {
           bounds_(bounds),
           at_(geometry(slide.body.axes, slide.last.angle)) {
         const double b = response(slide.body, at_, last_.omega.high).b;
-        if (slide.body.may_jam() && b < small_response) {
+        if (may_jam() && b < small_response) {
             scaled_response_ = cancelled_response(slide_.body, at_, last_.angle);
         }
     }
@@ -115,13 +130,19 @@ class SlideIntegration {
         const double unit = std::ldexp(1.0, -std::ilogb(rate()));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
-        SlideSeries series =
-            slide_series(body,
-                         {at_.sin, at_.cos, double(from.omega) * unit, double(from.slip) * unit,
-                          double(from.x_dot) * unit,
-                          scaled_response_ ? scaled_response_
-                                           : cancelled_response(slide_.body, at_, from.angle)},
-                         clock());
+        SlideCentre centre{at_.sin,
+                           at_.cos,
+                           double(from.omega) * unit,
+                           double(from.slip) * unit,
+                           double(from.x_dot) * unit,
+                           scaled_response_,
+                           {}};
+        if (slide_.rolls_by) centre.torque = cancelled_moment(body, at_, from.angle);
+        if (may_jam() && !scaled_response_) {
+            centre.response = cancelled_response(slide_.body, at_, from.angle);
+        }
+        SlideSeries series = slide_.rolls_by ? rolling_series(body, centre, rolling_forces_)
+                                             : slide_series(body, centre, clock());
         auto& [angle, omega, x_dot, path, time] = series.motion;
         // Largest reach of a piece in its unit of time: 1 + 15 times the time slid so far. It
         // limits circles, whose series never lose accuracy. h omega and pressure bound the reach,
@@ -130,8 +151,17 @@ class SlideIntegration {
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
-        slide_.pieces.push_back({from, clock(), unit, reach_, series.motion});
-        SlidePoint next = moved(slide_.pieces.back(), reach_);
+        SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large
+        piece.centre = from;
+        piece.clock = clock();
+        piece.unit = unit;
+        piece.reach = reach_;
+        piece.motion = series.motion;
+        if (end_ == End::law) {
+            refine_law_end(piece);
+            reach_ = piece.reach;
+        }
+        SlidePoint next = moved(piece, reach_);
         // The powers of a rate beyond about 1e100 overflow.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
@@ -153,8 +183,9 @@ class SlideIntegration {
     // Computes omega from the energy where the body slows down on its way to the tip. The series
     // carry the rounding errors of the fast motion before; those of the energy, measured from the
     // tip, are smaller, unless friction has done much work, whose rounding errors are in the
-    // energy.
+    // energy. It lacks the work of rolling resistance, physics (66).
     void keep_energy() {
+        if (slide_.body.ahead != 0) return;
         constexpr double small = 0.25;      // terms of the energy over the largest kinetic energy
         constexpr double rounding = 1e-12;  // a larger relative change of omega is not rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
@@ -179,6 +210,8 @@ class SlideIntegration {
         most_slip_ = std::min(size, std::max(most_slip_, std::abs(double(last_.slip))));
     }
 
+    bool may_jam() const { return slide_.body.may_jam() && !slide_.rolls_by; }
+
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
     // 1 + the rate of turning + the rate at which the force changes B, if that is large. In units
@@ -186,16 +219,17 @@ class SlideIntegration {
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
+        if (slide_.rolls_by) return 1 + std::abs(omega);
         const auto [c, b] = response(slide_.body, at_, omega);
         double by_force = slowed_response_rate(slide_.body, at_, c);
         if (clock() == SlideClock::time) by_force /= b;
         return 1 + std::abs(omega) + (by_force > stiff && by_force < infinity ? by_force : 0.0);
     }
 
-    enum class End { slip, pressure, response, recovery, bounds };
+    enum class End { slip, pressure, response, recovery, rotation, law, bounds };
 
-    // Shortens the reach to the first point where slip, pressure or B vanishes or a bound is
-    // reached.
+    // Shortens the reach to the first point where slip, rotation, pressure or B vanishes, the law
+    // of rolling fails or a bound is reached.
     void find_end(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
         LongSeries powers = powers_of(reach_);
@@ -206,6 +240,25 @@ class SlideIntegration {
             reach_ *= *share;
             powers = powers_of(reach_);
         };
+        if (body.ahead != 0) {
+            // A rotation that starts to either side has a speed of 0.
+            const bool starts = series.motion.omega[0] == 0;
+            search(End::rotation, [&](int k) -> Tracked {
+                const double omega = series.motion.omega[k];
+                const double turning = std::copysign(1.0, body.ahead) * omega;
+                return {k == 1 && starts ? std::max(turning, 0.0) : turning, std::abs(omega)};
+            });
+        }
+        if (slide_.rolls_by) {
+            const double mu = *slide_.rolls_by;
+            const double reach = reach_;
+            for (const double side : {1.0, -1.0}) {
+                search(End::law, [&, side](int k) { return rolling_margin(mu, side, k); });
+                if (end_ == End::law && reach_ < reach) law_side_ = side;
+                if (std::isinf(mu)) return;  // it asks for N alone
+            }
+            return;
+        }
         const auto search_response = [&](End what, double sign, double least) {
             const double least_v = least * body.gyration2;
             search(what, [&](int k) -> Tracked {
@@ -247,8 +300,43 @@ class SlideIntegration {
         }
     }
 
+    // Coefficient k of the margin of the law of rolling, times h^3.
+    Tracked rolling_margin(double mu, double side, int k) const {
+        const auto& [normal, friction] = rolling_forces_;
+        if (std::isinf(mu)) return normal[k];
+        return tracked(mu) * normal[k] - tracked(side) * friction[k];
+    }
+
+    // Moves the end of a piece to where the forces of the state there break the law: near a tip of
+    // a thin body, and where the margin hardly falls, the series have lost digits.
+    void refine_law_end(SlidePiece& piece) const {
+        constexpr double rounding = 1e-6;  // a larger share of the reach is not rounding
+        constexpr int corrections = 2;
+        const double mu = *slide_.rolls_by;
+        LongSeries margin;
+        for (int k = 0; k <= long_order; ++k) margin[k] = rolling_margin(mu, law_side_, k).value;
+        for (int i = 0; i < corrections; ++i) {
+            const SlidePoint there = moved(piece, piece.reach);
+            const Geometry at = geometry(slide_.body.axes, there.angle);
+            const ContactForce force = rolling_force(slide_.body, at, double(there.omega));
+            const double rest = law_margin(force, mu, law_side_) / slide_.body.mass;
+            const double fall =
+                derivative(margin, piece.reach) / (at.h * square(at.h * piece.unit));
+            const double change = -rest / fall;
+            if (!(fall < 0 && std::abs(change) < rounding * piece.reach)) return;
+            piece.reach += change;
+        }
+    }
+
     std::optional<SlideStop> end() {
         if (*end_ == End::slip) return SlideStop::slip_vanishes;
+        if (*end_ == End::law) return SlideStop::law_fails;
+        if (*end_ == End::rotation) {
+            last_.omega = {};
+            if (slide_.rolls_by) last_.x_dot = {};
+            last_.slip = last_.x_dot;
+            return SlideStop::rotation_vanishes;
+        }
         if (*end_ == End::bounds) return SlideStop::out_of_bounds;
         if (*end_ == End::pressure) {
             if (grazes_ || leaves()) return SlideStop::pressure_vanishes;
@@ -277,7 +365,7 @@ class SlideIntegration {
     // The end of a slide at B = 0, where N = c/B instantly stops the slip or jams the body.
     SlideStop last_moment() {
         const double angle = double(last_.angle);
-        const auto [stops, omega, slip, x_dot, lasts] = rolling_ellipse::last_moment(
+        const auto [stops, turns, omega, slip, x_dot, lasts] = rolling_ellipse::last_moment(
             slide_.body, angle, double(last_.omega), double(last_.slip));
         const DoubleDouble turned = {angle + double(last_.omega) * lasts, 0.0};
         last_ = {turned,
@@ -288,6 +376,7 @@ class SlideIntegration {
                  {double(last_.time) + lasts, 0.0},
                  {energy_of(slide_.body, turned, omega), 0.0}};
         slide_.pieces.push_back({last_, SlideClock::time, 1.0, 0.0, {}});
+        if (turns) return SlideStop::rotation_vanishes;
         return stops ? SlideStop::slip_vanishes : SlideStop::jams;
     }
 
@@ -299,10 +388,12 @@ class SlideIntegration {
     double most_slip_ = 0.0;
     double worked_ = 0.0;  // sum of the |work| of friction [energy per mass]
     // V, while the slower clock is used. It is a sum of changes that shrink along with V, so that V
-    // stays accurate however close to B = 0 the body turns away from it.
+    // stays accurate however close the body comes to B = 0 before it turns away.
     std::optional<double> scaled_response_;
     double reach_ = 0.0;
     std::optional<End> end_;
+    RollingForces3 rolling_forces_;
+    double law_side_ = 1.0;  // side of the friction whose law ends the rolling
     // True once c has been 0 to within rounding and not negative, as when a slide starts near B = 0
     // under infinite friction. c then has the rounding errors of gravity and h'' omega^2, too.
     bool grazes_ = false;
@@ -321,14 +412,19 @@ double clock_at(const SlidePiece& piece, double time) {
 }  // namespace
 
 Slide slide_from(const Scene& scene, const State& start, double side,
-                 const std::optional<SlidePoint>& end_of_other) {
+                 const std::optional<SlidePoint>& end_of_other, std::optional<double> rolls_by) {
     const Axes axes = scene.axes();
     const double slip = slip_velocity(start, geometry(axes, start.theta));
     const QuarterView angle = quarter_view({start.theta, 0.0});
     Scene seen = scene;
     if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
-    constexpr std::size_t usual_pieces = 16;
-    const SlidingBody body = sliding_body(seen, side);
+    const std::size_t usual_pieces = rolls_by ? 24 : 16;  // half a swing takes some twenty
+    const Geometry at = geometry(seen.axes(), angle.rest);
+    SlidingBody body = sliding_body(seen, at, start.omega, side);
+    if (rolls_by) {
+        body.ahead = rolling_lever(seen, at, start.omega);
+        body.is_held = false;
+    }
     const double energy = energy_of(body, angle.rest, start.omega);
     Slide slide{
         body,
@@ -336,15 +432,17 @@ Slide slide_from(const Scene& scene, const State& start, double side,
         half_pi_exact * angle.quarters,
         start.x,
         {angle.rest, {start.omega, 0.0}, {slip, 0.0}, {start.x_dot, 0.0}, {}, {}, {energy, 0.0}},
-        {}};
+        {},
+        rolls_by};
     slide.pieces.reserve(usual_pieces);
     if (end_of_other) {
         slide.last.angle = slide.last.angle + end_of_other->angle.low;
         slide.last.omega = end_of_other->omega;
         slide.last.x_dot = end_of_other->x_dot;
         slide.last.energy = end_of_other->energy;
-        slide.last.slip = {0.0, 0.0};
+        slide.last.slip = end_of_other->slip;
     }
+    if (rolls_by) slide.last.slip = {};
     return slide;
 }
 

@@ -1,6 +1,7 @@
-// Sliding to one side, solved by power series: a few per arc, each accurate to double precision
-// within its reach, and used for samples, too. The slide ends at a first root that is proved by the
-// signs of Bernstein coefficients rather than searched for by sampling.
+// Sliding to one side, and rolling with resistance, solved by power series: a few per arc, each
+// accurate to double precision within its reach, and used for samples, too. The slide ends at a
+// first root that is proved by the signs of Bernstein coefficients rather than searched for by
+// sampling.
 #pragma once
 
 #include <cstddef>
@@ -46,12 +47,15 @@ struct Slide {
     double x_base;
     SlidePoint last;  // end of the last piece
     std::vector<SlidePiece> pieces;
+    std::optional<double> rolls_by;  // the friction by which the body rolls instead
 };
 
 // A slide at its start, slipping to the given side (0 without friction). If it follows another
-// slide, it starts without slip and with the precision that a rounded state would lose.
+// slide, it starts with the precision that a rounded state would lose. With `rolls_by`, the body
+// rolls with resistance as long as this friction holds it.
 Slide slide_from(const Scene& scene, const State& start, double side,
-                 const std::optional<SlidePoint>& end_of_other = {});
+                 const std::optional<SlidePoint>& end_of_other = {},
+                 std::optional<double> rolls_by = {});
 
 struct SlideBounds {
     double t_end = infinity;
@@ -62,6 +66,8 @@ struct SlideBounds {
 enum class SlideStop {
     slip_vanishes,
     pressure_vanishes,
+    rotation_vanishes,  // only with rolling resistance, whose couple then changes
+    law_fails,          // rolling needs more friction than there is, or a pull
     jams,
     out_of_bounds,
     time_is_over,

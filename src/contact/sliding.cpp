@@ -12,27 +12,35 @@ namespace {
 
 // Angular acceleration per unit of contact force, physics (51).
 double spin(const SlidingBody& body, const Geometry& at) {
-    return -(at.h * body.friction_share + at.dh * body.normal_share) / body.gyration2;
+    return -body.lever(at) / body.gyration2;
 }
 
 // dB/dtheta, with B of physics (50).
 double response_derivative(const SlidingBody& body, const Geometry& at) {
     return (2 * body.normal_share * at.dh * at.ddh +
-            body.friction_share * (at.dh * at.dh + at.h * at.ddh)) /
+            body.friction_share * (at.dh * at.dh + at.h * at.ddh) +
+            body.normal_share * body.ahead * at.ddh) /
            body.gyration2;
 }
 
 }  // namespace
 
-SlidingBody sliding_body(const Scene& scene, double side) {
+SlidingBody sliding_body(const Scene& scene, const Geometry& at, double omega, double side) {
     const bool endless = std::isinf(scene.friction);
-    return {scene.axes(),
-            scene.mass,
-            scene.body().gyration2,
-            scene.ground_gravity(),
-            side,
-            endless ? 0.0 : 1.0,
-            endless ? -side : -scene.friction * side};
+    SlidingBody body{scene.axes(),
+                     scene.mass,
+                     scene.body().gyration2,
+                     scene.ground_gravity(),
+                     side,
+                     endless ? 0.0 : 1.0,
+                     endless ? -side : -scene.friction * side,
+                     0.0,
+                     false};
+    if (endless || scene.rolling_resistance == 0) return body;  // no couple without normal force
+    body.is_held =
+        omega == 0 && is_within(scene.rolling_resistance, at.dh, at.h * body.friction_share);
+    if (!body.is_held) body.ahead = lever_against(scene, omega == 0 ? -body.lever(at) : omega);
+    return body;
 }
 
 // The response c and B = Gnn - mu s Gtn, from which N = c/B per mass, physics (50); with infinite
@@ -41,7 +49,9 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
     const double c = free_acceleration(at, body.gravity.into, omega);
     const double gnn = 1 + at.dh * at.dh / body.gyration2;
     const double gtn = at.h * at.dh / body.gyration2;
-    return {c, body.normal_share * gnn + body.friction_share * gtn};
+    if (body.is_held) return {c, body.normal_share};
+    const double by_resistance = body.normal_share * body.ahead * at.dh / body.gyration2;
+    return {c, body.normal_share * gnn + body.friction_share * gtn + by_resistance};
 }
 
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
@@ -50,14 +60,17 @@ std::optional<double> cancelled_response(const SlidingBody& body, const Geometry
     const auto [a, b] = body.axes;
     const double nu = body.normal_share;
     const double phi = body.friction_share;
-    const double terms = body.gyration2 + square(at.dh) + std::abs(phi * at.h * at.dh);
+    const double terms = body.gyration2 + square(at.dh) + std::abs(phi * at.h * at.dh) +
+                         std::abs(nu * body.ahead * at.dh);
     if (!body.may_jam() || response(body, at, 0.0).b * body.gyration2 > little * terms) return {};
     const auto [quarters, rest] = quarter_view(angle);
     const auto [sine, cosine] = sine_cosine_of_rest(rest);
     const double c2 = (is_odd(quarters) ? b - a : a - b) * (a + b);
     const DoubleDouble u = sine * sine * c2 + square(is_odd(quarters) ? a : b);
     const DoubleDouble p = sine * cosine * c2;
-    return double(u * (nu * body.gyration2) + p * (p * nu + u * phi));
+    DoubleDouble lever = p * nu + u * phi;
+    if (body.ahead != 0) lever = lever + square_root(u) * (nu * body.ahead);
+    return double(u * (nu * body.gyration2) + p * lever);
 }
 
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega) {
@@ -89,28 +102,38 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
     const double impulse_to_stop = (without_slip - omega) / turn_by_force;
     const double to_no_c = (without_c - omega) / turn_by_force;
     const double impulse_to_jam = at.ddh < 0 && to_no_c >= 0 ? to_no_c : infinity;
-    const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
-    const double omega_after = stops ? without_slip : without_c;
+    const double to_turn = -omega / turn_by_force;
+    const double impulse_to_turn = body.ahead != 0 && to_turn >= 0 ? to_turn : infinity;
+    const double impulse_to_end = std::min(impulse_to_jam, impulse_to_turn);
+    const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_end;
+    const bool turns = !stops && impulse_to_turn < impulse_to_jam;
+    const double omega_after = stops ? without_slip : turns ? 0.0 : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
     // The moment lasts until B = 0 or until N = c/B has delivered the impulse: in a slide that
     // starts with such a small B, the body need not turn towards B = 0, or turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
-    const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
+    const double until_made = (stops ? impulse_to_stop : impulse_to_end) * b / c;
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
-    return {stops, omega_after, slip_after, slip_after + at.h * omega_after,
+    return {stops,
+            turns,
+            omega_after,
+            slip_after,
+            slip_after + at.h * omega_after,
             least < infinity ? least : 0.0};
 }
 
 // The derivatives of u = h^2, p = h h' and q = p' with respect to the angle are 2 p, q and -4 p.
 ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre,
                                               SlideClock clock) {
-    const auto [sin, cos, omega0, slip0, x_dot0, response0] = centre;
+    const auto [sin, cos, omega0, slip0, x_dot0, response0, torque0] = centre;
     const auto [a, b] = body.axes;
     const double c2 = body.axes.c2();
     const double k2 = body.gyration2;
     const double nu = body.normal_share;
     const double phi = body.friction_share;
+    const double turns = body.is_held ? 0.0 : 1.0;
+    const double ahead = nu * body.ahead;
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
@@ -134,7 +157,8 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     double p = c2 * sin * cos;
     double q = c2 * ((cos - sin) * (cos + sin));
     double impulse = 0.0;
-    const double l0 = response0 ? (*response0 - nu * k2 * u0) / p : nu * p + phi * u0;
+    const double l0 =
+        response0 ? (*response0 - nu * k2 * u0) / p : turns * (nu * p + phi * u0) + ahead * h0;
     u[0] = u0;
     w[0] = omega0;
     angle[0] = path[0] = time[0] = work[0] = 0.0;
@@ -154,7 +178,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
             return known[lane] + ends;
         };
         const double h = k == 0 ? h0 : (u[k] - curves[2]) * over_2h0;
-        const double l = k == 0 ? l0 : nu * p + phi * u[k];
+        const double l = k == 0 ? l0 : turns * (nu * p + phi * u[k]) + ahead * h;
         const double omega2 = k == 0 ? w[0] * w[0] : squares[0] + 2 * (squared[0][0] * w[k]);
         const double bend = k == 0 ? bend0 : -(squares[1] + 2 * (squared[0][1] * u[k]));
         const double weight = product(levers, lever, by_lever, 1, u[k], h);
@@ -230,8 +254,7 @@ double side_of(double v) { return std::copysign(1.0, v); }
 // Whether the body remains at rest.
 bool rests(const Scene& scene, const State& state, const Geometry& at) {
     if (state.omega != 0) return false;
-    const double incline = std::tan(scene.slope);
-    return is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
+    return is_held(scene, at) && std::abs(std::tan(scene.slope)) <= scene.friction;
 }
 
 // The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
@@ -241,7 +264,7 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 // lasts until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
-    const auto [c, b] = response(sliding_body(scene, side), at, omega);
+    const auto [c, b] = response(sliding_body(scene, at, omega, side), at, omega);
     if (slips && c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
@@ -253,7 +276,7 @@ bool has_jammed(const Scene& scene, const State& state, const Geometry& at, doub
                 double blur) {
     constexpr double rounding = 1e-12;  // a slide ends where B is a tenth of this
     if (slip == 0 || scene.friction == 0 || std::isinf(scene.friction)) return false;
-    const SlidingBody body = sliding_body(scene, side_of(slip));
+    const SlidingBody body = sliding_body(scene, at, state.omega, side_of(slip));
     const auto [c, b] = response(body, at, state.omega);
     const double c_by_blur = free_acceleration_rate(at, state.omega) * blur;
     return std::abs(b) <= rounding + std::abs(response_derivative(body, at)) * blur &&
@@ -270,7 +293,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     for (const double side : {1.0, -1.0}) {
         const Continuation next = to_side(side);
         if (next.mode == Mode::flight) return next;
-        const double rate = slip_rate(sliding_body(scene, side), at, state.omega);
+        const double rate = slip_rate(sliding_body(scene, at, state.omega, side), at, state.omega);
         if (next.paradox == Painleve::determined && side * rate > 0) return next;
     }
     return {Mode::sliding, 0.0, Painleve::no_motion};
@@ -286,19 +309,21 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     const RollingEquation rolling(scene.body(), scene.slope);
     const GroundGravity gravity = scene.ground_gravity();
     const double omega2 = square(state.omega);
-    const double pull = rolling.acceleration(at.sin, at.cos, state.omega);
+    const double lever = rolling_lever(scene, at, state.omega);
+    const double pull = rolling.acceleration(at, state.omega, lever);
     const ContactForce terms{scene.mass * (gravity.into + std::abs(at.ddh) * omega2),
                              scene.mass * (std::abs(gravity.along) + std::abs(at.dh) * omega2)};
     const double rounding =
         law_rounding * (law_size(force, scene.friction) + law_size(terms, scene.friction));
     for (double turn = least_turn; turn <= most_turn; turn *= 16) {
         const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
+        if (turns_back && state.omega != 0 && lever != 0) return false;  // the turn decides
         const double heading = side_of(turns_back ? pull : state.omega);
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
-        const double mean_pull = 0.5 * (pull + rolling.acceleration(later.sin, later.cos, 0.0));
+        const double mean_pull = 0.5 * (pull + rolling.acceleration(later, 0.0, lever));
         const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * mean_pull * heading * turn;
         if (!(later_omega2 > 0)) return false;  // it rocks less far; the law hardly changes
-        const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2));
+        const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2), lever);
         const double side = side_of(next.friction);  // at the limit, also that of F unless F = 0
         const double now = law_margin(force, scene.friction, side);
         const double change = law_margin(next, scene.friction, side) - now;
@@ -308,7 +333,7 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     return false;
 }
 
-// The continuation of a state, given a geometry and a slip that may be those of the next moment.
+// The continuation of a state. The geometry and the slip may be those an instant later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
@@ -319,6 +344,10 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, at, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
+    if (may_roll && held && state.omega == 0 && scene.rolling_resistance > 0 &&
+        is_held(scene, at)) {
+        return {Mode::rest};  // at the limit of friction, which the couple does not change
+    }
     const bool lasts = blur == 0 || !breaks_away(scene, state, at, force, blur);
     if (may_roll && force.normal > 0 && held && lasts) {
         Continuation next{Mode::rolling};

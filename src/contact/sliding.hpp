@@ -20,13 +20,23 @@ struct SlidingBody {
     // Shares of the contact force along normal and ground: 1, -mu s; for infinite friction 0, -s.
     double normal_share;
     double friction_share;
+    // The lever of the normal force ahead of the contact, physics (63), and whether its couple
+    // holds a body that slides without turning.
+    double ahead;
+    bool is_held;
 
     // False for infinite friction: B is small near the tip, but the force does not become large
-    // there.
-    bool may_jam() const { return normal_share != 0; }
+    // there. A body that does not turn has a constant B.
+    bool may_jam() const { return normal_share != 0 && !is_held; }
+
+    // The lever arm of the contact force about the centre; the force turns the body backwards.
+    double lever(const Geometry& at) const {
+        if (is_held) return 0.0;
+        return (at.h * friction_share + at.dh * normal_share) + ahead * normal_share;
+    }
 };
 
-SlidingBody sliding_body(const Scene& scene, double side);
+SlidingBody sliding_body(const Scene& scene, const Geometry& at, double omega, double side);
 
 // The free acceleration c into the ground, physics (53), and Painleve's B, the normal acceleration
 // per unit of force, physics (49, 50). The force cancels the acceleration -c of the gap.
@@ -52,10 +62,12 @@ double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
 // The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment N = c/B
-// either makes the slip vanish (the slide stops) or makes c vanish (it jams). Holds angular
-// velocity, slip and velocity of the centre after that moment, and its duration.
+// makes the slip vanish (the slide stops), stops the rotation (rolling resistance then turns its
+// couple) or makes c vanish (it jams). Holds angular velocity, slip and velocity of the centre
+// after that moment, and its duration.
 struct LastMoment {
     bool stops;
+    bool turns;
     double omega;
     double slip;
     double x_dot;
@@ -65,8 +77,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 
 enum class SlideClock { time, slowed };
 
-// The centre of the series: sine and cosine of the angle, velocities, and the response V if it is
-// known more accurately than sine and cosine give it.
+// The centre of the series: sine and cosine of the angle, velocities, and the response V of a slide
+// or the torque of rolling if it is known more accurately than sine and cosine give it.
 struct SlideCentre {
     double sin;
     double cos;
@@ -74,6 +86,7 @@ struct SlideCentre {
     double slip;
     double x_dot;
     std::optional<double> response;
+    std::optional<double> torque;
 };
 
 // The series from which samples are computed. Angle, path and time are 0 at the centre.
@@ -97,7 +110,8 @@ struct SlideSeries {
 
 // Physics (51, 52) times powers of h, with u = h^2, p = h h' and the shares nu, phi of the contact
 // force along the normal and along the ground:
-//     L = h (nu h' + phi h) = nu p + phi u       the lever of the force, times h
+//     L = h (nu (h' + d) + phi h) = nu (p + d h) + phi u     the lever of the force, times h, with
+//         the lever d of rolling resistance: physics (65)
 //     V = k^2 u B = nu k^2 u + p L               the response to it
 //     C = h^3 c = g cos(alpha) u h + (a b - u)(a b + u) omega^2
 //     omega' u V = -L C,    friction h V = phi k^2 C
@@ -110,7 +124,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
 // it (c < 0) it has two if B < 0, flight and a slide with N = c/B > 0.
 enum class Painleve { determined, no_motion, two_motions };
 
-// How a body that touches the ground without moving into it continues.
+// How the motion continues for a body that touches the ground without moving into it.
 struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip

@@ -58,7 +58,12 @@ MultiplierSolution accelerations(const Scene& scene, const CoordinateState& stat
                                  const ContactForce& force) {
     const Geometry at = geometry(scene.axes(), state.q[coordinate::theta]);
     const GroundGravity gravity = scene.ground_gravity();
-    const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
+    const double most = scene.rolling_resistance * force.normal;
+    const double torque = -(at.h * force.friction + at.dh * force.normal);
+    const double omega = state.q_dot[coordinate::theta];
+    // Without rotation the couple of rolling resistance is as large as it takes, up to its limit.
+    const double couple = omega == 0 ? std::clamp(torque, -most, most) : std::copysign(most, omega);
+    const double omega_dot = (torque - couple) / scene.inertia;
     return contact_solution(scene.axes(), at, state, force,
                             {omega_dot, force.friction / scene.mass + gravity.along,
                              force.normal / scene.mass - gravity.into});

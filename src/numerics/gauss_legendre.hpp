@@ -5,7 +5,7 @@
 namespace rolling_ellipse {
 
 // Nodes x >= 0 of a symmetric rule, ascending, and their weights. The rule takes +x and -x with the
-// same weight, and a node 0 once.
+// same weight, and a node at 0 only once.
 struct GaussRule {
     int size;
     double nodes[64];

@@ -96,6 +96,11 @@ inline DoubleDouble operator/(const DoubleDouble& x, double y) {
     return quick_two_sum(quotient, (std::fma(-quotient, y, x.high) + x.low) / y);
 }
 
+inline DoubleDouble square_root(const DoubleDouble& x) {
+    const double root = std::sqrt(x.high);
+    return quick_two_sum(root, (std::fma(-root, root, x.high) + x.low) / (2 * root));
+}
+
 inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-17};
 
 // Largest angle [rad] that nearest_quarter accepts.

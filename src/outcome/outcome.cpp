@@ -10,6 +10,9 @@
 namespace rolling_ellipse {
 namespace {
 
+// What has an answer for a body with rolling resistance.
+constexpr const char* instead = "the events of simulate tell how the body moves with it";
+
 // A slip after rolling never starts inside the Painleve region. Where |F| exceeds mu N > 0, with
 // side s = -sign F, and as c = Gnn N + Gtn F holds in rolling, too, physics (50), the response of
 // sliding B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
@@ -125,6 +128,7 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
 }
 
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
+    require_no_resistance(scene, "an outcome", instead);
     const State start = initial_state(scene).state;
     const Continuation next = first_continuation(scene, start);
     if (next.mode == Mode::rest) return Outcome::rests;
@@ -159,6 +163,7 @@ double speed_to_the_tip(const Scene& scene) {
 }
 
 double required_friction(const Scene& scene) {
+    require_no_resistance(scene, "a required friction", instead);
     const double in_the_blow = sticking_friction(scene);
     if (in_the_blow == infinity) return infinity;
     Scene rough = scene;
@@ -173,6 +178,7 @@ double required_friction(const Scene& scene) {
 
 // The contact is h' ahead of the centre at height h, and |h'|/h is at most |a^2 - b^2|/(2 a b).
 double friction_to_rest(const Scene& scene) {
+    require_no_resistance(scene, "a required friction", instead);
     const double needed = std::tan(std::abs(scene.slope));
     const double steepest = std::abs(scene.axes().c2()) / (2 * scene.a * scene.b);
     return needed <= steepest ? needed : infinity;

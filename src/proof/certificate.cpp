@@ -117,9 +117,9 @@ std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& 
     return places;
 }
 
-// Appends the ends of the interval about the start on which the law holds. Where F vanishes, as in
-// the flat position and on the tip, a tiny friction suffices; the interval may then be too narrow
-// to be resolved by the roots of the squared form.
+// Appends the ends of the interval, around the start, on which the law holds. Where F vanishes, as
+// in the flat position and on the tip, a tiny coefficient of friction suffices; the interval may
+// then be too narrow for the roots of the squared form to resolve.
 void add_ends_about(std::vector<double>& places, double start, const Quarter& quarter) {
     const auto holds = [&](double place) { return quarter.holds(place); };
     const auto broken = [&](double place) { return !holds(place); };

@@ -59,7 +59,7 @@ std::string in_brackets(const Unit& unit);
 // Throws unless a position, velocity or impulse is finite and at most 1e50 in magnitude.
 void require_finite(const char* name, const Unit& unit, double value);
 
-// Throws unless a quantity of a kind ("length [m]") is positive and between 1e-30 and 1e30.
+// Throws unless a quantity of the given kind ("length [m]") is positive and between 1e-30 and 1e30.
 void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

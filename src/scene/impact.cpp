@@ -275,10 +275,8 @@ InitialState initial_state(const Scene& scene) {
         result.energy_lost = energy_lost(scene, free, state);
     }
     state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
-    if (state.mode == Mode::rolling && state.omega == 0 &&
-        is_equilibrium(at, std::tan(scene.slope))) {
-        state.mode = Mode::rest;
-    }
+    const bool stands = state.mode == Mode::rolling && state.omega == 0;
+    if (stands && is_held(scene, at)) state.mode = Mode::rest;
     return result;
 }
 

@@ -97,7 +97,14 @@ Scene level_scene(const Body& body, double friction) {
     scene.inertia = body.gyration2;
     scene.slope = 0.0;
     scene.friction = friction;
+    scene.rolling_resistance = 0.0;
     return scene;
+}
+
+bool is_held(const Scene& scene, const Geometry& at) {
+    const double incline = std::tan(scene.slope);
+    return is_within(scene.rolling_resistance, at.dh, -incline * at.h) ||
+           is_equilibrium(at, incline);
 }
 
 Units natural_units(const Body& body, double mass) {
@@ -151,6 +158,12 @@ void validate_friction(double friction) {
     }
 }
 
+void require_no_resistance(const Scene& scene, std::string_view who, std::string_view instead) {
+    if (scene.rolling_resistance == 0) return;
+    refuse("rolling_resistance", "0 for " + std::string(who) + " (" + std::string(instead) + ")",
+           scene.rolling_resistance);
+}
+
 void validate(const Impulse& impulse) {
     for (const auto& [name, number, unit] : impulse_fields) {
         require_finite(name, unit, impulse.*number);
@@ -175,6 +188,12 @@ void validate(const Scene& scene, Origin origin) {
     validate_friction(scene.friction);
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
         refuse("restitution", "between 0 and 1", scene.restitution);
+    }
+    const double most_lever = 0.5 * std::min(scene.a, scene.b);
+    if (!(scene.rolling_resistance >= 0 && scene.rolling_resistance <= most_lever)) {
+        refuse("rolling_resistance",
+               "a lever [m] from 0 to half the short semi-axis, " + text(most_lever),
+               scene.rolling_resistance);
     }
     const Body body = scene.body();
     validate_motion(body, scene.theta, scene.omega, most);
@@ -226,8 +245,7 @@ State state_before_impulse(const Scene& scene, const Geometry& at) {
     state.x_dot = is_rolling_speed(x_dot, rolling_x_dot) ? rolling_x_dot : x_dot;
     state.z_dot = nearly_equal(z_dot, rolling_z_dot) ? rolling_z_dot : z_dot;
     if (state.z_dot == rolling_z_dot) {
-        const bool at_rest =
-            state.omega == 0 && state.x_dot == 0 && is_equilibrium(at, std::tan(scene.slope));
+        const bool at_rest = state.omega == 0 && state.x_dot == 0 && is_held(scene, at);
         state.mode = at_rest                        ? Mode::rest
                      : state.x_dot == rolling_x_dot ? Mode::rolling
                                                     : Mode::sliding;

@@ -62,6 +62,7 @@ struct Scene {
     double slope;
     double friction;
     double restitution;
+    double rolling_resistance;  // lever of the normal force ahead of the contact [m]
     double theta;
     double omega;
     double x;
@@ -99,6 +100,7 @@ inline constexpr SceneField scene_fields[] = {
     {"slope", &Scene::slope, unit::angle},
     {"friction", &Scene::friction, unit::none},
     {"restitution", &Scene::restitution, unit::none},
+    {"rolling_resistance", &Scene::rolling_resistance, unit::length},
     {"theta", &Scene::theta, unit::angle},
     {"omega", &Scene::omega, unit::angular_velocity},
     {"x", &Scene::x, unit::length},
@@ -270,6 +272,23 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
 // by a motion may have gained energy down a slope, and may be about to hit the ground it touches.
 enum class Origin { typed, reached };
 
+// Whether the lever of rolling resistance balances a lever with these two terms, to within
+// rounding.
+inline bool is_within(double resistance, double one, double other) {
+    const double rounding = equal_ulps * epsilon * (std::abs(one) + std::abs(other));
+    return resistance > 0 && std::abs(one + other) <= resistance + rounding;
+}
+
+// Whether a body that neither slips nor turns is kept from turning: its centre lies above the patch
+// of contact, which extends by the lever of rolling resistance to both sides, physics (63).
+bool is_held(const Scene& scene, const Geometry& at);
+
+// The couple of rolling resistance opposes a rotation, or one that is about to begin. Its lever is
+// positive if the rotation is clockwise.
+inline double lever_against(const Scene& scene, double rotation) {
+    return scene.rolling_resistance > 0 ? std::copysign(scene.rolling_resistance, rotation) : 0.0;
+}
+
 // The largest energy, in units of m g times the long semi-axis.
 inline constexpr double most_energy = 1e12;
 
@@ -280,6 +299,8 @@ void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega, double most = most_energy);
 void validate_slope(double slope);
 void validate_friction(double friction);
+// Refuses rolling resistance where `who` has no answer for it; `instead` says what has one.
+void require_no_resistance(const Scene& scene, std::string_view who, std::string_view instead);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene, Origin origin = Origin::typed);
 

@@ -135,7 +135,8 @@ def test_no_two_arguments_of_a_scene_are_swapped() -> None:
     """Each argument has its own number, not the default, so that any mix-up is detected."""
     arguments: dict[str, Any] = {
         "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
-        "friction": 0.7, "restitution": 0.3, "theta": 0.2, "omega": 0.4, "x": 5.0, "z": 6.0,
+        "friction": 0.7, "restitution": 0.3, "rolling_resistance": 0.05, "theta": 0.2,
+        "omega": 0.4, "x": 5.0, "z": 6.0,
         "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(jx=0.1, jz=-0.2, dx=0.3, dz=0.4),
     }  # fmt: skip
     assert [*arguments, "unknown"] == list(inspect.signature(Scene).parameters)

@@ -120,8 +120,9 @@ def test_each_field_is_a_command_line_option_or_has_a_reason() -> None:
     assert {*SCENE_OPTIONS, *NOT_TYPED} == set(names(Scene))
     assert not set(SCENE_OPTIONS) & set(NOT_TYPED)
     for name in SCENE_OPTIONS:
-        scene = chosen_scene(motion_parser().parse_args([f"--{name}=0.75", "--press", "0", "0"]))
-        assert getattr(scene, name) == 0.75
+        option = f"--{name.replace('_', '-')}=0.25"
+        scene = chosen_scene(motion_parser().parse_args([option, "--press", "0", "0"]))
+        assert getattr(scene, name) == 0.25
 
 
 def test_settings_have_the_fields_of_the_core() -> None:

@@ -1,4 +1,5 @@
-"""The contact model agrees with 30 digits (reference/make_contact_reference.py).
+"""The contact model agrees with 30 digits (reference/make_contact_reference.py and, with rolling
+resistance, make_resistance_reference.py).
 
 Every event has a time and a state just after it, each with a unit: its change when every input
 changes by a relative 2.2e-16, the shift of the event itself included. The claim: events of the same
@@ -24,7 +25,8 @@ UNITS = 8  # claimed largest error, in units of the table
 
 
 class Motion(NamedTuple):
-    """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
+    """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and states,
+    of which the last one is its end."""
 
     name: str
     scene: Scene
@@ -46,8 +48,8 @@ class Motion(NamedTuple):
 
 
 def read_table() -> list[Motion]:
-    """The scenes of the table with their references, in its order."""
-    lines = table.rows("contact_reference")
+    """The scenes of the tables with their references, in their order."""
+    lines = [*table.rows("contact_reference"), *table.rows("resistance_reference")]
     return [
         Motion(
             name,
@@ -76,13 +78,17 @@ def shares(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
 def test_events_and_states_agree_with_a_30_digit_reference(motion: Motion) -> None:
     """Kinds of events agree, and times and states have the claimed accuracy. A jam at the start
     (end = 0) also ends a simulation of 1 s."""
-    end = float(motion.values[-1][0]) or 1.0
-    mine = simulate(motion.scene, end, model="contact", raise_on_failure=False)
-    assert [*(event.kind.name.lower() for event in mine.events), "state"] == motion.kinds
-    assert mine.status is (Status.JAMMED if "jam" in motion.kinds else Status.COMPLETED)
+    rows = zip(motion.kinds, motion.values, strict=True)
+    times = [float(values[0]) for kind, values in rows if kind == "state"]
+    jams = "jam" in motion.kinds
+    mine = simulate(motion.scene, 1.0 if jams else times, model="contact", raise_on_failure=False)
+    kinds = [event.kind.name.lower() for event in mine.events]
+    assert kinds == [kind for kind in motion.kinds if kind != "state"]
+    assert mine.status is (Status.JAMMED if jams else Status.COMPLETED)
     after = ((each.t, each.state_after) for each in mine.events)
-    values = [[t, *(getattr(state, name) for name in STATE)] for t, state in after]
-    values.append([float(getattr(mine, name)[-1]) for name in VALUES])
+    events = ([t, *(getattr(state, name) for name in STATE)] for t, state in after)
+    states = ([float(getattr(mine, name)[i]) for name in VALUES] for i in range(-len(times), 0))
+    values = [next(states if kind == "state" else events) for kind in motion.kinds]
     assert shares(motion, values).max() <= 1
 
 
@@ -95,8 +101,8 @@ def test_an_error_of_1e_11_is_detected() -> None:
         assert off[0].min() > 10, motion.name
 
 
-def test_the_table_covers_all_kinds_of_events_and_bodies() -> None:
-    """The table has all kinds of events, friction, restitution, slopes, round and thin bodies."""
+def test_the_tables_cover_all_kinds_of_events_and_bodies() -> None:
+    """The tables have all kinds of events, friction, restitution, slopes, round and thin bodies."""
     kinds = [kind for one in MOTIONS for kind in one.kinds]
     least = {"slip": 30, "stick": 30, "reverse": 8, "lift_off": 12, "impact": 80}
     least |= {"rest": 3, "jam": 4, "state": 60}
@@ -111,6 +117,7 @@ def test_the_table_covers_all_kinds_of_events_and_bodies() -> None:
     assert (slope > 0).sum() >= 10 and (slope < 0).sum() >= 10 and (slope == 0).sum() >= 20
     assert (ratio == 1).sum() >= 5 and (ratio < 0.9).sum() >= 15 and (ratio > 1.1).sum() >= 25
     assert (np.maximum(ratio, 1 / ratio) > 10).sum() >= 6
+    assert sum(each.rolling_resistance > 0 for each in scenes) >= 40
     assert sum(each.mass != 1 for each in scenes) >= 30
     assert sum(each.gravity != 9.81 for each in scenes) >= 20
     assert sum(each.inertia is not None for each in scenes) >= 20

@@ -34,7 +34,9 @@ import { gunzipSync } from "node:zlib";
 const core = await Core.of(gunzipSync(readFileSync(process.argv[2])));
 console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, times }) => {
   scene.friction ??= Infinity;
-  const found = core.ask(scene, times.at(-1)), alone = core.first(scene, times.at(-1));
+  const found = core.ask(scene, times.at(-1));
+  let alone;
+  try { alone = core.first(scene, times.at(-1)); } catch ({ message }) { alone = message; }
   return { ...found, alone, columns: core.samples(times) };
 })));
 """
@@ -47,7 +49,10 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
     if NODE is None:
         pytest.skip("there is no node (apt-get install nodejs)")
     how, times = replace(DEFAULTS, max_steps=20_000, max_events=200), np.linspace(0.0, 1.5, 31)
-    scenes = [*random_scenes(240, 35), *random_scenes(60, 36, struck=1.0)]
+    scenes = [*random_scenes(220, 35), *random_scenes(60, 36, struck=1.0)]
+    scenes += [
+        each.replace(rolling_resistance=min(each.a, each.b) / 5) for each in random_scenes(20, 37)
+    ]
     motions = [rl.Trajectory.computed(scene, how, times) for scene in scenes]
     (tmp_path / "core.mjs").write_text(packaged("core.js") + DRIVER, encoding="utf-8")
     asked = [
@@ -70,7 +75,9 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
         kinds |= {kind for kind, _ in events}
         first, headline, reasons = _core.describe(motion.scene.core, motion._solution)
         assert found["first"] == ("IN_THE_AIR" if first is None else first.name)
-        assert found["alone"] == found["first"], motion.scene
+        refused = "rolling_resistance must be 0 for an outcome"
+        alone = found["first"] if not motion.scene.rolling_resistance else ("IN_THE_AIR", refused)
+        assert found["alone"].partition(" (")[0] in alone, motion.scene
         sentences = headline + reasons
         keys |= {key for key, _ in sentences}
         for (key, numbers), (said, given) in zip(
@@ -86,7 +93,7 @@ def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
 
 def test_the_wasm_file_is_small_and_matches_its_script(tmp_path: Path) -> None:
     known = gzip.decompress(WASM.read_bytes())
-    assert len(known) <= 0.8e6 and WASM.stat().st_size <= 0.3e6
+    assert len(known) <= 0.82e6 and WASM.stat().st_size <= 0.31e6
     if EMCC is None or b" 3.1.6 " not in subprocess.check_output([EMCC, "--version"]):
         pytest.skip(
             "there is no emscripten 3.1.6, which made the file (apt-get install emscripten)"

@@ -95,7 +95,7 @@ PLACES = {
     "a field of Scene": r"\bScene \w+\{\}|level_scene\(",
 }
 UNTESTED = {
-    "rolling resistance", "another shape than the ellipse", "a way out of Python",
+    "another law of rolling resistance", "another shape than the ellipse", "a way out of Python",
     "a word of a page", "a sentence of a reason", "a stored quantity",
 }  # fmt: skip
 

@@ -30,6 +30,7 @@ def run(**options: Any) -> Callable[[Path], Any]:
     return lambda _: rl.simulate(**{**USUAL, **options})
 
 
+RESISTED = Scene(2.0, 1.0, theta=0.3, friction=1.0, rolling_resistance=0.02)
 rolling = partial(rl.simulate, **USUAL, model="rolling")
 multipliers = partial(rl.simulate, **USUAL, model="multipliers")
 
@@ -40,6 +41,7 @@ REFUSALS: list[Row] = [
         a=[*NOT_POSITIVE, 1e40], b=NOT_POSITIVE, mass=NOT_POSITIVE, gravity=NOT_POSITIVE,
         inertia=[*NOT_POSITIVE, 1e40, 3.6e-6, 4.4e6], slope=[math.pi / 2, -2.0, 30.0, *NOT_FINITE],
         friction=[-0.1, -1e-300, -INF, NAN, 1e7], restitution=[-0.1, 1.0000001, *NOT_FINITE],
+        rolling_resistance=[-1e-300, 0.5000001, *NOT_FINITE, "1 mm"],
         theta=[*NOT_FINITE, 1e51], omega=[*NOT_FINITE, 1e51, 1e8], x=[*NOT_FINITE, 1e51],
         x_dot=[*NOT_FINITE, 1e8], z=[*NOT_FINITE, 1e13, 0.5, 0.9], z_dot=[*NOT_FINITE, -0.1, 1e8],
         impulse=[1, 48.0, (0.0, -48.0), "press", Impulse(jx=1e9), Impulse(jx=[1.0, 2.0]),
@@ -62,6 +64,18 @@ REFUSALS: list[Row] = [
     *wrong(AIR.to_mjcf, {}, timestep=NOT_POSITIVE, contact_steps=NOT_POSITIVE),
     ("restitution", lambda _: AIR.replace(restitution=0.5).to_mjcf()),
     *(("friction", lambda _, to=to: to()) for to in (AIR.to_mjcf, AIR.to_sdf)),
+    # bodies with rolling resistance
+    *(("rolling_resistance", lambda _, verb=verb: verb(RESISTED)) for verb in (
+        Scene.to_sdf, rl.period, rl.outcome, rl.required_friction,
+        partial(rl.required_friction, to="rest"), partial(rl.blow_to, distance=1.0),
+        partial(rl.blow_to, distance=1.0, omega=3.0), partial(rl.work_precision, t_end=1.0),
+        lambda scene: rl.rolling_equation(scene)(0.0, [0.1, 0.2]),
+        lambda scene: rl.outcome(scene, Impulse.press(1.0, [0.5, 0.6])),
+    )),
+    *(("rolling_resistance", run(scene=RESISTED, **how)) for how in (
+        {"model": "rolling"}, {"model": "multipliers"}, {"method": "dopri5"})),
+    ("wrt", lambda _: rolling(scene=Scene(2.0, 1.0, omega=5.4, friction=1.0)).sensitivity(
+        "rolling_resistance", side=1)),
     # times and settings
     *wrong(
         rl.simulate, USUAL,

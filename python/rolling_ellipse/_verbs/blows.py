@@ -66,7 +66,8 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     Raises
     ------
     ValueError
-        If a blow misses the body, or is stronger than a Scene accepts.
+        If a blow misses the body, or is stronger than a Scene accepts, or the scene has rolling
+        resistance: the events of `simulate` then tell what happens.
     """
     scene = require_scene(scene)
     if impulse is None:
@@ -179,6 +180,9 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         circle.
     """
     bare = require_scene(scene).replace(impulse=None)
+    _core.require_no_resistance(
+        bare.core, "blow_to", "the events of simulate tell what a blow does"
+    )
     distance = number("distance", distance)
     if bare.initial_state.mode is Mode.FLIGHT:
         raise ValueError("scene must touch the ground: no contact holds a body in the air")

@@ -22,7 +22,8 @@ class Certificate(FieldsOnly, Listed):
     Attributes
     ----------
     validity : Validity
-        VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll).
+        VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll,
+        or a scene with rolling resistance).
     smallest_normal_force : float or None
         Least normal force [N] over the whole motion, in both directions of time. On a slope it is
         -inf except for a circle, a body at rest and one that rocks: other bodies turn ever faster

@@ -134,7 +134,7 @@ def period(scene: Scene) -> float:
     Raises
     ------
     ValueError
-        If it does not.
+        If it does not, as with rolling resistance.
     """
     return _core.period(require_scene(scene).core)
 

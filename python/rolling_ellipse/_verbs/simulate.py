@@ -55,8 +55,9 @@ def simulate(
         "rolling" is rolling without slip; the certificate (see `certify`) states how long it is
         valid. "contact" is the whole motion: the body rolls, slides, flies, hits the ground and
         comes to rest, on segments joined by ``events``. No segment is integrated by steps: slides
-        are power series in time [9]_ that end at proved first roots. "auto" is "rolling" if the
-        certificate proves it, else "contact"; if a method is given it is "rolling".
+        are power series in time [9]_ that end at proved first roots, and so is rolling with
+        resistance, which no other model has. "auto" is "rolling" if the certificate proves it, else
+        "contact"; if a method is given it is "rolling".
         "multipliers" is rolling in the report's five coordinates with four constraints and their
         Lagrange multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau"
         with the stabilization "ggl".

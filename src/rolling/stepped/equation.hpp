@@ -35,11 +35,13 @@ class RollingEquation {
     static constexpr int size = 2;
 
     RollingEquation(const Body& body, double slope)
+        : RollingEquation(body, ground_gravity(body.gravity, slope)) {}
+    RollingEquation(const Body& body, const GroundGravity& gravity)
         : axes_(body.axes()),
           turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
                   {square(body.b), square(body.a), (body.b - body.a) * (body.b + body.a)}},
           gyration2_(body.gyration2),
-          gravity_(ground_gravity(body.gravity, slope)),
+          gravity_(gravity),
           long_axis_(std::max(body.a, body.b)) {}
 
     double acceleration(double sin_theta, double cos_theta, double omega) const {
@@ -96,6 +98,19 @@ class RollingEquation {
         return {mass * normal, mass * friction};
     }
 
+    // With a normal force that acts `lever` ahead of the contact. The couple changes the angular
+    // acceleration by -s, s = lever N/(m M), where N is the force without it and M = D + lever h':
+    // physics (64).
+    double acceleration(const Geometry& at, double omega, double lever) const {
+        const double slowing = lever * force(1.0, at, omega).normal / inertia(at, lever);
+        return acceleration(at.sin, at.cos, omega) - slowing;
+    }
+    ContactForce force(double mass, const Geometry& at, double omega, double lever) const {
+        const auto [normal, friction] = centre(at, omega).force_per_mass;
+        const double slowing = lever * normal / inertia(at, lever);
+        return {mass * (normal - at.dh * slowing), mass * (friction - at.h * slowing)};
+    }
+
     bool is_level() const { return gravity_.along == 0; }
     Vector<2> mass() const { return Vector<2>::Ones(); }
     Vector<2> typical() const {
@@ -103,6 +118,10 @@ class RollingEquation {
     }
 
   private:
+    double inertia(const Geometry& at, double lever) const {
+        return inertia_about_contact(gyration2_, at) + lever * at.dh;
+    }
+
     CentreOfRolling<double> centre(const Geometry& at, double omega) const {
         return centre_of_rolling(gyration2_, gravity_.into, gravity_.along, at.h, at.dh, at.ddh,
                                  bend_of_height(axes_, at), omega * omega);
@@ -135,9 +154,18 @@ class RollingEquation {
     double long_axis_;
 };
 
-// The contact force of a rolling body.
+// The lever of the normal force while the body rolls. From rest the body turns the way it falls.
+inline double rolling_lever(const Scene& scene, const Geometry& at, double omega) {
+    return lever_against(scene, omega == 0 ? at.h * std::tan(scene.slope) - at.dh : omega);
+}
+
+// The contact force of a rolling body, or of one at rest.
 inline ContactForce rolling_force(const Scene& scene, const Geometry& at, double omega) {
-    return RollingEquation(scene.body(), scene.slope).force(scene.mass, at, omega);
+    const RollingEquation rolling(scene.body(), scene.slope);
+    if (scene.rolling_resistance == 0) return rolling.force(scene.mass, at, omega);
+    const auto [into, along] = scene.ground_gravity();
+    if (omega == 0 && is_held(scene, at)) return {scene.mass * into, -scene.mass * along};
+    return rolling.force(scene.mass, at, omega, rolling_lever(scene, at, omega));
 }
 
 }  // namespace rolling_ellipse

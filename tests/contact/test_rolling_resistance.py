@@ -1,0 +1,279 @@
+"""Bodies whose normal force acts a lever ahead of the contact: its couple opposes the rotation.
+
+The laws are checked against closed forms of a circle, against all modes that a contact could have,
+and against the work of the couple. test_contact_reference.py judges whole motions in 30 digits.
+"""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from oracles.geometry import support
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Mode, Scene, Status, certify, simulate
+from rolling_ellipse._core import Validity
+
+G = 9.81
+ROCKING = Scene(2.0, 1.0, theta=0.5, friction=1.0, rolling_resistance=0.01)
+
+
+def kinds(scene: Scene, end: float) -> list[str]:
+    return [event.kind.name for event in simulate(scene, end, raise_on_failure=False).events]
+
+
+# ---------------------------------------------------------------------------- closed forms
+
+
+@pytest.mark.parametrize("lever", [1e-6, 0.02, 0.5])
+@pytest.mark.parametrize("omega", [-3.0, 0.1])
+def test_a_disc_slows_down_evenly_to_rest(lever: float, omega: float) -> None:
+    disc = Scene(1.0, 1.0, omega=omega, friction=1.0, rolling_resistance=lever)
+    slowing = lever * G / 1.5  # delta g/(k^2 + R^2)
+    stop = abs(omega) / slowing
+    motion = simulate(disc, [0.4 * stop, 2 * stop])
+    (rest,) = motion.events
+    assert rest.kind is EventKind.REST
+    assert rest.t == pytest.approx(stop, rel=8 * EPS)
+    assert rest.theta == pytest.approx(omega * stop / 2, rel=16 * EPS)
+    assert motion.omega == pytest.approx([0.6 * omega, 0.0], rel=8 * EPS)
+    assert motion.mode.tolist() == [Mode.ROLLING, Mode.REST]
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.6])
+def test_a_disc_rolls_down_a_slope_that_its_lever_does_not_hold(slope: float) -> None:
+    lever = 0.9 * math.tan(slope) if slope < 0.4 else 0.3
+    disc = Scene(1.0, 1.0, slope=slope, friction=2.0, rolling_resistance=lever)
+    held = disc.replace(rolling_resistance=min(0.5, 1.1 * math.tan(slope)))
+    faster = G * (math.sin(slope) - lever * math.cos(slope)) / 1.5
+    assert simulate(disc, 2.0).theta[-1] == pytest.approx(2 * faster, rel=16 * EPS)
+    assert (held.initial_state.mode is Mode.REST) == (math.tan(slope) < 0.5)
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.2, 3.0])
+def test_a_sliding_disc_comes_to_rest_at_a_time_without_friction_in_it(friction: float) -> None:
+    """k^2 omega + R x' falls at the rate delta g whether the disc slides or rolls."""
+    disc = Scene(1.0, 1.0, x_dot=3.0, omega=1.0, friction=friction, rolling_resistance=0.02)
+    slide, rest = simulate(disc, 60.0).events
+    assert (slide.kind, rest.kind) == (EventKind.STICK, EventKind.REST)
+    assert rest.t == pytest.approx((0.5 * 1.0 + 3.0) / (0.02 * G), rel=16 * EPS)
+
+
+def test_a_body_pushed_along_slides_without_turning() -> None:
+    """The couple holds it as long as friction pulls within its lever: mu h <= delta."""
+    pushed = Scene(2.0, 1.0, x_dot=1.0, friction=0.01, rolling_resistance=0.02)
+    motion = simulate(pushed, [5.0, 20.0])
+    stop = 1 / (0.01 * G)
+    (rest,) = motion.events
+    assert rest.kind is EventKind.REST
+    assert rest.t == pytest.approx(stop, rel=8 * EPS)
+    assert rest.x == pytest.approx(stop / 2, rel=8 * EPS)
+    assert not motion.theta.any()
+    assert not motion.omega.any()
+    turned = simulate(pushed.replace(friction=0.021), 1.0)
+    assert turned.theta[-1] > 0
+
+
+# ---------------------------------------------------------------------------- modes of a contact
+
+
+class Answer(NamedTuple):
+    """A mode that the laws allow, with the forces per mass and the angular acceleration."""
+
+    mode: Mode
+    normal: float
+    friction: float
+    spin_up: float
+
+
+def allowed(scene: Scene, slip: float) -> list[Answer]:
+    """All modes whose forces obey the laws: each side of slip and rotation, or none, is tried."""
+    h, dh, ddh = (float(each) for each in support(scene.theta, scene.a, scene.b))
+    mu, lever, k2, omega = scene.friction, scene.rolling_resistance, scene.gyration2, scene.omega
+    into, along = G * math.cos(scene.slope), G * math.sin(scene.slope)
+    found = []
+    slips = [math.copysign(1, slip)] if slip else [-1, 0, 1]
+    turns = [math.copysign(1, omega)] if omega else [-1, 0, 1]
+    for side, turn in itertools.product(slips, turns):
+        # N, F, omega' and the couple C, from four linear equations
+        rows = [
+            [1, 0, -dh, 0],
+            [dh, h, k2, 1],
+            [mu * side, 1, 0, 0] if side else [0, 1, -h, 0],
+            [lever * turn, 0, 0, -1] if turn else [0, 0, 1, 0],
+        ]
+        right = [into + ddh * omega**2, 0, 0 if side else dh * omega**2 - along, 0]
+        normal, friction, spin_up, couple = np.linalg.solve(rows, right).tolist()
+        slip_up = friction + along - h * spin_up - dh * omega**2
+        if normal <= 0 or (side and not slip and side * slip_up <= 0):
+            continue
+        if not side and abs(friction) > mu * normal:
+            continue
+        if (turn and not omega and turn * spin_up <= 0) or abs(couple) > lever * normal * 1.0001:
+            continue
+        rests = not side and not turn
+        mode = Mode.REST if rests else Mode.SLIDING if side else Mode.ROLLING
+        found.append(Answer(mode, normal, friction, spin_up))
+    return found
+
+
+def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
+    """1500 states, half of them without rotation and half without slip, none in flight."""
+    random = np.random.default_rng(7)
+    taken = {mode: 0 for mode in Mode}
+    for _ in range(1500):
+        a, b = 10 ** random.uniform(-0.5, 0.5, 2)
+        lever = min(a, b) / 2 * random.choice([random.uniform(), 10 ** random.uniform(-4, 0)])
+        scene = Scene(
+            a, b, theta=random.uniform(-2, 2), friction=10 ** random.uniform(-2, 0.3),
+            omega=random.choice([0, random.normal()]), slope=random.choice([0, 0.1, -0.3]),
+            inertia=(a * a + b * b) * random.uniform(0.02, 0.3), rolling_resistance=lever,
+        )  # fmt: skip
+        h, _, ddh = (float(each) for each in support(scene.theta, a, b))
+        slip = random.choice([0, random.normal()])
+        if slip:
+            scene = scene.replace(x_dot=h * scene.omega + slip)
+        c = G * math.cos(scene.slope) + ddh * scene.omega**2
+        if c < 0.01:
+            continue
+        answers = allowed(scene, slip)
+        motion = simulate(scene, [0.0, 1e-9], raise_on_failure=False)
+        if not answers:
+            assert motion.status is Status.JAMMED
+            continue
+        (answer,) = answers
+        assert Mode(motion.mode[0]) is answer.mode
+        taken[answer.mode] += 1
+        # Terms of the equations cancel where B or M is small; both are at least 1e-4 here
+        size = G + abs(answer.normal) + abs(answer.friction) + abs(answer.spin_up) * max(a, b)
+        found = motion.normal_force[0], motion.friction_force[0]
+        assert found == pytest.approx((answer.normal, answer.friction), abs=1e-9 * size)
+        assert motion.omega_dot[0] == pytest.approx(answer.spin_up, abs=1e-9 * size / min(a, b))
+    assert min(taken[mode] for mode in (Mode.REST, Mode.ROLLING, Mode.SLIDING)) > 20
+
+
+@pytest.mark.parametrize(
+    ("friction", "lever", "theta", "inertia"),
+    [(0.0, 0.5, -0.08463, 0.01), (1.33, 0.05, 0.62, None)],
+)
+def test_a_lever_alone_can_jam_a_light_body(
+    friction: float, lever: float, theta: float, inertia: float | None
+) -> None:
+    """k^2 + h'(h' - s mu h + s' delta) <= 0, with delta > 2 k where there is no friction."""
+    scene = Scene(
+        2.0, 1.0, theta=theta, omega=1.0 if friction == 0 else -1.0, friction=friction,
+        x_dot=0.0 if friction == 0 else 5.0, inertia=inertia, rolling_resistance=lever,
+    )  # fmt: skip
+    h, dh, _ = (float(each) for each in support(theta, 2.0, 1.0))
+    turn = math.copysign(lever, scene.omega)
+    stiffness = scene.gyration2 + dh * (dh - friction * h + turn)
+    motion = simulate(scene, 0.01, raise_on_failure=False)
+    assert (motion.status is Status.JAMMED) == (stiffness <= 0)
+    assert (stiffness <= 0) == (friction == 0)
+
+
+# ---------------------------------------------------------------------------- rest and loss
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.08, -0.2])
+def test_a_body_rests_where_its_centre_is_above_the_patch_of_contact(slope: float) -> None:
+    random = np.random.default_rng(3)
+    for theta in random.uniform(-math.pi, math.pi, 200):
+        scene = ROCKING.replace(theta=float(theta), slope=slope, rolling_resistance=0.2)
+        h, dh, _ = (float(each) for each in support(theta, 2.0, 1.0))
+        offset = abs(dh - h * math.tan(slope))
+        if abs(offset - 0.2) < 1e-9:
+            continue
+        assert (scene.initial_state.mode is Mode.REST) == (offset < 0.2)
+        assert (simulate(scene, 1.0).mode[-1] == Mode.REST) >= (offset < 0.2)
+
+
+@pytest.mark.parametrize("friction", [1.0, math.inf])
+def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -> None:
+    """delta times the integral of N |omega|, by Gauss's rule between the turns."""
+    scene = ROCKING.replace(friction=friction, omega=1.5, rolling_resistance=0.03)
+    motion = simulate(scene, 9.0)
+    assert not motion.events
+    ends = [0.0, *motion.when(omega=0.0), 9.0]
+    nodes, weights = np.polynomial.legendre.leggauss(160)
+    work = 0.0
+    for begin, end in itertools.pairwise(ends):
+        at = motion.sol(begin + (nodes + 1) / 2 * (end - begin))
+        work += 0.03 * (end - begin) / 2 * float(weights @ (at.normal_force * np.abs(at.omega)))
+    lost = motion.energy[0] - motion.energy[-1]
+    # 160 nodes leave less than roundings of a half swing, which are those of m g h
+    assert lost == pytest.approx(work, abs=64 * EPS * motion.energy[0] * len(ends))
+
+
+def test_energy_never_grows_and_a_rocking_body_ends_askew() -> None:
+    motion = simulate(ROCKING, np.linspace(0.0, 70.0, 7001))
+    (rest,) = motion.events
+    assert rest.kind is EventKind.REST
+    assert 0 < abs(float(support(rest.theta, 2.0, 1.0).slope)) <= 0.01
+    assert np.diff(motion.energy).max() <= 16 * EPS * motion.energy[0]
+    assert motion.reason.endswith("askew.")
+
+
+def test_a_small_lever_changes_the_motion_in_proportion() -> None:
+    """The difference from the exact flow is linear in the lever: halving it halves the change."""
+    free = simulate(ROCKING.replace(rolling_resistance=0.0), [3.0]).theta[0]
+    change = [
+        simulate(ROCKING.replace(rolling_resistance=lever), [3.0]).theta[0] - free
+        for lever in (1e-6, 5e-7, 1e-12)
+    ]
+    assert change[0] / change[1] == pytest.approx(2, rel=1e-5)  # quadratic terms are 1e-6 of it
+    assert change[2] == pytest.approx(change[0] * 1e-6, abs=32 * EPS)
+
+
+def test_there_is_no_couple_in_the_air_and_in_impacts() -> None:
+    """Bits of a flight and of the impact that ends it do not change with the lever."""
+    thrown = Scene(2.0, 1.0, theta=0.4, z=3.0, omega=2.0, friction=0.3, restitution=0.6)
+    free, resisted = (
+        simulate(thrown.replace(rolling_resistance=lever), 1.2) for lever in (0.0, 0.4)
+    )
+    assert [event.t for event in free.events] == [event.t for event in resisted.events]
+    assert free.events[0].state_after == resisted.events[0].state_after
+    assert free.theta[-1] == resisted.theta[-1]
+
+
+# ---------------------------------------------------------------------------- turns and restarts
+
+
+def test_friction_that_holds_uphill_fails_at_the_turn_downhill() -> None:
+    """F jumps with the couple: a disc needs 0.0698 before its turn, and 0.1364 after it."""
+    disc = Scene(1.0, 1.0, slope=0.3, omega=-1.0, friction=0.1, rolling_resistance=0.05)
+    (slip,) = simulate(disc, 2.0).events
+    stop = 1.5 / (G * (math.sin(0.3) + 0.05 * math.cos(0.3)))
+    assert slip.kind is EventKind.SLIP
+    assert slip.t == pytest.approx(stop, rel=8 * EPS)
+    held = disc.replace(rolling_resistance=0.35, friction=0.2)
+    motion = simulate(held, 2.0)
+    assert [event.kind for event in motion.events] == [EventKind.SLIP]
+    assert motion.omega[-1] == 0
+    assert motion.mode[-1] == Mode.SLIDING
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ROCKING,
+        ROCKING.replace(slope=0.1, rolling_resistance=0.05, omega=1.0),
+        Scene(2.0, 1.0, theta=0.4, omega=-2.0, x_dot=2.0, friction=0.3, rolling_resistance=0.05),
+        Scene(0.3, 1.0, theta=1.0, omega=0.5, friction=0.8, rolling_resistance=0.01),
+    ],
+)
+def test_a_state_of_the_motion_starts_the_rest_of_it(scene: Scene) -> None:
+    whole = simulate(scene, np.linspace(0.0, 6.0, 61))
+    turns = whole._solution.turns.tolist()
+    for begin in (0.4, 1.3, 2.9, *turns[:3], *(event.t for event in whole.events)):
+        rest = simulate(whole.scene_at(begin), [6.0 - begin])
+        later = [event.kind for event in whole.events if event.t > begin]
+        assert [event.kind for event in rest.events] == later
+        # A shift of the start by roundings grows no more than e^(2 t) between 0.4 and 6 s
+        assert rest.theta[-1] == pytest.approx(whole.theta[-1], abs=1e5 * EPS)
+
+
+def test_certificates_prove_nothing_with_a_lever() -> None:
+    assert certify(ROCKING).validity is Validity.NO_PROOF
+    assert "resistance" in certify(ROCKING).reason
