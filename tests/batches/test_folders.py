@@ -141,11 +141,11 @@ def test_a_folder_from_another_version_is_rejected(
         simulate_many(GRID, TIMES, out=out)
     list(load_many(out))  # numbers of another version can be read
     monkeypatch.setattr(folders, "_SCHEMA", 99)
-    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 2"):
+    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 3"):
         load_many(out)
 
 
-@pytest.mark.parametrize("schema", [1, 3])
+@pytest.mark.parametrize("schema", [1, 4])
 def test_a_folder_of_another_schema_is_refused_as_such(schema: int, out: Path) -> None:
     """Whatever names its request has besides."""
     simulate_many(GRID, TIMES, out=out)
@@ -153,10 +153,10 @@ def test_a_folder_of_another_schema_is_refused_as_such(schema: int, out: Path) -
     about = about | {"schema": schema, "colour": 1}
     (out / "request.npz").write_bytes(put_together(about, arrays | {"psi": TIMES}))
     with pytest.raises(
-        ValueError, match=rf"^path must be a folder of schema 2, got .* of {schema}"
+        ValueError, match=rf"^path must be a folder of schema 3, got .* of {schema}"
     ):
         load_many(out)
-    with pytest.raises(ValueError, match=rf"^out must be .* with the schema {schema}, not 2$"):
+    with pytest.raises(ValueError, match=rf"^out must be .* with the schema {schema}, not 3$"):
         simulate_many(GRID, TIMES, out=out)
 
 

@@ -140,8 +140,9 @@ REFUSALS: list[Row] = [
     ("path", changed(MOTION, lambda about, _: about.__delitem__("status"))),
     ("path", changed(CONTACT, lambda about, _: about["events"].reverse())),
     *facts(
-        more=[1], schema=[3, 5], message=[1], reason=[1], status=["FINISHED"], method=["auto", "x"],
-        model=["falling", "multipliers"], span=[1, 0.01], t_end=[-1.0, 9.0], valid_until=[-1.0],
+        more=[1], schema=[3, 4, 6], message=[1], reason=[1], status=["FINISHED"],
+        method=["auto", "x"], model=["falling", "multipliers"], span=[1, 0.01], t_end=[-1.0, 9.0],
+        valid_until=[-1.0],
         stats=[{"more": 1}, {"segments": -1}, {"steps": 1.5}],
         events=[3, [[0.1, "SLIP"]], [[0.1, "FALL", HERE, HERE]], [[9.0, "SLIP", HERE, HERE]],
                 [[0.1, "SLIP", [0.0] * 6, [0.0] * 8]], [[0.1, "SLIP", HERE, NOWHERE]],

@@ -27,7 +27,8 @@ from .atomic import replacing
 
 _Made = TypeVar("_Made", bound=Trajectory)
 
-_SCHEMA = 4
+_SCHEMA = 5
+_WITHOUT_RESISTANCE = 4  # schema whose scenes have no rolling resistance
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
 _OF_MODELS = {"contact": ContactSamples._fields, "multipliers": ("coordinates",)}
@@ -77,8 +78,9 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
-    if (schema := strict.npz_schema(content)) != _SCHEMA:
-        raise ValueError(f"it is of schema {schema!r}, and this version reads {_SCHEMA}")
+    if (schema := strict.npz_schema(content)) not in (_SCHEMA, _WITHOUT_RESISTANCE):
+        known = f"{_WITHOUT_RESISTANCE} and {_SCHEMA}"
+        raise ValueError(f"it is of schema {schema!r}, and this version reads {known}")
     arrays = strict.npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
     return _restored(kind, str(arrays.pop("about")), arrays)
 
@@ -109,6 +111,8 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     Thus nothing is converted, filled in or left out, even where the classes would accept that.
     """
     about = strict.parsed("about", text)
+    if about["schema"] == _WITHOUT_RESISTANCE:
+        about |= {"schema": _SCHEMA, "scene": strict.with_resistance(about["scene"])}
     strict.require_names("about", about, _ABOUT)
     of_model = _OF_MODELS.get(about["model"], ())
     start = {"start"} & set(arrays) if "coordinates" in of_model else ()

@@ -85,7 +85,7 @@ def parsed(name: str, text: str) -> Any:
 
 
 def in_lines(value: Any, depth: int) -> str:
-    """Return JSON text with a line for each value down to a nesting depth; deeper ones share it.
+    """Return JSON text with a line for each value down to a depth; deeper values share a line.
 
     At depth 1 each record of a list has its own line.
     """
@@ -104,6 +104,12 @@ def require_names(what: str, values: Any, names: Iterable[str]) -> None:
         raise ValueError(f"{what} must hold names and values, got {values!r}")
     for name in sorted(required ^ set(values)):
         raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
+
+
+def with_resistance(scene: Any) -> Any:
+    """Return the values of a scene of an older schema, whose bodies roll without resistance."""
+    require_names("scene", scene, {*field_names(Scene)} - {"rolling_resistance"})
+    return scene | {"rolling_resistance": 0.0}
 
 
 def scene_of(values: Any) -> Scene:

@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-_SCHEMA = 2
+_SCHEMA = 3
+_WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _SAME, _SAME_SCENES = "a folder of the same request", "a folder of the same scenes"
 _REQUEST, _END = "request.npz", "end.json"
 _GRID = ("axes", "shape")  # of the scenes, in `end.json`; older folders lack them
@@ -226,7 +227,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     if not (folder / _REQUEST).exists():
         os.listdir(folder)  # raises OSError if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
-    if (schema := _schema_in(folder)) != _SCHEMA:
+    if (schema := _schema_in(folder)) not in (_SCHEMA, _WITHOUT_RESISTANCE):
         raise ValueError(
             f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {schema!r}"
         )
@@ -268,9 +269,12 @@ def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any
 def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
     """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
     tables = strict.npz_arrays(content, {"request", "scenes", *results.TABLES})
-    scenes = tables["scenes"]
+    scenes = stored = tables["scenes"]
+    if scenes.ndim == 2 and scenes.shape[1] == len(_core.COLUMNS["scenes"]) - 1:
+        at = _core.COLUMNS["scenes"].index("rolling_resistance")
+        scenes = tables["scenes"] = np.insert(stored, at, 0.0, axis=1)
     results.require_tables(scenes, tables, n, samples)
-    if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
+    if name != _name(int(name[:8]), str(tables.pop("request", "")), stored):
         raise ValueError("request and scenes must match the digests in the name of the file")
     if (refused := _core.first_refused(scenes, reached=True)) is not None:
         raise ValueError(f"scenes must be valid, got row {refused[0]}: {refused[1]}")

@@ -241,7 +241,8 @@ def work_precision(
     The diagrams are those of E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential
     Equations I, 2nd ed., Springer 1993, II.10.
     """
-    require_scene(scene)
+    resistless = "it compares ways to roll without it"
+    _core.require_no_resistance(require_scene(scene).core, "work_precision", resistless)
     ends = _numbers("t_end", t_end, "a time or increasing times [s]")
     if any(after <= before for before, after in pairwise(ends)):
         raise ValueError(f"t_end must be a time or increasing times [s], got {shown(t_end)}")

@@ -15,7 +15,7 @@ from ..._ask.check import choice, file_name, number, shown
 from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export.atomic import replacing
-from ..._motion.export.strict import OBJECT, in_lines, parsed, restored
+from ..._motion.export.strict import OBJECT, in_lines, parsed, restored, with_resistance
 from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, read
 
 if TYPE_CHECKING:
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
     from ..._pictures.work_precision import WorkPrecisionChart
 
-_SCHEMA = 2
+_SCHEMA = 3
+_WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _RUNS = 2  # depth of the runs in a file, one per line
 _DECADES = tuple(10.0**-k for k in range(2, 15))
 _POOR = 1e-2  # a contender whose answers all have larger errors is in the table of gaps
@@ -330,6 +331,8 @@ class WorkPrecision:
     def _restored(cls, content: bytes) -> WorkPrecision:
         """Return the race stored in a text, if `save` would write the same text for it."""
         about = parsed("the file", content.decode("utf-8"))
+        if about.get("schema") == _WITHOUT_RESISTANCE:
+            about |= {"schema": _SCHEMA, "scene": with_resistance(about["scene"])}
         if (schema := about.get("schema")) != _SCHEMA:
             raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
         race = read(cls, {name: about[name] for name in about.keys() - {"schema"}})
