@@ -118,6 +118,7 @@ class SceneGrid:
         entries = {_entry(name): values for name, values in self._arrays.items()} | beside
         self.shape = common_shape(entries, slice(None))
         self.total = int(np.prod(self.shape, dtype=object))
+        self._columns = [self._column(name) for name in (*NAMES, *BLOW)]
         if self.total == 0:
             self._require_arguments()
         for chunk in self.chunks(1):
@@ -144,16 +145,16 @@ class SceneGrid:
                 return
             yield Chunk(index, begin, self.table(begin, size))
 
+    def _column(self, name: str) -> FloatArray:
+        values = np.asarray(self._arrays.get(name, _DEFAULTS.get(name)), float)  # None becomes NaN
+        return values if values.size == 1 else np.broadcast_to(values, self.shape)
+
     def table(self, begin: int = 0, size: int | None = None) -> FloatArray:
         """Return the scenes from an index on as a table with one row of numbers each."""
         end = self.total if size is None else min(begin + size, self.total)
         table = np.empty((end - begin, WIDTH))
-        for column, name in enumerate((*NAMES, *BLOW)):
-            values: Any = self._arrays.get(name, _DEFAULTS.get(name))
-            if np.size(values) == 1:
-                table[:, column] = values  # None becomes NaN
-            else:
-                table[:, column] = np.broadcast_to(values, self.shape).flat[begin:end]
+        for column, values in enumerate(self._columns):
+            table[:, column] = values if values.size == 1 else values.flat[begin:end]
         return table
 
     def _require_arguments(self) -> None:

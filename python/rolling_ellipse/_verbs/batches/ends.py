@@ -166,7 +166,7 @@ def ends(
             if isinstance(part, WorkerError):
                 raise part
             tables.append(part)
-            for k in np.flatnonzero(~np.isin(part["codes"][-1], HELD)).tolist():
+            for k in (k for k, code in enumerate(part["codes"][-1].tolist()) if code not in HELD):
                 place = chunk.begin + k
                 failed[place] = _error(chunk.scenes[k], request, place)
             rows += [chunk.table] if shape is None else []
