@@ -359,6 +359,42 @@ def test_derivatives_hold_at_any_time_at_bounds_and_with_steps() -> None:
         assert 1e-10 < true < 10 * rough.error[0]
 
 
+RESISTED = Scene(2.0, 1.0, theta=0.4, friction=1.0, rolling_resistance=0.02)
+
+
+@pytest.mark.parametrize(
+    ("scene", "kinds"),
+    [
+        (RESISTED, []),
+        (RESISTED.replace(omega=-2.0, x_dot=2.0, friction=0.6), ["STICK"]),
+        (RESISTED.replace(rolling_resistance=0.2), ["REST"]),
+        (RESISTED.replace(rolling_resistance=0.0), []),
+        (RESISTED.replace(slope=0.1, rolling_resistance=0.0), []),
+    ],
+)
+def test_derivatives_hold_across_turns_of_rolling_resistance(
+    scene: Scene, kinds: list[str]
+) -> None:
+    """Differences of second order, whose steps of 1e-6 m leave about 1e-9 of the derivative."""
+    motion = simulate(scene, [1.1, 4.5])
+    assert [event.kind.name for event in motion.events] == kinds
+    found = motion.sensitivity(["rolling_resistance", "theta"], side=1)
+    for column, name in enumerate(found.wrt):
+        start = getattr(scene, name)
+        moved = [
+            simulate(scene.replace(**{name: start + step}), [1.1, 4.5])
+            for step in (0.0, 1e-6, 2e-6)
+        ]
+        states = np.array([[each.x, each.theta, each.omega] for each in moved])
+        slopes = np.array([-3, 4, -1]) @ states.reshape(3, -1) / 2e-6
+        exact = found.state[:, [0, 2, 5], column].T.ravel()
+        assert exact == pytest.approx(slopes, abs=1e-7 * np.abs(slopes).max())
+        for row, event in enumerate(motion.events):
+            times = [each.events[row].t for each in moved]
+            rate = np.array([-3, 4, -1]) @ times / 2e-6
+            assert found.event_times[row, column] == pytest.approx(rate, rel=1e-6), event
+
+
 @pytest.mark.parametrize("package", ["numpy", "jax", "torch"])
 def test_the_code_on_the_page_gives_the_same_gradient(package: str) -> None:
     """Its recipes have the gradient of `sensitivity`."""

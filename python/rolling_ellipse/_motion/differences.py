@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ FINE = 1e-8  # relative error below which a better step is not needed
 _GROWN = 8.0  # trials end once the error is this many times the least one
 _UNITS = 8  # error bound of states and times that the package promises
 
+_LEAST_LEVER = 1e-200  # [m]; stands for a rolling resistance of 0
 _END = "no event"  # stands for a missing event
 
 # By side: offsets in steps, and weights of sixth order (Fornberg [1])
@@ -105,6 +107,11 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)
     problem: ValueError | None = None
+    if name == "rolling_resistance" and not motion.scene.rolling_resistance:
+        try:
+            motion = _with_turns(motion)
+        except ValueError as refusal:
+            return best, refusal
     for step in (scale * STEPS).tolist():
         try:
             value, rounding = _differences(motion, settings_of(motion), name, side, step)
@@ -114,6 +121,16 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
         if best.take(value, rounding, step):
             break
     return best, None if np.isfinite(best.error).all() else problem
+
+
+def _with_turns(motion: Trajectory) -> Trajectory:
+    """Return the motion with next to no rolling resistance, so that its turns are known."""
+    resisted = motion.scene.replace(rolling_resistance=_LEAST_LEVER)
+    settings = dataclasses.replace(motion.settings, model="contact", method="auto")
+    found = Trajectory.computed(resisted, settings, motion.t)
+    if kinds_of(found.events) != kinds_of(motion.events):
+        raise ValueError("the contact model has other events")
+    return found
 
 
 def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> FloatArray:
@@ -137,12 +154,12 @@ def _differences(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives of `neighbours` from one step, and their rounding errors.
 
-    Neighbours are compared at equal fractions of the arcs between events.
+    Neighbours are compared at equal fractions of the arcs between events and turns.
     """
     value = value_of(motion.scene, name)
     changes = [value + place * step - value for place in RULES[side][0].tolist()]
     near = [moved(motion, settings, {name: change}) for change in changes]
-    knots, ends = knots_of(motion), np.array([knots_of(each) for each in near])
+    knots, ends = joints_of(motion), np.array([joints_of(each) for each in near])
     times = at_shares(motion.t, knots, ends)
     states = [columns(each.sol(t), STATE) for each, t in zip(near, times, strict=True)]
     drift = columns(motion, RATES) * (times - motion.t)[..., None]
@@ -150,7 +167,7 @@ def _differences(
     n, m = len(motion.t), len(motion.events)
     vectors = np.zeros((len(near), len(STATE), n + m))
     vectors[:, :, :n] = np.swapaxes((np.array(states).reshape(-1, n, 6) - drift) / units, 1, 2)
-    vectors[:, 0, n:] = ends[:, 1:-1] * (units[3] / units[0])
+    vectors[:, 0, n:] = ends[:, np.isin(knots, knots_of(motion))][:, 1:-1] * (units[3] / units[0])
     return differenced(vectors, changes, side, size_of(motion.scene, name))
 
 
@@ -191,7 +208,9 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
     """Return what neighbours must share, with times: start, events with the mode after, and end."""
-    events = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
+    known = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
+    turns = (("a turn", t) for t in motion._solution.turns.tolist())
+    events = sorted([*known, *turns], key=itemgetter(1))
     start = f"a start in {motion.scene.initial_state.mode.name}"
     ended = motion.status in (Status.COMPLETED, Status.VALIDITY_LOST)
     end = _END if ended else f"an end by {motion.status.name}"
@@ -206,6 +225,11 @@ def kinds_of(events: Iterable[Event]) -> list[str]:
 def knots_of(motion: Trajectory) -> FloatArray:
     """Return the times between which the motion obeys one law: start, events, end."""
     return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
+
+
+def joints_of(motion: Trajectory) -> FloatArray:
+    """Return `knots_of`, and the turns of rolling resistance, where omega_dot jumps."""
+    return np.sort(np.concatenate([knots_of(motion), motion._solution.turns]))
 
 
 def columns(motion: Trajectory, names: tuple[str, ...]) -> FloatArray:

@@ -13,7 +13,8 @@ from .._ask.check import FloatArray, choice
 from .._ask.scene import Scene
 
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
-BODY = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution")
+BODY = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitution",
+        "rolling_resistance")  # fmt: skip
 _BLOW = ("jx", "jz", "dx", "dz")
 INPUTS = (*BODY, "theta", "omega", "x", "z", "x_dot", "z_dot", *_BLOW, "t")
 
@@ -59,7 +60,7 @@ def size_of(scene: Scene, name: str) -> float:
     units = {
         "slope": one, "restitution": one, "omega": spin, "x": length, "z": length,
         "x_dot": speed, "z_dot": speed, "jx": push, "jz": push, "dx": length, "dz": length,
-        "friction": 1e-3,
+        "friction": 1e-3, "rolling_resistance": 1e-3 * length,
     }  # fmt: skip
     alone = {"theta": one, "t": 1 / spin}
     return float(alone.get(name) or max(abs(value_of(scene, name)), units.get(name, 0.0)))

@@ -196,7 +196,9 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
 def _derivatives(
     motion: Trajectory, names: tuple[str, ...], side: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives as from `neighbours` for k inputs, (6, n + m, k), and errors, (n + m, k).
+    """Return derivatives for k inputs, (6, n + m, k), and their errors, (n + m, k).
+
+    They are like those of `neighbours`, which has one input.
 
     Whether the motion is split into parts depends on its events and its end, not on its samples.
     """
