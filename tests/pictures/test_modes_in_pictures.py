@@ -378,3 +378,39 @@ def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) 
         )
     )
     assert rolling - shadow > 0.2 and shadow - sliding > 0.2
+
+
+def test_losses_are_split_into_rolling_sliding_and_impacts() -> None:
+    """The three sums are the whole loss; in the air, in slides without a lever and in impacts only
+    one of them grows."""
+    falls = rl.Scene(
+        2.0, 1.0, theta=0.5, z=3.0, omega=2.0, x_dot=1.5, friction=0.25, restitution=0.5,
+        rolling_resistance=0.04,
+    )  # fmt: skip
+    motion = rl.simulate(falls, np.linspace(0.0, 12.0, 1201))
+    shown = rl.plot_energy(motion, ax=new_axes(), kind="losses")
+    rolling, sliding, impacts = (np.asarray(line[0].get_ydata())[-1] for line in shown.lost)
+    assert rolling + sliding + impacts == pytest.approx(motion.energy[0] - motion.energy[-1])
+    assert min(rolling, sliding, impacts) > 1
+    hits = [each for each in motion.events if each.kind is rl.EventKind.IMPACT]
+    lost = sum(each.energy_before - each.energy_after for each in hits)
+    assert impacts == pytest.approx(lost)
+    plain = rl.plot_energy(
+        rl.simulate(falls.replace(rolling_resistance=0.0), 12.0), ax=new_axes(), kind="losses"
+    )
+    assert np.abs(np.asarray(plain.lost[0][0].get_ydata())).max() < 1e-12 * motion.energy[0]
+
+
+def test_rolling_with_resistance_shows_its_loss_and_no_error_of_energy() -> None:
+    rocks = rl.Scene(2.0, 1.0, theta=0.5, friction=1.0, rolling_resistance=0.02)
+    motion = rl.simulate(rocks, 40.0)
+    shown = motion.plot(figure=Figure())
+    assert shown.lost_energy is not None
+    assert np.asarray(shown.lost_energy.get_ydata())[-1] == pytest.approx(
+        motion.energy[0] - motion.energy[-1]
+    )
+    assert not np.isfinite(np.asarray(shown.energy_error.get_ydata())).any()
+    labels = [line.get_label() for line in rl.plot_phase(motion, ax=new_axes()).separatrices]
+    assert labels == ["separatrix without resistance"]
+    free = rl.simulate(rocks.replace(rolling_resistance=0.0), 4.0).plot(figure=Figure())
+    assert free.lost_energy is None

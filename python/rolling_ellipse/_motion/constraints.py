@@ -130,15 +130,37 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 def may_lose_energy(motion: Trajectory) -> bool:
     """Whether impacts or friction may take energy: without friction, impacts may be elastic."""
+    if motion.scene.rolling_resistance > 0:
+        return True
     inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
     return inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
+
+
+def losses(motion: Trajectory) -> dict[str, FloatArray]:
+    """Return the energies lost in rolling, in slides and in impacts [J] up to each sample, (n,).
+
+    Samples are at events, too: what is lost after a sample in flight is lost in an impact. Where
+    rolling resistance and friction take energy together, the work of the former is that of its
+    couple by the trapezoidal rule between samples.
+    """
+    t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
+    lost = -np.diff(motion.energy, prepend=motion.energy[:1])
+    impacts = np.where(last == Mode.FLIGHT, lost, 0.0)
+    others = lost - impacts
+    power = motion.scene.rolling_resistance * motion.normal_force * np.abs(motion.omega)
+    couple = np.diff(t, prepend=t[:1]) * (power + np.roll(power, 1)) / 2
+    slides = (mode == Mode.SLIDING) | (last == Mode.SLIDING)
+    rolling = np.where(slides, np.clip(couple, 0, np.maximum(others, 0)), others)
+    parts = {"rolling": rolling, "sliding": others - rolling, "impacts": impacts}
+    return {name: np.cumsum(values) for name, values in parts.items()}
 
 
 def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
     E0 is the energy of the first sample. Losses by impacts and friction are not errors: after an
-    event that may take energy, E0 is that of the next sample, and in a slide the error is NaN.
+    event that may take energy, E0 is that of the next sample, and in a slide, or while the body
+    rolls with resistance, the error is NaN.
     Heights are measured from the ground at the first sample: the origin of x does not matter.
     """
     scene = motion.scene
@@ -154,6 +176,8 @@ def energy_error(motion: Trajectory) -> FloatArray:
     off = np.abs(energy - energy[first])
     if scene.friction > 0:
         off[motion.mode == Mode.SLIDING] = np.nan
+    if scene.rolling_resistance > 0:
+        off[motion.mode != Mode.FLIGHT] = np.nan
     error: FloatArray = off / np.max(motion.kinetic_energy + np.abs(potential))
     return error
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
-from .._motion.constraints import constraint_errors, energy_error, may_lose_energy, worst
+from .._motion.constraints import constraint_errors, energy_error, losses, may_lose_energy, worst
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, name_curves, panels_of, picture, some_of
@@ -22,8 +22,9 @@ from .palette import palette_of
 from .panels import DASHES, dot, draw_curves, finish
 from .sampling import are_ranges, for_dots, over_time, ranges
 
-KINDS = ("energies", "error")
+KINDS = ("energies", "error", "losses")
 ENERGIES = {"energy": "total", "kinetic_energy": "kinetic", "potential_energy": "potential"}
+LOSSES = {"rolling": "by rolling", "sliding": "by sliding", "impacts": "by impacts"}
 QUANTITIES = {  # quantities and their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
     "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
@@ -74,13 +75,14 @@ def draw_errors(
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
-    For the kind "energies" `error` is empty; for "error" `total`, `kinetic` and `potential` are.
+    Those of another `kind` are empty; `lost` has the losses by rolling, sliding and impacts.
     """
 
     total: tuple[Line2D, ...]
     kinetic: tuple[Line2D, ...]
     potential: tuple[Line2D, ...]
     error: tuple[Line2D, ...]
+    lost: tuple[tuple[Line2D, ...], ...]
     marks: tuple[Artist, ...]
 
 
@@ -92,22 +94,24 @@ def plot_energy(
     figsize: tuple[float, float] | None = None,
     labels: Sequence[str] | None = None,
     colors: Sequence[Any] | None = None,
-    kind: Literal["energies", "error"] | None = None,
+    kind: Literal["energies", "error", "losses"] | None = None,
     **options: Any,
 ) -> Energy:
-    """Draw the energies of motions [J], or the error of the energy that they should conserve.
+    """Draw energies of motions [J], their losses, or the error of what they should conserve.
 
     The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
     a logarithmic scale, which cannot show exact zeros; E0 is the energy of the first sample. Losses
     by friction and impacts are not errors: then E0 is that of the first sample after the last
-    event, and a slide has no error. Dots are at the samples or, if there are fewer than 100, as
-    dense as the points of a curve. Modes, events, lost validity and long spans are drawn as in
-    `plot_forces`.
+    event, and a slide, or rolling with resistance, has no error. Losses are split into those by
+    rolling resistance, by sliding friction and by impacts, summed from the first sample on.
+
+    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
+    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-    kind : {"energies", "error"}, optional
+    kind : {"energies", "error", "losses"}, optional
         What to draw; default: energies for one motion, or for several if one loses energy, else
         errors.
     {ax}
@@ -116,18 +120,22 @@ def plot_energy(
     shown = Comparison(trajectories, labels, colors, ax, options)
     if kind is None:
         kind = "energies" if shown.alone or any(map(may_lose_energy, shown.motions)) else "error"
-    energies = choice("kind", kind, KINDS) == "energies"
-    shown.sampled(over_time if energies else for_dots)
+    drawn = choice("kind", kind, KINDS)
+    shown.sampled(for_dots if drawn == "error" else over_time)
     ax = axes_of(ax, (7, 3.4), figsize)
-    if energies:
+    if drawn == "losses":
+        lost = draw_curves(ax, shown, "energy lost [J]", LOSSES, losses)
+        handles = shown.handles(ax, list(zip(LOSSES.values(), DASHES, strict=True)))
+        return Energy((ax,), (), (), (), (), lost, finish([ax], shown, handles))
+    if drawn == "energies":
         total, kinetic, potential = draw_curves(ax, shown, "energy [J]", ENERGIES)
         handles = shown.handles(ax, list(zip(ENERGIES.values(), DASHES, strict=True)))
-        return Energy((ax,), total, kinetic, potential, (), finish([ax], shown, handles))
+        return Energy((ax,), total, kinetic, potential, (), (), finish([ax], shown, handles))
     errors = [{style.label or "energy error": energy_error(motion)} for motion, style in shown]
     kept = any(np.isfinite(values).any() for own in errors for values in own.values())
     none = "exactly 0 throughout" if kept else "friction takes energy throughout"
     lines = draw_errors(ax, shown, errors, "relative energy error", none)
-    return Energy((ax,), (), (), (), lines, finish([ax], shown, some_of(lines)))
+    return Energy((ax,), (), (), (), lines, (), finish([ax], shown, some_of(lines)))
 
 
 @dataclass(frozen=True, repr=False)

@@ -45,11 +45,13 @@ def draw_fit(fit: Fit, path: Any, figure: Any, figsize: Any) -> FitChart:
     curve, bottom, sigma = over_time(motion), axes[-1], dict(zip(_LABELS, fit.sigma, strict=True))
     line: dict[str, Any] = {"color": shades.text, "lw": 0.8, "zorder": 3}
     looks = dict(zip(_LABELS, zip("osD", shades.curves[2::-1], strict=True), strict=True))
+    scale = fit.values.get("scale", 1.0)
     for ax, track in zip(axes, seen, strict=False):
         dots: dict[str, Any] = {"marker": looks[track][0], "color": looks[track][1], "ms": 3}
         dots |= {"ls": "", "mew": 0, "label": _LABELS[track]}
         (chart.fitted[track],) = ax.plot(curve.t, getattr(curve, track), **line)
-        (chart.measured[track],) = ax.plot(motion.t, getattr(motion, track) + off[track], **dots)
+        apart = off[track] / (1.0 if track == "theta" else scale)  # in coordinates of the scene
+        (chart.measured[track],) = ax.plot(motion.t, getattr(motion, track) + apart, **dots)
         (chart.residuals[track],) = bottom.plot(motion.t, off[track] / sigma[track], **dots)
         if track == "theta":
             ax.set_ylabel("θ [rad]")

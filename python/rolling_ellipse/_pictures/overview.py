@@ -21,7 +21,7 @@ from .errors import ENERGIES, draw_errors
 from .forces import Stems, draw_forces
 from .ground import label_lengths
 from .palette import palette_of
-from .panels import draw_curves, dress_over_time, note_of
+from .panels import draw_curves, draw_line, dress_over_time, note_of
 from .phase import Phase, knows_turns, plot_phase
 from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
@@ -35,7 +35,7 @@ _SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
 class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
-    `phase` is None for angles that `plot_phase` rejects.
+    `phase` is None for angles that `plot_phase` rejects, `lost_energy` without rolling resistance.
     """
 
     strobe: Strobe
@@ -50,6 +50,7 @@ class Overview(Artists):
     energy: Line2D
     kinetic_energy: Line2D
     potential_energy: Line2D
+    lost_energy: Line2D | None
     position_error: Line2D
     velocity_error: Line2D
     energy_error: Line2D
@@ -106,12 +107,13 @@ def plot(
     label_lengths(panels[2].yaxis, "z of centre", trajectory.scene)
     (normal,), (friction,), (limit,), (impulses,) = draw_forces(panels[3], shown)
     (total,), (kinetic,), (potential,) = draw_curves(panels[4], shown, "energy [J]", ENERGIES)
+    lost = _draw_loss(panels[4], shown)
     errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
     marks = _dress_panels(panels, shown)
     whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
     drawn = Overview(
         (strobe.ax, *panels), strobe, phase, theta, omega, height, normal, friction, limit,
-        impulses, total, kinetic, potential, *errors, marks,
+        impulses, total, kinetic, potential, lost, *errors, marks,
     )  # fmt: skip
     write(drawn, name)
     return drawn
@@ -124,6 +126,13 @@ def _headline(trajectory: Trajectory, note: str) -> str:
     if trajectory.valid_until < trajectory.t[-1]:
         text += f", not valid from {trajectory.valid_until:.3g} s on (grey)"
     return f"{text}; {note}" if note else text
+
+
+def _draw_loss(ax: Axes, shown: Comparison) -> Line2D | None:
+    """Draw the energy lost since the start, where rolling resistance takes it all the time."""
+    (motion,) = shown.motions
+    lost, style = motion.energy[0] - motion.energy, {"color": palette_of(ax).grey, "label": "lost"}
+    return draw_line(ax, motion, lost, **style) if motion.scene.rolling_resistance else None
 
 
 def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:

@@ -7,7 +7,7 @@ dotted lines with names. Where the model of a motion is not valid, the backgroun
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain, pairwise
 from typing import Any
 
@@ -45,20 +45,23 @@ def dot(t: FloatArray) -> dict[str, Any]:
 
 
 def draw_curves(
-    ax: Axes, shown: Comparison, label: str, names: Mapping[str, str]
-) -> tuple[tuple[Line2D, ...], ...]:
+    ax: Axes, shown: Comparison, label: str, names: Mapping[str, str],
+    values_of: Callable[[Trajectory], Mapping[str, FloatArray]] | None = None,
+) -> tuple[tuple[Line2D, ...], ...]:  # fmt: skip
     """Draw up to three quantities of each motion, and return the lines of each quantity.
 
-    `names` maps their attributes to their names in legends, `label` is for the axis.
+    `names` maps their attributes, or the names of `values_of`, to their names in legends; `label`
+    is for the axis.
     """
     lines: list[list[Line2D]] = [[] for _ in names]
     for motion, style in shown:
+        known = values_of(motion) if values_of else {name: getattr(motion, name) for name in names}
         for rank, (name, called) in enumerate(names.items()):
             dash = "-" if are_ranges(motion) else DASHES[rank]
             colour = style.colour or palette_of(ax).curves[rank]
             text = ", ".join(filter(None, (style.label, called)))
             how = {"color": colour, "ls": dash, "label": text} | sparse_markers(style)
-            lines[rank].append(draw_line(ax, motion, getattr(motion, name), **how))
+            lines[rank].append(draw_line(ax, motion, known[name], **how))
     shown.restyle(*chain(*lines))
     ax.set_ylabel(label)
     return tuple(map(tuple, lines))

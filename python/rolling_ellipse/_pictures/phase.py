@@ -203,7 +203,8 @@ def _draw_portrait(
     if not bodies:
         return (), ()
     view, palette = ax.get_xlim(), palette_of(ax)
-    dotted: dict[str, Any] = {"lw": 1.1, "ls": ":", "label": "separatrix", "zorder": 1.9}
+    free = "" if not any(scene.rolling_resistance for scene, _ in bodies) else " without resistance"
+    dotted: dict[str, Any] = {"lw": 1.1, "ls": ":", "label": f"separatrix{free}", "zorder": 1.9}
     marks: dict[str, Any] = {"color": palette.grey, "mfc": palette.background, "ms": 5}
     marks |= {"ls": "none", "zorder": 1.9}
     separatrices: list[Line2D] = []
