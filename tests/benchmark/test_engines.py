@@ -2,12 +2,11 @@
 
 import math
 import re
-from importlib import import_module
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.paths import ROOT
+from oracles.simulators import adapter
 from rolling_ellipse import Scene, benchmark, flow, geometry
 
 SCENE = Scene(
@@ -16,11 +15,6 @@ SCENE = Scene(
 )  # fmt: skip
 GRAVITY = [9.0 * math.sin(0.3), 0.0, -9.0 * math.cos(0.3)]
 HEIGHT, AHEAD = (f(0.4, a=2.0, b=0.7) for f in (geometry.support, geometry.support_slope))
-
-
-def adapter(name: str) -> Any:
-    pytest.importorskip({"drake": "pydrake"}.get(name, name))
-    return import_module(f"rolling_ellipse.benchmark.adapters.{name}").simulate
 
 
 def test_mujoco_reads_mjcf_as_intended() -> None:
@@ -40,6 +34,25 @@ def test_mujoco_reads_mjcf_as_intended() -> None:
     (contact,) = data.contact
     assert contact.dist == pytest.approx(-1e-6, abs=1e-12) and contact.friction[0] == 0.6
     assert contact.pos == pytest.approx([1.5 + AHEAD, 0.0, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.6])
+def test_mujoco_resists_rolling_by_a_lever_in_metres(friction: float) -> None:
+    """A disc that only rolls slows down by delta g/(k^2 + R^2), to the 3 % of MuJoCo's soft cone.
+
+    On the ground without friction the couple alone slows the rotation, by delta g/k^2.
+    """
+    mujoco = pytest.importorskip("mujoco")
+    disc = Scene(1.0, 1.0, friction=friction, omega=2.0, rolling_resistance=0.02)
+    model = mujoco.MjModel.from_xml_string(disc.to_mjcf(timestep=0.001))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    for _ in range(1000):
+        mujoco.mj_step(model, data)
+    slowing = 0.02 * 9.81 / (1.5 if friction else 0.5)
+    assert 2.0 - data.qvel[2] == pytest.approx(slowing, rel=0.03 if friction else 0.6)
+    assert 'condim="3"' in disc.replace(friction=0.6, rolling_resistance=0.0).to_mjcf()
+    assert 'cone="elliptic"' in disc.to_mjcf(contact_steps=None)
 
 
 def test_drake_reads_sdf_as_intended() -> None:

@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from .. import _core
 from .check import positive
 
 
@@ -13,6 +14,8 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     ``x``, ``z`` and a hinge ``theta``: z points away from the ground, theta turns clockwise, and
     gravity is tilted by the slope. The key frame ``start`` is the `initial_state`. MJCF has no
     coefficient of restitution: a contact is a critically damped spring, or undamped if it is 1.
+    Rolling resistance becomes MuJoCo's rolling friction, which acts like it while the body rolls; a
+    sliding contact shares one friction cone between slip and rotation.
 
     Parameters
     ----------
@@ -34,8 +37,11 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     if scene.restitution not in (0, 1):
         raise ValueError(f"restitution must be 0 or 1 in MJCF, got {scene.restitution!r}")
     spring = f"{-4 / time**2!r} 0" if scene.restitution else f"{time!r} 1"
-    contact += f' solref="{spring}" condim="{3 if scene.friction else 1}"'
-    return _filled("scene.mjcf", scene, step=step, contact=contact, cone=cone)
+    lever, condim = scene.rolling_resistance or 0, 3 if scene.friction else 1
+    if lever:
+        condim, cone = 6, 'cone="elliptic"'
+    contact += f' solref="{spring}" condim="{condim}"'
+    return _filled("scene.mjcf", scene, step=step, contact=contact, cone=cone, lever=lever)
 
 
 def to_sdf(scene: Any) -> str:
@@ -48,8 +54,9 @@ def to_sdf(scene: Any) -> str:
     Raises
     ------
     ValueError
-        If friction is infinite.
+        If friction is infinite, or the scene has rolling resistance.
     """
+    _core.require_no_resistance(scene.core, "SDF", "to_mjcf writes it")
     return _filled("scene.sdf", scene)
 
 
