@@ -38,6 +38,7 @@ SCENE_OPTIONS = {
     "omega": "angular velocity at the start [rad/s]; there is then no blow but that of --press",
     "friction": "coefficient of friction",
     "restitution": "coefficient of restitution",
+    "rolling_resistance": "lever of the rolling resistance [m]",
     "slope": "angle of the ground [rad]",
     "gravity": "acceleration of gravity [m/s^2]",
     "inertia": "moment of inertia about the centre [kg m^2] (default: a uniform disc)",
@@ -72,7 +73,8 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
     )
     parser._negative_number_matcher = _NEGATIVE
     for name, meaning in SCENE_OPTIONS.items():
-        parser.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
+        option = "--" + name.replace("_", "-")
+        parser.add_argument(option, type=float, metavar="NUMBER", help=meaning)
     parser.add_argument(
         "--press", type=float, nargs=2, metavar=("F", "D"),
         help="press down by F [N s] at D [m] from the centre instead",
@@ -268,8 +270,9 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
     if trajectory.t.size:
         residuals = trajectory.constraint_residuals()
         touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
+        resisted = scene.rolling_resistance > 0
         facts |= {
-            "outcome": _core.outcome(scene.core).name.lower(),
+            "outcome": None if resisted else _core.outcome(scene.core).name.lower(),
             "period": _period(scene) if rolls else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
@@ -343,6 +346,8 @@ def _repeat(facts: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
     if facts["period"] is not None:
         return _REPEATS.get(facts["outcome"], "swing or turn"), f"{facts['period']:.12g} s"
     name = "swing or turn"
+    if trajectory.scene.rolling_resistance > 0:
+        return name, "none: rolling resistance brings it to rest"
     if trajectory.model == "contact":
         return name, "none: it slides, leaves the ground or hits it"
     if facts["outcome"] == "rests":

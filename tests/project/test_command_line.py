@@ -158,6 +158,15 @@ def test_options_change_the_scene_of_the_report(command: Any) -> None:
     assert " m in 1.5 s, " in command("--time", "1.5").out and command("--time", "0").code == 0
 
 
+def test_a_body_with_rolling_resistance_comes_to_rest(command: Any) -> None:
+    options = ("--rolling-resistance", "0.05", "--friction", "1", "--time", "100")
+    facts = strict_json(command(*options, "--json").out)
+    assert [kind for _, kind in facts["events"]] == ["rest"]
+    assert facts["scene"]["rolling_resistance"] == 0.05
+    assert facts["outcome"] is facts["period"] is None
+    assert "none: rolling resistance brings it to rest" in command(*options).out
+
+
 def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) -> None:
     """A lighter body gets the same blow; a speed replaces the blow, and so does another blow."""
     lighter = rl.scenes.report.replace(mass=8.0)
@@ -362,7 +371,7 @@ def test_the_installed_command_runs_the_same_function(tmp_path: Path) -> None:
 def test_help_lists_every_option(tmp_path: Path, command: str, options: list[str]) -> None:
     code, out, err = typed(tmp_path, *command.split(), "--help")
     assert (code, err) == (0, "") and out.startswith(f"usage: python -m rolling_ellipse{command}")
-    assert "explore" in out and all(f"--{option}" in out for option in options)
+    assert "explore" in out and all(f"--{option.replace('_', '-')}" in out for option in options)
 
 
 # ----------------------------------------------------------------- numbers, names and pipes
