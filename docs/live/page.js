@@ -90,7 +90,8 @@ export class Workbench extends Explorer {
 
   /** Write the scene into the address of the page. */
   settle() {
-    const numbers = Object.entries(this.given).filter(([, value]) => value !== null);
+    const numbers = Object.entries(this.given).filter(([name, value]) => value !== null
+      && (value || name !== "rolling_resistance")); // links without it stay as they were
     this.address = `#${new URLSearchParams({ ...Object.fromEntries(numbers),
       lang: this.film.words.lang })}`;
     history.replaceState(null, "", this.address);
@@ -198,6 +199,10 @@ export class Workbench extends Explorer {
   }
 
   // ------------------------------------------------------------------------------- the map
+
+  get isMapless() {
+    return false; // half turns can be counted with rolling resistance, too
+  }
 
   axis(k) {
     return this.rows.find(({ name }) => name === this.axes[k]);

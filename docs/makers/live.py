@@ -33,7 +33,7 @@ def page(explorer: Explorer) -> str:
         "size": max(given["a"], given["b"]),
         "languages": languages,
         "usual": {name: getattr(usual, name) for name in ("mass", "gravity", "slope",
-                  "restitution", "theta", "omega", "x")},
+                  "restitution", "rolling_resistance", "theta", "omega", "x")},
     }  # fmt: skip
     style = (FOLDER / "page.css").read_text(encoding="utf-8")
     module = (FOLDER / "page.js").read_text(encoding="utf-8")
@@ -50,7 +50,8 @@ def numbers(explorer: Explorer) -> dict[str, Any]:
     blow = scene.impulse
     given = {name: getattr(blow, name) if blow else 0.0 for name in ("jx", "jz", "dx", "dz")}
     given |= {name: getattr(scene, name) for name in (
-        "a", "b", "mass", "gravity", "slope", "restitution", "theta", "omega", "x")}  # fmt: skip
+        "a", "b", "mass", "gravity", "slope", "restitution", "rolling_resistance", "theta",
+        "omega", "x")}  # fmt: skip
     return given | {
         "friction": scene.friction if scene.friction < math.inf else None,
         "k": 4 * scene.gyration2 / (scene.a**2 + scene.b**2) if scene.inertia else 1.0,
@@ -71,6 +72,7 @@ def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
         ("body", "a", "m", 0.1 * size, 1.5 * size), ("body", "b", "m", 0.1 * size, 1.5 * size),
         ("body", "k", "", 0.1, 2.0), ("ground", "slope", "rad", -0.6, 0.6),
         ("ground", "friction", "", 0.0, 2.0), ("ground", "restitution", "", 0.0, 1.0),
+        ("ground", "rolling_resistance", "m", 0.0, 0.1 * size),
         ("start", "theta", "rad", -3.2, 3.2), ("start", "omega", "rad/s", -4 * rate, 4 * rate),
         ("start", "height", "m", 0.0, 2 * size),
         ("start", "slip", "m/s", -2 * rate * size, 2 * rate * size),

@@ -345,6 +345,18 @@ def test_the_map_the_sliders_and_the_text_follow_the_blow(opened: Opened) -> Non
     assert made["blow"] == rl.Impulse.press(F, 0.0)
 
 
+def test_a_body_with_rolling_resistance_has_no_map_of_outcomes(opened: Opened) -> None:
+    scene = rl.scenes.report.replace(rolling_resistance=0.3, friction=1.0)
+    page = opened(document("", rl.explore(scene)._repr_html_()), reduced_motion="reduce")
+    assert not page.locator(".map canvas").is_visible()
+    assert page.locator(".map").inner_text().startswith("There is no map of first outcomes")
+    motion = rl.simulate(scene.replace(impulse=rl.Impulse.press(*blow(page)[::-1])), 5.4)
+    (rest,) = motion.events
+    said = page.locator(".said").inner_text()
+    assert said.startswith(f"It rolls. It comes to rest at t = {rest.t:.3g} s, ")
+    assert "askew" in said
+
+
 @pytest.mark.parametrize(
     ("part", "keys", "parts"),  # of the sliders, 240 of each
     [

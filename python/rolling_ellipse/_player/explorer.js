@@ -44,8 +44,17 @@ export class Explorer extends Player {
       this.fills = isIntersecting;
       if (this.fills) this.draw();
     }).observe(this.map.parentNode);
+    if (this.isMapless) {
+      this.map.style.display = "none";
+      find(".map figcaption").textContent = this.say("no_map");
+    }
     this.hands(find);
     this.describe();
+  }
+
+  /** Whether the body has no outcomes to map: rolling resistance brings it to rest. */
+  get isMapless() {
+    return this.film.scene.rolling_resistance > 0;
   }
 
   /** Connect the sliders of the page, each to an axis of the map. */
@@ -238,6 +247,7 @@ export class Explorer extends Player {
 
   /** Paint the map; while it is in view, compute more of its cells, and go on in later frames. */
   paintMap(until) {
+    if (this.isMapless) return;
     const done = !this.fills || this.fill(until), ink = sized(this.map, this.map.clientHeight);
     const area = cellsOf(this.map), { left, top, across, up } = area;
     ink.imageSmoothingEnabled = false;

@@ -72,7 +72,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
 
 
 def _middles(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return forces at the middles of intervals, and the last ones; at a jump, their mean."""
+    """Return forces at the midpoints of intervals and at the end; at a jump, the mean."""
     t = motion.t
     between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
     found = {}
