@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,15 +13,15 @@ from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, array, choice
 from .._ask.printing import Row, html_table, printable, text_table
-from .._ask.scene import Scene
-from .._motion.inputs import value_of
+from .._ask.scene import Scene, require_scene
+from .._motion.inputs import INPUTS, distinct
 from .._motion.trajectory import Trajectory
-from .films.conventions import fitting, free_fall, other_units, readings
+from .films.camera import free_fall, require_told, unit_of
+from .films.conventions import fitting, other_units, readings
 from .films.errors import near_guess, standard_errors
-from .films.film import Film, Unknowns, film_of, sigma_of, sizes_of
+from .films.film import CAMERA, Film, Unknowns, film_of, sigma_of, sizes_of
 from .films.judgement import TRACKER, counted, judged, settled, widened
 from .films.search import Search, cost
-from .simulate import sample_times, simulate
 
 if TYPE_CHECKING:
     from .._pictures.fit import FitChart
@@ -39,6 +40,8 @@ class Fit:
     ----------
     scene : Scene
         The scene with the fitted parameters.
+    values : dict
+        Fitted parameters of the scene and of its camera, in the order of `free`.
     errors : dict
         Standard error of each parameter; infinite if the film does not determine it.
     covariance : ndarray, shape (k, k)
@@ -46,11 +49,12 @@ class Fit:
     chi2 : float
         Sum of the squares of residuals over sigma. It is no test of fit if sigma is estimated.
     residuals : ndarray, shape (n, 3)
-        Measured minus fitted x, z [m] and theta [rad], NaN where nothing was measured.
+        Measured minus fitted x, z [m] and theta [rad] as in the film, NaN where nothing was
+        measured. If the clock is free, frames before the first datum are left out.
     sigma : ndarray, shape (3,)
         Standard deviations of the data [m, m, rad], as given or estimated.
     trajectory : Trajectory
-        The fitted motion at the times of the film.
+        The fitted motion at the times of the film, in the scene's coordinates and time.
     message : str
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
         film does not determine; and if the scene does not fit the film, a statement of that, with
@@ -58,6 +62,7 @@ class Fit:
     """
 
     scene: Scene
+    values: dict[str, float]
     errors: dict[str, float]
     covariance: FloatArray
     chi2: float
@@ -70,8 +75,7 @@ class Fit:
         rows: list[Row] = []
         for name, error in self.errors.items():
             places = 6 if not 0 < error < math.inf else max(0, 1 - math.floor(math.log10(error)))
-            value = value_of(self.scene, name)
-            rows.append((name, f"{value:.{places}f}", f"± {error:.{places}f}"))
+            rows.append((name, f"{self.values[name]:.{places}f}", f"± {error:.{places}f}"))
         return rows
 
     def __repr__(self) -> str:
@@ -104,18 +108,20 @@ def fit_motion(
     sigma: Any = None,
     loss: str = "linear",
 ) -> Fit:
-    """Fit parameters of a scene to a film: positions and angles of the body at given times.
+    """Fit parameters of a scene, and of the camera, to a film: places and angles of the body.
 
     Angles are in radians, between the semi-axis a and the ground, clockwise if x points to the
     right; z is the height of the centre above the ground, and t the time since the start of the
-    scene.
+    scene. What a camera has instead can be free, too: x_film = scale x, z_film = ground + scale z,
+    t_scene = t_film + clock, where no frame with data is before the start.
 
     Nonlinear least squares [1]_ by SciPy starts from the scene itself and from straight lines and
     parabolas through the first frames, each with several coefficients, for longer and longer parts
     of the film; then from points around the best solutions, since chi2 has many minima. Each
-    parameter is moved by three errors, and further, with the others refitted: an error grows to the
-    change over the root of the rise of chi2 if that is larger, as beyond a threshold of friction or
-    if another scene fits as well. A parameter that the film does not determine keeps its guess.
+    parameter is moved by three times its error, and then further, with the others refitted. If the
+    change divided by the square root of the rise in chi2 is larger than the error, it replaces it;
+    this happens beyond a friction threshold, or where another scene fits equally well. A parameter
+    that the film does not determine keeps its guess.
 
     The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
     that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above
@@ -128,14 +134,19 @@ def fit_motion(
     Parameters
     ----------
     t : array_like, shape (n,)
-        Increasing times of the frames since the start of the scene [s].
+        Increasing times of the frames since the start of the scene, from any time on if the clock
+        is free [s].
     x, z, theta : array_like, shape (n,), optional
         Tracks of the centre [m] and of the angle [rad], NaN where they are missing; angles are
         compared modulo pi. At least one is needed.
     scene : Scene
         What is known; its values of the free parameters are first guesses.
     free : iterable of str
-        The unknown parameters, named as for `Trajectory.sensitivity`.
+        The unknown parameters, named as for `Trajectory.sensitivity`, and of the camera "scale",
+        "ground" and "clock". The scale needs x or z and one of gravity, a, b known; the ground a
+        track of z and a touch; the clock x or z and one of theta, omega, x known (in the air: of x,
+        z, theta, z_dot). Where a motion passes a state again, the start nearest to the guess
+        counts, and of equal ones the last.
     sigma : float or mapping, optional
         Standard deviation of all data, or by the names x, z and theta, from 1e-15 to 1e15 times
         max(a, b) or one radian. Those of other tracks are estimated from the residuals, in turn
@@ -151,7 +162,8 @@ def fit_motion(
     ------
     ValueError
         If names are unknown or repeated, arrays do not fit together, sigma is out of range, there
-        are not more data than unknowns, or no motion of the search reaches the last time.
+        are not more data than unknowns, no film tells them apart, or no motion of the search
+        reaches the last time.
     ImportError
         If SciPy is not installed.
 
@@ -172,14 +184,17 @@ def fit_motion(
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
     """
     loss = choice("loss", loss, _LOSSES)
-    unknowns = Unknowns(scene, free)
-    film = film_of(sample_times(array("t", t)), {"x": x, "z": z, "theta": theta})
+    names = distinct("free", free, (*INPUTS[:-1], *CAMERA))
+    film = film_of(array("t", t), {"x": x, "z": z, "theta": theta}, clock="clock" in names)
     count = int(film.known.sum())
-    if count <= len(unknowns.names):
-        raise ValueError(f"free must be fewer names than data, got {len(unknowns.names)}, {count}")
+    if count <= len(names):
+        raise ValueError(f"free must be fewer names than data, got {len(names)}, {count}")
+    require_told(require_scene(scene), names, film)
+    unknowns = Unknowns(scene, names, film, unit_of(film, scene) if "scale" in names else 1.0)
     given = sigma_of(sigma, scene)
-    first = np.where(np.isnan(given), TRACKER * sizes_of(scene), given)
-    fall = free_fall(film, unknowns)
+    lengths = unknowns.lens(unknowns.own)[0]
+    first = np.where(np.isnan(given), TRACKER * sizes_of(scene) * lengths, given)
+    fall = free_fall(film, scene)
     if units := other_units(film, fall, unknowns):
         words = fitting(units, unknowns, given, loss)
         if words or (fall is not None and not 1 / _FOREIGN < fall < _FOREIGN):
@@ -203,37 +218,43 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
         best = search.best([lowest])
     best = near_guess(search, best, errors)
     best.x = unknowns.own + unknowns.turned(best.x - unknowns.own)
-    motion = simulate(unknowns.scene_at(best.x), film.t, raise_on_failure=False)
-    residuals, verdict = search.residuals(best.x), judged(search, best, given)
+    verdict = judged(search, best, given)
     wider = widened(verdict) * unknowns.sizes
-    by_name = dict(zip(unknowns.names, (errors * wider).tolist(), strict=True))
-    lost = ", ".join(name for name, error in by_name.items() if math.isinf(error))
-    sentences = [counted(search, residuals, given)]
+    lost = ", ".join(itertools.compress(unknowns.names, np.isinf(errors)))
+    sentences = [counted(search, best, given)]
     sentences += [f"the film cannot tell {lost}"] if lost else []
     sentences += verdict.words
-    if verdict.doubtful and (words := fitting(readings(film), unknowns, given, search.loss)):
+    tries = readings(film, unknowns.names) if verdict.doubtful else []
+    if words := fitting(tries, unknowns, given, search.loss):
         sentences += [f"it fits with {words}"]
-    return Fit(
-        motion.scene, by_name, covariance * np.outer(wider, wider), float(np.sum(residuals**2)),
-        film.off(motion), search.sigma, motion, f"{'; '.join(sentences)}.",
-    )  # fmt: skip
+    covariance *= np.outer(wider, wider)
+    return _answer(film, unknowns, best.x, search.sigma, errors * wider, covariance, sentences)
 
 
 def _not_fitted(
     film: Film, unknowns: Unknowns, sigma: FloatArray, fall: float | None, words: str
 ) -> Fit:
     """Return the scene unchanged, with a sentence on the units of the film."""
-    motion = unknowns.motion(unknowns.own, film.t)
-    if motion is None:
-        raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")
-    off, infinite = film.off(motion), np.full(len(unknowns.names), math.inf)
+    infinite = np.full(len(unknowns.names), math.inf)
     why = "the frames are too far apart"
     if fall is not None:
         why = f"the body falls with {fall:.3g} of gravity, as if t or z had other units"
     sentences = [f"{film.known.sum()} data, not fitted", why, "the scene does not fit the film"]
     sentences += [f"it fits with {words}"] if words else []
+    return _answer(film, unknowns, unknowns.own, sigma, infinite, np.diag(infinite), sentences)
+
+
+def _answer(
+    film: Film, unknowns: Unknowns, u: FloatArray, sigma: FloatArray,
+    errors: FloatArray, covariance: FloatArray, sentences: list[str],
+) -> Fit:  # fmt: skip
+    """Return unknowns as a fit, with the motion that they give."""
+    motion = unknowns.motion(u, film.t)
+    if motion is None:
+        raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")
+    values, off = unknowns.named(u), film.off(motion, *unknowns.lens(u))
+    values |= {name: late - film.first for name, late in values.items() if name == "clock"}
     return Fit(
-        motion.scene, dict(zip(unknowns.names, infinite.tolist(), strict=True)),
-        np.diag(infinite), float(np.nansum((off / sigma) ** 2)), off, sigma, motion,
-        f"{'; '.join(sentences)}.",
+        motion.scene, values, dict(zip(values, errors.tolist(), strict=True)), covariance,
+        float(np.nansum((off / sigma) ** 2)), off, sigma, motion, f"{'; '.join(sentences)}.",
     )  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._ask.check import FloatArray
 from .film import TRACKS, Film, Unknowns, sizes_of
-from .judgement import NORMAL, TRACKER, estimated, judged, settled
+from .judgement import TRACKER, estimated, judged, settled
 from .search import Search
 
 X, Z, THETA = range(3)
@@ -20,45 +20,10 @@ _RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [
 _SLOWED = (2, 3, 4, 5, 8, 10, 16)  # or sped up by these factors: a film timed by its player's clock
 _UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # of time [s]
 _LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
-_WINDOW, _SURE = 8, 10.0  # minimum frames in a free fall, and ratio of curvature to error
-_NOISE = NORMAL / math.sqrt(20)  # deviation per median third difference, for normal noise
-_SMOOTH = 1e-4  # smallest noise relative to the range of a track
 _WRONG = 3.0  # from this ratio of free fall to gravity, or its inverse, a scale error is ruled out
 _NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
 _ALIASED = 10.0  # spacing of frames in sqrt(L/g) at which a rocking body has turned back
 _QUICK, _RUN = 6, 2  # starts per try, and number of tries run to the end
-
-
-def free_fall(film: Film, unknowns: Unknowns) -> float | None:
-    """Return the ratio of the downward acceleration of a flight to that of the scene, or None.
-
-    A flight is a parabola to within the noise, higher than a rolling body's rise and fall.
-    """
-    scene, seen = unknowns.scene, film.known[:, Z]
-    t, z = film.t[seen], film.data[seen, Z]
-    rough = np.median(np.abs(np.diff(z, 3))) if z.size > 3 else 0.0
-    noise = _NOISE * float(rough) + _SMOOTH * float(np.ptp(z) if z.size else 0.0)
-    count = t.size
-    while count >= _WINDOW:
-        for first in range(0, t.size - count + 1, max(1, count // 4)):
-            some = slice(first, first + count)
-            fall = _parabola(t[some], z[some], noise, 1.5 * abs(scene.a - scene.b))
-            if fall is not None:
-                return fall / (scene.gravity * math.cos(scene.slope))
-        count = math.floor(count / 1.3)
-    return None
-
-
-def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float | None:
-    """Return the downward acceleration of heights on a parabola, or None if they are on none."""
-    centre, half = (t[0] + t[-1]) / 2, (t[-1] - t[0]) / 2
-    powers = ((t - centre) / half)[:, None] ** np.arange(4)
-    solution = np.linalg.lstsq(powers, z, rcond=None)[0]
-    off = math.sqrt(float(np.sum((z - powers @ solution) ** 2)) / (t.size - 4))
-    errors = max(off, noise / 10) * np.sqrt(np.diag(np.linalg.inv(powers.T @ powers)))
-    bent, swayed = abs(solution[2]) > _SURE * errors[2], abs(solution[3]) > 3 * errors[3]
-    smooth, high = off < 1.5 * noise, np.ptp(z) > max(rise, 20 * noise)
-    return -2 * float(solution[2]) / half**2 if bent and not swayed and smooth and high else None
 
 
 def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
@@ -71,7 +36,7 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
         natural = math.sqrt(max(scene.a, scene.b) / scene.gravity)
         far = film.t.size > 1 and float(np.median(np.diff(film.t))) > _ALIASED * natural
         return [_timed(film, 1 / rate) for rate in (_RATES if far else ())]
-    if "gravity" in unknowns.names or 1 / _WRONG < fall < _WRONG:
+    if {"gravity", "scale"} & {*unknowns.names} or 1 / _WRONG < fall < _WRONG:
         return []
     upright, size = film if fall > 0 else _flipped(film), abs(fall)
     others = []
@@ -83,8 +48,10 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
     return others + [_scaled(upright, unit) for unit in lengths]
 
 
-def readings(film: Film) -> list[Film]:
+def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
     """Return readings of angles and positions in other conventions, with the same unit of time.
+
+    What the camera's unknowns explain is not tried.
 
     If a film starts later than it lasts, only its clock is questioned.
     """
@@ -95,11 +62,12 @@ def readings(film: Film) -> list[Film]:
     others = _turned(film) if theta else []
     if z:
         flipped = _flipped(film)
-        others += [_read(film, "z = z {z:+.3g}", adrift=(Z,)), flipped]
+        shifted = _read(film, "z = z {z:+.3g}", adrift=(Z,))
+        others += [flipped] if "ground" in names else [shifted, flipped]
         others += _turned(flipped)[:1] if theta else []
     if x:
         others += [_read(film, "x = x {x:+.3g}", adrift=(X,))]
-    if x or z:
+    if (x or z) and "scale" not in names:
         others += [_scaled(film, unit) for unit in _LENGTHS]
     return [*others, clock] if film.t[0] > 0 else others
 
@@ -129,7 +97,8 @@ def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str)
 def _origins(search: Search, best: Any) -> dict[str, float]:
     """Return the offsets to add to tracks of unknown origin."""
     motion = search.unknowns.motion(best.x, search.film.t)
-    off = replace(search.film, adrift=()).off(motion) if motion else search.film.data
+    lens = search.unknowns.lens(best.x)
+    off = replace(search.film, adrift=()).off(motion, *lens) if motion else search.film.data
     return {TRACKS[k]: -float(np.nanmean(off[:, k])) for k in search.film.adrift}
 
 

@@ -12,14 +12,18 @@ import numpy as np
 
 from ..._ask.check import FloatArray, positive, require
 from ..._ask.records import cached_property
-from ..._ask.scene import Scene, require_scene
-from ..._motion.inputs import INPUTS, changed, distinct, size_of, value_of
+from ..._ask.scene import Scene
+from ..._motion.differences import columns
+from ..._motion.inputs import changed, distinct, size_of, value_of
 from ..._motion.samples import vector
 from ..._motion.trajectory import Trajectory
-from ..simulate import simulate
+from ..simulate import sample_times, simulate
 
 TRACKS = ("x", "z", "theta")
+NORMAL = 1.4826  # standard deviation per median magnitude, for normal noise
+CAMERA = ("scale", "ground", "clock")  # x_film = scale x, z_film = ground + scale z, t_film + clock
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
+_BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
 _FINEST, _COARSEST = 1e-15, 1e15  # sigma over the size of the body: squares stay in range
 
@@ -30,6 +34,7 @@ class Film:
 
     t: FloatArray
     data: FloatArray
+    first: float = 0.0  # what was subtracted from the user's times, if the clock is unknown
     adrift: tuple[int, ...] = ()  # tracks whose origin is unknown
     reading: tuple[str, ...] = ()  # what was changed, in words of the arguments of `fit_motion`
 
@@ -37,23 +42,29 @@ class Film:
     def known(self) -> Any:
         return np.isfinite(self.data)
 
-    def off(self, motion: Trajectory) -> FloatArray:
+    def off(self, motion: Trajectory, factors: Any = 1.0, added: Any = 0.0) -> FloatArray:
         """Return measured minus computed tracks: angles modulo pi; if adrift, minus their mean."""
-        off: FloatArray = self.data - np.stack([getattr(motion, name) for name in TRACKS], axis=1)
+        off: FloatArray = self.data - (added + factors * columns(motion, TRACKS))
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         for k in self.adrift:
-            off[:, k] -= np.nanmean(off[:, k])
+            off[:, k] -= np.nanmean(off[:, k]) if self.known[:, k].any() else 0.0
         return off
 
 
-def film_of(t: FloatArray, tracks: dict[str, Any]) -> Film:
-    """Return a user's tracks as a film; an error names the wrong one."""
+def film_of(t: FloatArray, tracks: dict[str, Any], *, clock: bool = False) -> Film:
+    """Return a user's tracks as a film; an error names the wrong one.
+
+    If the clock is unknown, the film begins with its first datum, at 0.
+    """
+    first = float(t.min(initial=math.inf)) if clock else 0.0
+    t = sample_times(t - first)
     data = np.full((t.size, len(TRACKS)), math.nan)
     for k, (name, track) in enumerate(tracks.items()):
         if track is not None:
             data[:, k] = vector(name, track, t.size)
             require(name, "NaN or numbers below 1e100", data[:, k], ~(abs(data[:, k]) >= 1e100))
-    return Film(t, data)
+    seen = int(np.isfinite(data).any(axis=1).argmax()) if clock else 0
+    return Film(t[seen:] - clock * t[seen], data[seen:], first + clock * float(t[seen]))
 
 
 def sizes_of(scene: Scene) -> FloatArray:
@@ -78,27 +89,42 @@ def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
 
 
 class Unknowns:
-    """Free parameters of a scene in units of their natural sizes, with bounds."""
+    """Free parameters of a scene and its camera in units of their natural sizes, with bounds.
 
-    def __init__(self, scene: Scene, free: Any) -> None:
-        self.scene = require_scene(scene)
-        self.names = distinct("free", free, INPUTS[:-1])
+    `unit` is the order of magnitude of the film's lengths over those of the scene. The value of the
+    clock is the scene's time of the first frame.
+    """
+
+    def __init__(self, scene: Scene, names: tuple[str, ...], film: Film, unit: float) -> None:
+        self.scene, self.names = scene, names
+        length, late = max(scene.a, scene.b), max(film.first, 0.0)
+        camera = {"scale": unit, "ground": 0.0, "clock": late}
+        sizes = {"scale": unit, "ground": unit * length, "clock": size_of(scene, "t")}
+        sizes |= {"friction": 1.0, "rolling_resistance": 0.1 * min(scene.a, scene.b)}
         try:
-            own = np.array([value_of(scene, name) for name in self.names])
+            own = [camera[n] if n in camera else value_of(scene, n) for n in names]
         except ValueError as error:  # the scene has no such number
             raise ValueError(f"free{str(error).removeprefix('wrt')}") from None
-        self.sizes = np.array([size_of(scene, name) for name in self.names])
-        self.sizes[np.array(self.names) == "friction"] = 1.0
-        bounds = [_bounds(*pair) for pair in zip(self.names, own, strict=True)]
+        self.sizes = np.array([sizes.get(n) or size_of(scene, n) for n in names])
+        bounds = [_bounds(scene, *pair) for pair in zip(names, own, strict=True)]
         self.own, (self.low, self.high) = own / self.sizes, np.array(bounds).T / self.sizes
 
-    def scene_at(self, u: FloatArray) -> Scene:
-        return changed(self.scene, dict(zip(self.names, (u * self.sizes).tolist(), strict=True)))
+    def named(self, u: FloatArray) -> dict[str, float]:
+        return dict(zip(self.names, (u * self.sizes).tolist(), strict=True))
+
+    def lens(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the factors of the camera and what it adds, for each track."""
+        values = self.named(u)
+        scale, ground = values.get("scale", 1.0), values.get("ground", 0.0)
+        return np.array([scale, scale, 1.0]), np.array([0.0, ground, 0.0])
 
     def motion(self, u: FloatArray, t: FloatArray) -> Trajectory | None:
-        """Return the motion at the times, or None if it does not reach the last of them."""
+        """Return the motion at times of the film, or None if it does not reach the last of them."""
+        values = self.named(u)
+        t = t + values.get("clock", 0.0)
+        mine = {name: value for name, value in values.items() if name not in CAMERA}
         with suppress(ValueError):  # some unknowns give no valid scene
-            motion = simulate(self.scene_at(u), t, raise_on_failure=False)
+            motion = simulate(changed(self.scene, mine), t, raise_on_failure=False)
             return motion if motion.t.size == t.size else None
         return None
 
@@ -116,7 +142,9 @@ class Unknowns:
         return turned
 
 
-def _bounds(name: str, value: float) -> tuple[float, float]:
+def _bounds(scene: Scene, name: str, value: float) -> tuple[float, float]:
     if name in _POSITIVE:
         return 0.1 * value, 100 * value
+    if name == "rolling_resistance":
+        return 0.0, min(scene.a, scene.b) / 2
     return _BOUNDS.get(name, (-math.inf, math.inf))

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..._ask.check import FloatArray
-from .film import TRACKS, sizes_of
+from .film import NORMAL, TRACKS, sizes_of
 from .search import LEAST, Search, decomposed
 
-NORMAL = 1.4826  # standard deviation per median magnitude, for normal noise
 TRACKER = 0.02  # deviation of a poor tracker, relative to the size of the body or in rad
 _ALARM = 3.5  # none of 340 films of the right scene exceeded 2.99
 _FEWEST = 8  # fewer pairs of neighbours give no verdict
@@ -47,8 +46,8 @@ class Verdict:
 def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
     """Return standard deviations of the tracks: the given ones, others from the residuals.
 
-    The unknowns use up a share of each track's data, the trace of its projection. If there are
-    outliers, the median residual counts.
+    The unknowns use up a share of each track's data, given by the trace of its projection. If there
+    are outliers, the median residual is used instead.
     """
     residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
     directions, _, _, known = decomposed(best)
@@ -101,9 +100,10 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
         seen, unit = film.known[:, k], 1.0 if name == "theta" else size
         if not seen.any():
             continue
-        if np.isnan(given[k]) and search.sigma[k] > _COARSE[name] * unit:
+        sigma = search.sigma[k] / search.unknowns.lens(best.x)[0][k]
+        if np.isnan(given[k]) and sigma > _COARSE[name] * unit:
             coarse = True
-            words.append(f"{name} is off by {_printed(name, search.sigma[k])}, beyond any tracker")
+            words.append(f"{name} is off by {_printed(name, sigma)}, beyond any tracker")
         wild = int(np.sum(np.abs(off[seen, k]) > _WILD))
         if search.loss != "linear" and wild > _MANY * seen.sum():
             words.append(f"{wild} of {seen.sum()} values of {name} are beyond {_WILD:g} sigma")
@@ -142,14 +142,15 @@ def _printed(name: str, sigma: float) -> str:
     return f"{1e3 * sigma:.2g} mm" if sigma < 1 else f"{sigma:.2g} m"
 
 
-def counted(search: Search, residuals: FloatArray, given: FloatArray) -> str:
+def counted(search: Search, best: Any, given: FloatArray) -> str:
     """Return the number of data in words, with chi2 for given deviations or the estimated ones."""
-    film, chi2 = search.film, float(np.sum(residuals**2))
+    film, residuals = search.film, search.residuals(best.x)
+    chi2, sigma = float(np.sum(residuals**2)), search.sigma / search.unknowns.lens(best.x)[0]
     dof = residuals.size - len(search.unknowns.names)
     words = [f"{residuals.size} data"]
     names = [n for k, n in enumerate(TRACKS) if np.isnan(given[k]) and film.known[:, k].any()]
     if names:
-        each = ", ".join(f"{n} {_printed(n, search.sigma[TRACKS.index(n)])}" for n in names)
+        each = ", ".join(f"{n} {_printed(n, sigma[TRACKS.index(n)])}" for n in names)
         words.append(f"sigma estimated: {each}")
     else:
         words.append(f"chi2 / {dof} = {chi2 / dof:.3g}")

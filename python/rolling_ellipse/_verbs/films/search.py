@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
 
@@ -10,15 +12,20 @@ import numpy.typing as npt
 
 from ..._ask.check import FloatArray
 from ..._ask.printing import required
+from ..._motion.inputs import size_of
 from .film import Film, Unknowns
 from .starts import Box, cell, starts
 
 cost = attrgetter("cost")  # by which SciPy's solutions are compared
 LEAST = 1e-9  # smallest singular value, relative to the largest, that the data can resolve
-_SHARES = 0.3, 0.6, 1.0  # shares of the film that are fitted in turn
+_SHARES = 0.3, 0.6, 1.0  # shares of the film's beginning that are fitted in turn
+_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # its time in sqrt(L/g), and its smallest share of the film
+_LONGER = 1.6  # factor by which what is fitted grows from there
 _TRIED = 30  # number of starts that are fitted
 _HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
 _WORSE = 1.1, 50.0  # largest ratio and rise of the cost for which the search continues in a cell
+_AS_GOOD, _SAME = 1.01, 0.1  # largest ratio and rise of the cost of a solution that is as good
+_SOON = 1e-3  # distance in natural sizes of a start that is earlier by one
 _IMPOSSIBLE = 1e3  # residual of an impossible scene, relative to the largest of a body at rest
 _EXACT: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-10)
 _EXACT |= {"max_nfev": 100, "jac": "3-point"}
@@ -35,12 +42,14 @@ class Search:
         far = np.abs(film.data) + max(unknowns.scene.a, unknowns.scene.b)
         self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
 
-    def residuals(self, u: FloatArray) -> FloatArray:
-        motion = self.unknowns.motion(u, self.film.t)
+    def residuals(self, u: FloatArray, some: Film | None = None) -> FloatArray:
+        """Return the residuals of the film, or of some part of it."""
+        film = some or self.film
+        motion = self.unknowns.motion(u, film.t)
         if motion is None:
-            return np.full(self.track.size, self.impossible)
-        off: FloatArray = (self.film.off(motion) / self.sigma)[self.film.known]
-        return off
+            return np.full(int(film.known.sum()), self.impossible)
+        off = film.off(motion, *self.unknowns.lens(u)) / self.sigma
+        return np.asarray(off[film.known])
 
     def solve(
         self, u: FloatArray, *, exact: bool = False, share: float = 1.0,
@@ -51,43 +60,61 @@ class Search:
         low, high, k = low.copy(), high.copy(), list(held)
         u = np.clip(u, low + LEAST, high - LEAST)
         low[k], high[k] = u[k] - LEAST, u[k] + LEAST
-        used = np.nonzero(self.film.known)[0] < share * self.film.t.size
-
-        def residuals(u: FloatArray) -> FloatArray:
-            return np.where(used, self.residuals(u), 0.0)
-
-        how = _EXACT if exact else _ROUGH
-        one = self.least_squares(residuals, u, bounds=(low, high), loss=self.loss, **how)
+        how = {"args": (self._part(share),), "loss": self.loss} | (_EXACT if exact else _ROUGH)
+        one = self.least_squares(self.residuals, u, bounds=(low, high), **how)
         one.within = within
         return one
 
     def minima(self, tried: int = _TRIED) -> list[Any]:
-        """Return the best solution of each cell of friction, the best one first."""
-        nearest: list[tuple[float, FloatArray, Box]] = []
-        for several, box in starts(self.film, self.unknowns):
-            distances = [self._distance(self.residuals(u)) for u in several]
-            k = int(np.argmin(distances))
-            nearest.append((distances[k], several[k], box))
-        nearest.sort(key=itemgetter(0))
-        if nearest[0][0] >= self._distance(np.full(self.track.size, self.impossible)):
+        """Return the best solution of each cell of friction, the best one first.
+
+        Starts and cells are compared by the film's beginning: later, small errors have grown. What
+        is nearly as good as the best is fitted to more and more of the film.
+        """
+        share = self._beginning()
+        beginning = self._part(share)
+
+        def distance(u: FloatArray) -> float:
+            return float(np.log1p(self.residuals(u, beginning) ** 2).sum())  # spared by outliers
+
+        nearest = sorted(starts(self.film, self.unknowns, distance), key=itemgetter(0))
+        if self.unknowns.motion(nearest[0][1], beginning.t) is None:
             raise ValueError("scene must move until the last time t, got one that does not")
         best: dict[tuple[float, ...], Any] = {}
         for _, u, box in nearest[:tried]:
-            for share in _SHARES:
-                one = self.solve(u, share=share, within=box)
+            for part in _SHARES:
+                one = self.solve(u, share=part * share, within=box)
                 u = one.x
             key = (*box[0], *box[1])
-            best[key] = min(best.get(key, one), one, key=cost)
-        return sorted(best.values(), key=cost)
+            best[key] = self._nearest([best.get(key, one), one])
+        ones = sorted(best.values(), key=cost)
+        while share < 1:
+            share = min(_LONGER * share, 1.0)
+            ones = [self.solve(one.x, share=share, within=one.within) for one in _close(ones)]
+            ones.sort(key=cost)
+        return ones
+
+    def _beginning(self) -> float:
+        """Return the share of frames in which a first event of the scene shows its effects."""
+        unknowns, t = self.unknowns, self.film.t
+        motion = unknowns.motion(unknowns.own, t)
+        first = motion.events[0].t if motion and motion.events else 0.0
+        reach = _BEGINNING * size_of(unknowns.scene, "t") + 2 * first
+        return max(float(np.mean(t <= t[0] + reach)), _LEAST_SHARE)
+
+    def _part(self, share: float) -> Film:
+        """Return the first frames of the film: a share of those with data."""
+        seen = np.flatnonzero(self.film.known.any(axis=1))
+        count = int(seen[math.ceil(share * seen.size) - 1]) + 1
+        return replace(self.film, t=self.film.t[:count], data=self.film.data[:count])
 
     def best(self, minima: list[Any]) -> Any:
-        """Return the best minimum around those of a list that are nearly as good as the first.
+        """Return the best minimum around those given that are nearly as good as the first.
 
         chi2 has kinks where the order of events changes, and many minima between them.
         """
-        random, limit = np.random.default_rng(0), _WORSE[0] * minima[0].cost + _WORSE[1]
-        close = [one for one in minima if one.cost < limit]
-        best = min((self._hopped(one, random) for one in close), key=cost)
+        random, close = np.random.default_rng(0), _close(minima)
+        best = self._nearest([self._hopped(one, random) for one in close])
         best = self._hopped(best, random) if len(close) > 1 else best
         return min(self.solve(best.x, exact=True), best, key=cost)
 
@@ -101,12 +128,29 @@ class Search:
         best, within = start, cell(self.unknowns, start.x)
         for normal in random.normal(size=(_HOPS, singular.size)):
             u = best.x + _REACH * axes.T @ (np.minimum(errors, 1.0) * normal)
-            best = min(best, self.solve(u, within=within), key=cost)
+            best = self._nearest([best, self.solve(u, within=within)])
         return best
 
-    def _distance(self, residuals: FloatArray) -> float:
-        """Return a sum of logarithms, to which an outlier adds little."""
-        return float(np.log1p(residuals**2).sum())
+    def _nearest(self, ones: list[Any]) -> Any:
+        """Return the best solution; if the clock is unknown, the nearest to the guess of the best.
+
+        A motion may pass a state again: a flight its height, a rocking body all of its states. Of
+        starts in the same state, the one soonest before the film counts.
+        """
+        best, unknowns = min(ones, key=cost), self.unknowns
+        clock = np.array(unknowns.names) == "clock"
+        if not clock.any():
+            return best
+        good = [one for one in ones if one.cost <= _AS_GOOD * best.cost + _SAME]
+        away = [unknowns.turned(one.x - unknowns.own) for one in good]
+        late = [_SOON * one.x for one in good]
+        return good[int(np.argmin(np.linalg.norm(np.where(clock, late, away), axis=1)))]
+
+
+def _close(ones: list[Any]) -> list[Any]:
+    """Return those that are nearly as good as the first, the best one."""
+    limit = _WORSE[0] * ones[0].cost + _WORSE[1]
+    return [one for one in ones if one.cost < limit]
 
 
 def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArray[np.bool_]]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ..._ask.check import FloatArray
 from ..._core import Mode
+from .camera import cameras
 from .film import TRACKS as PLACES
 from .film import Film, Unknowns
 
@@ -19,30 +20,43 @@ _GRID = {
     "restitution": (0.2, 0.5, 0.8),
     "inertia": (0.5, 1.0, 2.0),  # relative to the first guess
     "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
+    "rolling_resistance": (0.05, 0.5),  # in its natural size
 }
 _CELL = 1.3  # ratio of a cell's ends to its friction on the grid; cells overlap
 _FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames: of the first pre-fit, growth factor, maximum
+_EVERY, _KEPT = 3, 12  # pre-fits are skipped if cameras are many, and cameras that are kept
 _WEIGHINGS = 20  # rounds of reweighting, each of which lowers the weight of outliers
 _SPINS = 4000  # largest number of angular velocities in a periodogram
 
 
-def starts(film: Film, unknowns: Unknowns) -> Iterator[tuple[FloatArray, Box]]:
-    """Yield starts with equal coefficients, (n, k), and the box in which a fit from them stays.
+def starts(
+    film: Film, unknowns: Unknowns, distance: Callable[[FloatArray], float]
+) -> Iterator[tuple[float, FloatArray, Box]]:
+    """Yield the best start for each set of coefficients: its distance, itself, and its fit's box.
 
-    They are the scene's own, and pre-fits of more and more frames. Friction stays in a cell of its
-    grid: where it is large enough for the body to stick, no film can determine it, and a step that
-    overshoots would not come back.
+    They are the scene's own, and pre-fits of more and more frames, seen by those cameras that make
+    the film most like the scene. Friction stays in a cell of its grid: where it is large enough for
+    the body to stick, no film can determine it, and a step that overshoots would not come back.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):
         counts.append(math.ceil(_MORE * counts[-1]))
-    flights = [unknowns.own, *(unknowns.with_values(flight(film, unknowns, n)) for n in counts)]
-    own = np.clip(flights, unknowns.low, unknowns.high)
-    grid = {k: [own[0, k], *values] for k, values in _grid(film, unknowns).items()}
-    for coefficients in itertools.product(*grid.values()):
-        several = own.copy()
-        several[:, list(grid)] = coefficients
-        yield several, cell(unknowns, several[0])
+    seen = list(cameras(film, unknowns))
+    few = counts[:: 1 if len(seen) == 1 else _EVERY]
+    own = []
+    for camera, scenic in seen:
+        guesses = [{}, *(flight(scenic, unknowns, count) for count in few)]
+        values = [unknowns.with_values(guess | camera) for guess in guesses]
+        own.append(np.clip(values, unknowns.low, unknowns.high))
+    own.sort(key=lambda flights: min(map(distance, flights)))
+    for flights in own[:_KEPT]:
+        grid = {k: [flights[0, k], *values] for k, values in _grid(film, unknowns).items()}
+        for coefficients in itertools.product(*grid.values()):
+            several = flights.copy()
+            several[:, list(grid)] = coefficients
+            distances = [distance(u) for u in several]
+            k = int(np.argmin(distances))
+            yield distances[k], several[k], cell(unknowns, several[k])
 
 
 def cell(unknowns: Unknowns, u: FloatArray) -> Box:
@@ -63,7 +77,8 @@ def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
     grid = {}
     for k, name in enumerate(unknowns.names):
         if name in _GRID and not (name == "theta" and film.known[:, 2].any()):
-            unit = unknowns.own[k] if name == "inertia" else 1 / unknowns.sizes[k]
+            units = {"inertia": unknowns.own[k], "rolling_resistance": 1.0}
+            unit = units.get(name, 1 / unknowns.sizes[k])
             grid[k] = [unit * value for value in _GRID[name]]
     return grid
 
