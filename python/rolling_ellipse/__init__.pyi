@@ -60,6 +60,7 @@ from ._verbs.flow import flow as flow
 from ._verbs.flow import period as period
 from ._verbs.flow import rolling_equation as rolling_equation
 from ._verbs.flow_jacobian import flow_jacobian as flow_jacobian
+from ._verbs.read_track import read_track as read_track
 from ._verbs.simulate import simulate as simulate
 from ._verbs.work_precision import WorkPrecision as WorkPrecision
 from ._verbs.work_precision import work_precision as work_precision

@@ -30,7 +30,8 @@ def use(folder: Path) -> list[float]:
     rate = rl.rolling_equation(body)(0.0, np.zeros(3))[0] + rl.period(body)
     proof, bounds = rl.certify(body).validity == rl.Validity.VALID, rl.thresholds(2.0, 1.0)
     needed = rl.required_friction(body) + rl.blow_to(rl.Scene(2.0, 1.0), 1.5).jz
-    fit = rl.fit_motion(motion.t, motion.x, scene=motion.scene, free=("omega",), sigma=1e-3)
+    track = rl.read_track({"t": motion.t, "x": motion.x}, t="t", x="x")
+    fit = rl.fit_motion(*track, scene=motion.scene, free=("omega",), sigma=1e-3)
     race = rl.work_precision(body, 0.5, methods=["flow"], rounds=1, max_seconds=0.1)
     growth = motion.sensitivity(wrt="omega").state[-1].sum() + rolls.sol(0.3).x[0] + rolls.at(0.3).x
     rolls.save(folder / "motion.npz")

@@ -41,6 +41,11 @@ FILM: dict[str, Any] = {
     "t": [0.1, 0.2, 0.3], "x": [0.0, 0.1, 0.2], "scene": Scene(2.0, 1.0, omega=1.0),
     "free": "omega", "sigma": 0.1,
 }  # fmt: skip
+TRACK: dict[str, Any] = {
+    "path": {"t": [0.0, 1.0], "x": [0.0, 1.0], "word": ["a", "b"], "two": [[0.0, 1.0]]},
+    "t": "t", "x": "x",
+}  # fmt: skip
+TURNS: dict[str, Any] = {"t": FILM["t"], "theta": [0.0, 0.1, 0.2], "scene": FILM["scene"]}
 ENDLESS = Scene(2.0, 1.0, omega=1.0, friction=INF)
 ROWS = np.arange(1.0, 12.0)
 SAMPLES: dict[str, Any] = {
@@ -53,6 +58,12 @@ DEEP.append(DEEP)
 
 def press(of: Scene, **options: Any) -> Any:
     return lambda _: rl.blow_to(of, **options)
+
+
+def emptied(path: Path) -> Path:
+    """A table of names without numbers."""
+    path.write_text("t,x\n", encoding="utf-8")
+    return path
 
 
 def marked_by(folder: Path, scale: float) -> Any:
@@ -165,6 +176,23 @@ REFUSALS: list[Row] = [
            free=["t", "mu", "z", "jx", ("omega", "omega"), (), ("omega", "x", "theta", "mass")]),
     ("free", lambda _: rl.fit_motion(**FILM | {"scene": ENDLESS, "free": "friction"})),
     ("free", lambda _: rl.fit_motion(**FILM | {"x": [0.0, NAN, NAN]})),
+    *wrong(rl.fit_motion, FILM | {"z": [9.0] * 3, "free": "scale"},
+           free=[("scale", "gravity", "a", "b"), ("clock", "x", "theta", "omega"), "zoom"]),
+    *(("x", lambda _, free=free: rl.fit_motion(**TURNS, free=free)) for free in ("clock", "scale")),
+    ("z", lambda _: rl.fit_motion(**FILM | {"free": "ground"})),
+    *wrong(rl.read_track, TRACK,
+           t=["s", 1, [1.0]], x=["X1", "", 0, ["x"], "word", "two"], z=["q"], theta=["x_dot"],
+           points=["x", ("x", "x"), ("x", "t", "x", "t"), 4 * "x"],
+           fps=[0.0, -1.0, NAN], scale=NOT_POSITIVE, y_up=[1, None], clockwise=["no"],
+           degrees=[0.5]),
+    *wrong(rl.read_track, {"path": {"t": [0.0, 1.0], "x": [NAN, NAN]}, "t": "t"}, x=["x", None]),
+    *wrong(rl.read_track, {"path": {"t": [0.0, 1.0, 1.0], "x": [0.0] * 3}, "x": "x"}, t=["t"]),
+    *wrong(rl.read_track, {"path": {"x": [0.0, 1.0]}, "x": "x"}, fps=[None]),
+    *wrong(rl.read_track, {"path": {n: [0.0, 1.0] for n in "abcd"}, "fps": 9.0},
+           points=["abcd", tuple("abc"), tuple("abcd")]),
+    *wrong(rl.read_track, {"t": "t", "x": "x"}, path=[3.5, None, "", "\0"]),
+    *wrong(rl.read_track, {"path": ROOT / "README.md"}, delimiter=[", ", 3], decimal=["x", 1]),
+    ("x", lambda folder: rl.read_track(emptied(folder / "t.csv"), t="t")),
     ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),
     ("t", lambda _: rl.fit_motion(1e18 * ROWS, z=9 - 0.05 * ROWS**2, scene=ENDLESS, free="omega")),
     *wrong(rl.Trajectory.from_arrays, SAMPLES,

@@ -30,10 +30,10 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
-#: Functions that write many files or take seconds per call; tests/refusals has their arguments.
+#: Functions of files or of seconds per call; tests/refusals has their arguments.
 SLOW = (
-    "rl.examples", "rl.explore", "rl.fit_motion", "rl.work_precision", "rl.report.errata",
-    "rl.report.errata_table",
+    "rl.examples", "rl.explore", "rl.fit_motion", "rl.read_track", "rl.work_precision",
+    "rl.report.errata", "rl.report.errata_table",
 )  # fmt: skip
 PLAIN = tuple(name for name in FUNCTIONS if name not in (*OWN, *SLOW))
 

@@ -1,0 +1,127 @@
+"""Tracks of a body from the tables that trackers write."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from contextlib import suppress
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, choice, file_name, flag, positive, require, shown
+from .._motion.inputs import distinct
+from .._motion.samples import vector
+
+_MISSING = ("", "-", "na", "n/a", "none", "null")  # what trackers write instead of a number
+_MARKS = ("\t", ";", "|", ",", " ")
+
+
+def read_track(
+    path: Any, *, t: str | None = None, x: str | None = None, z: str | None = None,
+    theta: str | None = None, points: Iterable[str] | None = None, fps: float | None = None,
+    delimiter: str | None = None, decimal: str | None = None, y_up: bool = True,
+    clockwise: bool = False, degrees: bool = False, scale: float = 1.0,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Read the track of a body from a tracker's table, as `fit_motion` takes it.
+
+    Names are those in the last line above the numbers; where a name occurs again, ".1", ".2", ...
+    follow it, and without such a line names are "0", "1", .... Empty cells are NaN.
+
+    Parameters
+    ----------
+    path : path, mapping or DataFrame
+        A text file (UTF-8), or columns by name, each of shape (n,).
+    t, x, z, theta : str, optional
+        Columns of the times [s], of the centre, to the right and up, and of the angle of the
+        semi-axis a. Without `t` rows are frames of a film with `fps`.
+    points : four of str, optional
+        Instead of `x`, `z` and `theta`: columns of x and z of one point and of another, both on the
+        long axis and as far from the centre. The angle is that of the line to the second one.
+    fps : float, optional
+        Units of `t` per second, as for numbers of frames, or 1000 for milliseconds.
+    delimiter, decimal : str, optional
+        Characters between columns and before decimals. By default the first of tab, semicolon,
+        bar, comma and space that the last line has, and comma or point.
+    y_up : bool
+        False if the column `z` counts downwards, as in pixels of an image.
+    clockwise, degrees : bool
+        What the column `theta` has, as seen in the film.
+    scale : float
+        Metres per unit of the file's lengths.
+
+    Returns
+    -------
+    t, x, z, theta : ndarray, shape (n,)
+        Times [s], centre [m] and angle [rad], clockwise, without jumps by half turns (of points, by
+        full turns). NaN for what is not in the table.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing or of another length, times do not increase, no place and no angle is
+        a number, both points coincide, or `fps` or `scale` is not positive.
+    TypeError
+        If a column has text, which is shown.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> from rolling_ellipse import read_track
+    >>> table = {"frame": [0, 1], "u": [310.0, 316.0], "v": [200.0, 198.0]}
+    >>> read_track(table, t="frame", fps=240, x="u", z="v", y_up=False, scale=5e-4)[1]
+    array([0.155, 0.158])
+    """
+    table = _table(path, delimiter, decimal)
+    names, size = tuple(table), len(next(iter(table.values()), ()))
+
+    def column(argument: str, name: Any) -> FloatArray:
+        some = [np.nan] * size if name is None else table[choice(argument, name, names)]
+        return np.array(vector(argument, some, size))
+
+    times = np.arange(float(size)) if t is None else column("t", t)
+    times /= 1.0 if t and fps is None else positive("fps", fps)
+    require("t", "increasing numbers", times, np.diff(times, prepend=-np.inf) > 0)
+    unit = positive("scale", scale) * np.array([[1.0], [1.0 if flag("y_up", y_up) else -1.0]])
+    place = unit * (column("x", x), column("z", z))
+    turn = np.pi / 180 if flag("degrees", degrees) else 1.0
+    angle = column("theta", theta) * (turn if flag("clockwise", clockwise) else -turn)
+    if points is not None:
+        ends = np.array([column("points", n) for n in distinct("points", points, names)])
+        if len(ends) != 4 or (x, z, theta) != (None,) * 3:
+            raise ValueError(f"points must be four names, without x, z, theta, got {shown(points)}")
+        place, (along, up) = unit * (ends[:2] + ends[2:]) / 2, unit * (ends[2:] - ends[:2])
+        require("points", "apart at all times t", times, (along != 0) | (up != 0))
+        angle = -np.arctan2(up, along)
+    seen = np.isfinite(angle)
+    if not seen.any() and not np.isfinite(place).any():
+        raise ValueError(f"x, z or theta must be a column with numbers, got {size} rows without")
+    angle[seen] = np.unwrap(angle[seen], period=np.pi if points is None else 2 * np.pi)
+    return times, place[0], place[1], angle
+
+
+def _table(path: Any, delimiter: Any, decimal: Any) -> dict[str, Any]:
+    """Return the columns of a table by their names."""
+    if hasattr(path, "keys"):
+        return {str(name): path[name] for name in path}
+    text = Path(file_name("path", path)).read_text(encoding="utf-8-sig", errors="replace")
+    lines = [line.strip(" #") for line in text.splitlines() if line.strip()] or [""]
+    mark = delimiter or next((each for each in _MARKS if each in lines[-1]), " ")
+    point = choice("decimal", decimal or ("." if mark == "," else ","), (",", "."))
+    cells = csv.reader(lines, delimiter=choice("delimiter", mark, _MARKS), skipinitialspace=True)
+    rows = [[_cell(cell, point) for cell in row] for row in cells]
+    # a head has text and no numbers; NaN is an empty cell
+    *_, first = 0, *(k for k, r in enumerate(rows, 1) if {type(c) for c in r if c == c} == {str})
+    heads = [*map(str, rows[first - 1] if first else range(len(rows[0])))]
+    names = [f"{n}.{heads[:k].count(n)}" if n in heads[:k] else n for k, n in enumerate(heads)]
+    return {str(n): c for n, *c in zip_longest(names, *rows[first:], fillvalue=np.nan) if n == n}
+
+
+def _cell(text: str, point: str) -> float | str:
+    """Return a cell's number, NaN if it is empty, or else its text."""
+    with suppress(ValueError):
+        return np.nan if text.strip().lower() in _MISSING else float(text.replace(point, "."))
+    return text.strip()

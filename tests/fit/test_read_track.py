@@ -1,0 +1,130 @@
+"""Tables of trackers become tracks in metres, radians and seconds, whatever their kind."""
+
+import math
+import runpy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.paths import ROOT
+from rolling_ellipse import Scene, fit_motion, read_track, simulate
+
+DATA = ROOT / "docs" / "data"
+T = np.arange(6) / 60
+ROWS = {"t": T, "x": np.linspace(0, 1, 6), "y": np.linspace(2, 3, 6), "q": np.linspace(0, 5, 6)}
+TABLE: dict[str, Any] = ROWS
+
+
+def written(path: Path, head: str, delimiter: str, decimal: str) -> Path:
+    lines = [delimiter.join(f"{v:.6f}" for v in row) for row in zip(*ROWS.values(), strict=True)]
+    text = "\n".join(line.replace(".", decimal) for line in lines)
+    path.write_text(f"{head}\n{text}\n", encoding="utf-8-sig")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("head", "delimiter", "decimal"),
+    [
+        ("mass A\t\t\t\nt\tx\ty\tq", "\t", ","),  # Tracker
+        ("mass A\t\t\t\nt\tx\ty\tq", "\t", "."),
+        ('"t";"x";"y";"q"', ";", ","),
+        ("#Kinovea 0.8\n#t x y q", " ", "."),
+        ("t,x,y,q", ",", "."),
+        ("# 60 frames a second\nt,x,y,q", ",", "."),
+    ],
+)
+def test_tables_of_all_kinds_give_the_same_track(
+    head: str, delimiter: str, decimal: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path / "track.txt", head, delimiter, decimal)
+    hows: list[dict[str, Any]] = [{}, {"delimiter": delimiter, "decimal": decimal}]
+    for how in hows:
+        t, x, z, theta = read_track(path, t="t", x="x", z="y", theta="q", clockwise=True, **how)
+        assert np.allclose([t, x, z, theta], [*ROWS.values()], atol=1e-6)
+
+
+def test_a_data_frame_a_mapping_and_a_file_are_the_same(tmp_path: Path) -> None:
+    pandas = pytest.importorskip("pandas")
+    path = written(tmp_path / "t.csv", "t,x,y,q", ",", ".")
+    for table in (TABLE, pandas.DataFrame(TABLE), pandas.read_csv(path), path, str(path)):
+        t, x, _, theta = read_track(table, t="t", x="x")
+        assert np.allclose([t, x], [ROWS["t"], ROWS["x"]], atol=1e-6) and np.isnan(theta).all()
+
+
+def test_units_and_directions_are_those_that_are_named() -> None:
+    """Rows or their numbers count frames; pixels count down; angles are degrees or radians."""
+    table = {"n": [3, 4, 6], "x": [0, 1, 2], "y": [5, 4, 3], "deg": [10.0, 20.0, 40.0]}
+    t, x, z, theta = read_track(
+        table, t="n", x="x", z="y", theta="deg", fps=50, y_up=False, degrees=True, scale=0.1
+    )
+    assert t == pytest.approx([0.06, 0.08, 0.12]) and x == pytest.approx([0.0, 0.1, 0.2])
+    assert z == pytest.approx([-0.5, -0.4, -0.3])
+    assert theta == pytest.approx(-np.radians([10, 20, 40]))
+    t, x, z, theta = read_track(table, fps=50, theta="x", clockwise=True)
+    assert t == pytest.approx([0.0, 0.02, 0.04]) and theta == pytest.approx([0, 1, 2])
+    assert np.isnan(x).all() and np.isnan(z).all()
+
+
+@pytest.mark.parametrize(("period", "rate"), [(math.pi, 30.0), (2 * math.pi, 40.0)])
+def test_angles_continue_through_the_ends_of_their_range(period: float, rate: float) -> None:
+    """Fitted ellipses have angles of half a turn, points those of a turn, with gaps."""
+    true = rate * T - 1.0
+    wrapped = np.mod(true, period)
+    wrapped[2] = math.nan
+    theta = read_track({"q": wrapped}, theta="q", fps=60, clockwise=True)[3]
+    assert np.isnan(theta[2]) and np.nanmax(abs(np.diff(theta - true)[[0, 3, 4]])) < 1e-12
+
+
+def test_two_points_of_a_body_give_its_middle_and_its_angle() -> None:
+    """The angle is clockwise as seen in the film, whichever way the heights count."""
+    angle, middle = np.linspace(0.3, 9.0, 30), np.array([[2.0], [3.0]])
+    along = 0.4 * np.stack([np.cos(angle), -np.sin(angle)])
+    tracks = np.concatenate([middle - along, middle + along])
+    for sign in (1, -1):
+        rows = tracks * np.array([[1], [sign], [1], [sign]])
+        table = dict(zip(("x1", "y1", "x2", "y2"), rows, strict=True))
+        _, x, z, theta = read_track(table, points=(*table,), fps=30, y_up=sign > 0)
+        assert np.allclose([x - 2, z - 3, theta - angle], 0, atol=1e-12)
+
+
+def test_empty_cells_and_repeated_names_are_kept_apart(tmp_path: Path) -> None:
+    path = tmp_path / "two.txt"
+    path.write_text("A\t\t\tB\nt\tx\ty\tx\ty\n0\t1\t2\t3\t4\n1\t\t-\tnan\n", encoding="utf-8")
+    assert np.array_equal(read_track(path, t="t", x="x")[1], [1.0, np.nan], equal_nan=True)
+    again = read_track(path, t="t", x="x.1", z="y.1")[1:3]
+    assert np.array_equal(again, [[3, np.nan], [4, np.nan]], equal_nan=True)
+    path.write_text("0 1\n1 3\n", encoding="utf-8")
+    assert read_track(path, t="0", x="1")[1].tolist() == [1.0, 3.0]
+
+
+def test_a_table_like_those_of_tracker_becomes_parameters() -> None:
+    """The track begins 4 ms after the drop, and its origin is 12 mm below the ground."""
+    track = read_track(DATA / "track_tracker.txt", t="t", x="x", z="y", theta="θ", degrees=True)
+    guess = Scene(0.035, 0.025, z=0.1, theta=0.3, omega=10.0, x_dot=0.15, friction=0.3)
+    free = ("theta", "omega", "x_dot", "restitution", "friction", "ground", "clock")
+    fit = fit_motion(*track, scene=guess, free=free)
+    true = {"omega": 12.0, "restitution": 0.52, "friction": 0.18, "ground": 0.012, "clock": -17.196}
+    assert all(abs(fit.values[name] - v) < 4 * fit.errors[name] for name, v in true.items())
+    assert fit.errors["ground"] < 2e-4 and "not fit" not in fit.message
+
+
+def test_two_tracked_points_become_parameters() -> None:
+    """Pixels of 0.4 mm, guessed as 1 mm; the ground is 500 of them below the corner."""
+    points = ("x1", "y1", "x2", "y2")
+    track = read_track(
+        DATA / "track_points.csv", t="frame", fps=60, points=points, y_up=False, scale=1e-3
+    )
+    guess = Scene(0.06, 0.04, theta=0.8, omega=0.0, friction=1.0)
+    free = ("x", "theta", "inertia", "scale", "ground", "clock")
+    fit = fit_motion(*track, scene=guess, free=free)
+    true = {"theta": 0.9, "inertia": 0.0013, "scale": 2.5, "ground": -0.5, "clock": 0.0}
+    assert all(abs(fit.values[name] - v) < 4 * fit.errors[name] for name, v in true.items())
+    assert fit.errors["inertia"] < 1e-5 and "not fit" not in fit.message
+    assert np.isnan(fit.residuals[30:32]).all() and simulate(fit.scene, 0.1).mode.size
+
+
+def test_the_tracks_are_those_of_their_maker() -> None:
+    maker = runpy.run_path(str(ROOT / "docs" / "makers" / "tracks.py"))
+    for name, make in (("track_tracker.txt", "tracker"), ("track_points.csv", "points")):
+        assert (DATA / name).read_text(encoding="utf-8") == maker[make]()
