@@ -4,7 +4,8 @@ contact_motion.py computes the motions, in series of order 50 and 60 with 64 and
 forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest difference
 was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
 
-    python make_benchmark.py            makes all files (3 minutes, one core)
+    python make_benchmark.py            makes all files (4 minutes, one core)
+    python make_benchmark.py roll.resist slide.resist     makes these two
 
 Rows hold x, z, theta, x_dot, z_dot, omega (SI units) and the normal and the friction force on the
 body [N], 0 in flight. A given time is a multiple of a round step, and no closer than
@@ -14,10 +15,10 @@ and the contact determine are derived from these.
 
 Condition. The sum over the inputs p of |dy/dln p| over `scales`, the worst of the six of a state,
 or for an event of its time over sqrt(L/g); at least 1. theta changes in radians, other zeros of the
-start in units of L, sqrt(g L) or sqrt(g/L); zero slope, friction and restitution are not changed,
-nor are the mass and the inertia of a uniform disc, which follows a and b. Differences of 1e-12 on
-both sides, in 42 digits; an input at the end of its range, or whose other side has other events,
-changes on one side.
+start in units of L, sqrt(g L) or sqrt(g/L); zero slope, friction, restitution and rolling
+resistance are not changed, nor are the mass and the inertia of a uniform disc, which follows a and
+b. Differences of 1e-12 on both sides, in 42 digits; an input at the end of its range, or whose
+other side has other events, changes on one side.
 
 The infinitely many bounces of a disc that no longer slips are a geometric series, with its sum in
 closed form. Events are listed as by a simulation with the default rest_speed: impacts as long as
@@ -43,7 +44,7 @@ from series import Road, value
 
 FOLDER = Path(__file__).parents[1] / "python" / "rolling_ellipse" / "benchmark" / "problems"
 STATE = ["x", "z", "theta", "x_dot", "z_dot", "omega"]
-STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 3: 0.1, 2.5: 0.1}  # else 0.05
+STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 4: 0.1, 3: 0.1, 2.5: 0.1}  # else 0.05
 LARGEST_CONDITION = 1000.0
 LEAST_GAP = 0.002  # over L; a lower flight is not scored as one
 LAWS = ("stronge", "poisson", "newton")
@@ -90,6 +91,14 @@ PROBLEMS = {
     "slide.reverse": Problem(
         "A slip that changes its direction", "When does the slip reverse?",
         ELLIPSE._replace(theta=-1.0, omega=2.0, x_dot=2.0, friction=0.1), 2.5),
+    "roll.resist": Problem(
+        "Rocking to rest with rolling resistance",
+        "When and where does it come to rest, after how many half swings?",
+        ELLIPSE._replace(theta=0.6, friction=1.0, rolling_resistance=0.04), 20),
+    "slide.resist": Problem(
+        "A slide to rest with rolling resistance",
+        "When does the slip end, and where does the body come to rest?",
+        ELLIPSE._replace(theta=0.2, x_dot=2.0, friction=0.1, rolling_resistance=0.1), 4),
     "slide.slope": Problem(
         "A disc that slides down a slope", "Does the disc slide all the way without gripping?",
         DISC._replace(slope=0.4, friction=0.1), 2),
@@ -143,6 +152,7 @@ class Sampler(Follower):
         self.samples = [] if self.arc else [self.before]
         self.sides = [(self.before, self.before) for _ in self.rows]  # a jam at the start
         self.grips = False  # whether friction ever holds the contact
+        self.half_swings = 0  # of a body that starts at rest
 
     @property
     def kinds(self) -> list[str]:
@@ -183,6 +193,11 @@ class Sampler(Follower):
             flying = [*(getattr(row, name) for name in STATE), mpfr(0), mpfr(0)]
             before = self.before if row is self.rows[known] else flying
             self.sides.append((before, self.begun() if row is self.rows[-1] else flying))
+
+    def turns(self, arc: Arc) -> None:
+        """Choose the arc at omega = 0, the end of a half swing."""
+        super().turns(arc)
+        self.half_swings += 1
 
     def hit(self) -> None:
         """Apply an impact, and sum the bounces of a disc that no longer slips."""
@@ -293,6 +308,7 @@ def tags(scene: Scene, found: Sampler) -> list[str]:
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
         "non-round": scene.a != scene.b,
         "restitution": scene.restitution > 0,
+        "rolling-resistance": scene.rolling_resistance > 0,
         "slope": scene.slope != 0,
         "spin": scene.omega != 0 and scene.x_dot is not None,
         "stiction": found.grips,
@@ -304,8 +320,12 @@ def answer(name: str, found: Sampler) -> dict[str, Any]:
     """What a simulator must answer, depending on the question of the problem.
 
     For settling bounces: those after a flight higher than `LEAST_GAP`, and the time of their end.
+    For a body that comes to rest: the place where it rests, and the number of half swings.
     """
     family, last = name.split(".")[0], found.samples[-1]
+    if found.kinds[-1:] == ["REST"]:
+        rest = {"x": float(last[0]), "theta": float(last[2])}
+        return {"events": found.kinds, "last": rest, "half_swings": found.half_swings}
     if name == "roll.circle":
         return {"last": {"x": float(last[0])}}
     if family in ("roll", "brink"):
@@ -340,7 +360,8 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
     found, apart = checked(problem, times)
     wild = [t for t, condition in zip(times, rows, strict=True) if condition > LARGEST_CONDITION]
     start = dict(zip(STATE, doubles(found.samples[0][:6]), strict=True))
-    body = {key: one for key, one in problem.scene._asdict().items() if key not in start}
+    left_out = {*start, *(["rolling_resistance"] if scene.rolling_resistance == 0 else [])}
+    body = {key: one for key, one in problem.scene._asdict().items() if key not in left_out}
 
     def timed(samples: list[list[Any]]) -> list[list[float]]:
         return [[t, *doubles(row)] for t, row in zip(times, samples, strict=True)]

@@ -23,13 +23,14 @@ from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PL
 
 SHEETS = sorted((Path(__file__).resolve().parents[1] / "course").glob("[01][0-9]_*.md"))
 BEGIN, END = "<!-- tasks: made by docs/makers/course.py -->\n", "<!-- end of tasks -->\n"
-POINTS = {  # of the four tasks of each sheet; ten in all
-    1: (2, 2, 3, 3), 2: (2, 3, 2, 3), 3: (2, 3, 3, 2), 4: (2, 2, 4, 2), 5: (3, 2, 3, 2),
+POINTS = {  # of the tasks of each sheet; ten in all
+    1: (2, 2, 3, 3), 2: (2, 3, 2, 3), 3: (2, 2, 2, 2, 2), 4: (2, 2, 4, 2), 5: (3, 2, 3, 2),
     6: (2, 2, 3, 3), 7: (2, 3, 3, 2), 8: (3, 2, 2, 3), 9: (3, 3, 2, 2), 10: (2, 2, 3, 3),
 }  # fmt: skip
 SYMBOLS = {  # of the data, with their units
     "a": ("a", "m"), "b": ("b", "m"), "mass": ("m", "kg"), "gravity": ("g", "m/s²"),
     "slope": (r"\alpha", "rad"), "friction": (r"\mu", ""), "restitution": ("e", ""),
+    "rolling_resistance": (r"\delta", "m"),
     "z": ("z", "m"), "theta": (r"\theta", "rad"), "x_dot": (r"\dot x", "m/s"),
     "z_dot": (r"\dot z", "m/s"), "omega": (r"\omega", "rad/s"), "jx": ("J_x", "N s"),
     "jz": ("J_z", "N s"), "dx": ("d_x", "m"), "dz": ("d_z", "m"), "T": ("T", "s"),

@@ -6,6 +6,7 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     races      docs/data/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/data/batches.json, by benchmarks/bench_batches.py
     engines    docs/data/engines.json, by the adapters of rolling_ellipse.benchmark
+    added      the same for problems that the file lacks; all other scores in it stay
     pictures   docs/*.png and *.gif, by pictures.py; paper/*.png, by paper/figures.py
     problems   docs/problems/* and the table in docs/benchmark.md, by problems.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
@@ -35,6 +36,7 @@ import nbformat
 from nbclient import NotebookClient
 from rolling_ellipse import Scene, WorkPrecision, benchmark, simulate
 from rolling_ellipse._motion.export.strict import in_lines
+from rolling_ellipse.benchmark.adapters import engine
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent
@@ -75,16 +77,56 @@ def engines(quick: bool) -> None:
         begin = time.perf_counter()
         scores = benchmark.run(module.simulate, ladder=LADDER[: 1 if quick else None])
         found["engines"][name] = {
-            "version": version(adapter),
-            "settings": " ".join(str(module.__doc__).partition("\n\n")[2].split()),
+            **described(module, adapter),
             "seconds": round(time.perf_counter() - begin, 1),
             "verdict": scores.verdict(),
             "scores": scores.records(),
         }
+    keep(found)
+    text(quick)
+
+
+def added(quick: bool) -> None:
+    """Run the engines on problems without a score. One that is not installed may refuse them."""
+    from pictures import restored
+
+    path = DATA / "engines.json"
+    found = json.loads(path.read_text(encoding="utf-8"))
+    for name, known in found["engines"].items():
+        there = {row["problem"] for row in known["scores"]}
+        new = [one.id for one in benchmark.problems() if one.id not in there]
+        try:
+            module = import_module(f"rolling_ellipse.benchmark.adapters.{ENGINES[name]}")
+            simulate, on = module.simulate, described(module, ENGINES[name])
+        except ModuleNotFoundError:
+            simulate, on = engine(refuses), {}
+        if on and on["version"] != known["version"]:
+            raise ValueError(f"{name} must be {known['version']} for one table, got {on}")
+        begin = time.perf_counter()
+        scores = benchmark.run(simulate, problems=new, ladder=LADDER)
+        rows = [*known["scores"], *scores.records()]
+        rows.sort(key=lambda row: str(row["problem"]))
+        known |= on | {"verdict": restored(rows).verdict(), "scores": rows}
+        known["seconds"] = round(known["seconds"] + time.perf_counter() - begin, 1)
+    keep(found)
+    text(quick)
+
+
+def refuses(scene: Scene, step: float) -> Any:
+    """Refuse, as any engine, what its file cannot say."""
+    scene.to_sdf()
+    raise ModuleNotFoundError("the engine must be installed for a problem that it may support")
+
+
+def described(module: Any, name: str) -> dict[str, str]:
+    settings = " ".join(str(module.__doc__).partition("\n\n")[2].split())
+    return {"version": version(name), "settings": settings}
+
+
+def keep(found: dict[str, Any]) -> None:
     plain = json.dumps(found)  # has NaN, which JSON does not know
     known = json.loads(plain, parse_constant=lambda name: None)
     (DATA / "engines.json").write_text(in_lines(known, SCORES), encoding="utf-8")
-    text(quick)
 
 
 def pictures(quick: bool) -> None:
@@ -136,7 +178,7 @@ def dae(quick: bool) -> None:
 
 STEPS: dict[str, Callable[[bool], None]] = {
     step.__name__: step
-    for step in (races, batches, engines, pictures, problems, notebooks, text, dae)
+    for step in (races, batches, engines, added, pictures, problems, notebooks, text, dae)
 }
 
 # ------------------------------------------------------------------------------ marked parts

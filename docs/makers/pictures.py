@@ -9,6 +9,7 @@ import warnings
 from dataclasses import fields, replace
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
@@ -84,16 +85,21 @@ def engines() -> dict[str, Figure]:
     """Scores of each engine, from the file of their runs."""
     drawn = {}
     for name, found in json.loads(ENGINES.read_text(encoding="utf-8"))["engines"].items():
-        scores = []
-        for row in found["scores"]:
-            known = {key: np.nan if value is None else value for key, value in row.items()}
-            known |= {"errors": np.array([*row["errors"].values()], dtype=float)}
-            scores.append(Score(**{each.name: known[each.name] for each in fields(Score)
-                                   if each.name in known}))  # fmt: skip
-        figure = Figure(figsize=(7.2, 5.6), layout="constrained")
-        Scores(scores).plot(ax=figure.add_subplot())
+        figure = Figure(figsize=(7.2, 6.1), layout="constrained")
+        restored(found["scores"]).plot(ax=figure.add_subplot())
         drawn[name.lower()] = figure
     return drawn
+
+
+def restored(rows: list[dict[str, Any]]) -> Scores:
+    """Scores from their records, whose missing numbers are None in files."""
+    scores = []
+    for row in rows:
+        known = {key: np.nan if value is None else value for key, value in row.items()}
+        known |= {"errors": np.array([*row["errors"].values()], dtype=float)}
+        names = [each.name for each in fields(Score) if each.name in known]
+        scores.append(Score(**{name: known[name] for name in names}))
+    return Scores(scores)
 
 
 def stability() -> Figure:

@@ -19,12 +19,12 @@ FOLDER = DOCS / "problems"
 DATA = DOCS.parent / "python" / "rolling_ellipse" / "benchmark" / "problems"
 FIELDS = {  # fields of a scene, with their units
     "a": "m", "b": "m", "mass": "kg", "inertia": "kg m²", "gravity": "m/s²", "slope": "rad",
-    "friction": "", "restitution": "", "x": "m", "z": "m", "theta": "rad", "x_dot": "m/s",
-    "z_dot": "m/s", "omega": "rad/s",
+    "friction": "", "restitution": "", "rolling_resistance": "m", "x": "m", "z": "m",
+    "theta": "rad", "x_dot": "m/s", "z_dot": "m/s", "omega": "rad/s",
 }  # fmt: skip
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 PHASE = ("brink.back", "brink.over", "roll.rock", "roll.thin")
-FORCES = ("slide.stick",)
+FORCES = ("roll.resist", "slide.resist", "slide.stick")
 ALONG = {"hit.ball": 6.0, "hit.bounce": 6.0, "hit.bounce_flat": 12.0}  # speed in pictures [m/s]
 SHOWN = {  # numbers of positions, and last times [s]
     "hit.ball": (7, None), "hit.bounce": (14, 2.6), "hit.bounce_flat": (13, 2.4228),
@@ -83,7 +83,7 @@ def worst(data: Any) -> str:
 
 def page(data: Any) -> str:
     name, scene = data["id"], data["scene"]
-    given = [(f"`{field}`", scene[field], unit) for field, unit in FIELDS.items()]
+    given = [(f"`{field}`", scene[field], unit) for field, unit in FIELDS.items() if field in scene]
     seen = "angular velocity over angle" if name in PHASE else "the body at even times"
     seen = "its forces over time" if name in FORCES else seen
     parts = [
@@ -127,6 +127,13 @@ def answer(data: Any) -> str:
         turned = "exceeds" if right["over"] else "never exceeds"
         word = "It passes over the tip" if right["over"] else "It never passes over the tip"
         return f"{word}. A simulator is right if abs(theta) {turned} pi/2.\n"
+    if "half_swings" in right:
+        return (
+            f"It rests at x = {right['last']['x']} m, theta = {right['last']['theta']} rad, after\n"
+            f"{right['half_swings']} swings from one side to the other. A simulator is right if it "
+            "ends there, to 0.01 L and\n0.01 rad, has swung as often, and has these events, in "
+            "this order, each at its\n[time](../benchmark.md#a-score):\n"
+        )
     if "last" in right:
         return (
             f"It has: x = {right['last']['x']} m at the end. A simulator is right if its last x is "

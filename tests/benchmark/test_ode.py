@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from rolling_ellipse import benchmark
 from scipy.integrate import solve_ivp
 
-IDS = [one.id for one in benchmark.problems()]
+TAGS = ["flight", "non-round", "restitution", "slope", "spin", "stiction"]
+IDS = [one.id for one in benchmark.problems(TAGS)]  # without rolling resistance
 
 
 def solved(one: benchmark.Problem) -> tuple[NDArray[np.float64], list[tuple[str, float]]]:

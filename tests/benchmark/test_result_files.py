@@ -16,7 +16,7 @@ IDS = [one.id for one in benchmark.problems()]
 def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: Path) -> None:
     """The files have synonyms for the names of columns, and 17 digits."""
     benchmark.export(tmp_path)
-    assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [18, 18, 15]
+    assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [20, 18, 17]
     assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
     for one in benchmark.problems():
         t = one.output_times[: 51 if one.id == "roll.rock" else None]
@@ -29,7 +29,7 @@ def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: P
     short = scores[IDS.index("roll.rock")]
     assert scores.wrong == ["roll.rock"] and short.digits > 12
     assert short.reason == "ends at 0.5 s; 39 of 41 given times are missing"
-    assert len(scores.to_dataframe()) == 18
+    assert len(scores.to_dataframe()) == 20
 
 
 def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> None:

@@ -23,8 +23,9 @@ BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.tags}
 TOLERANCE = 1e-6
 WITH_SLIP = {
     "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which", "leave.slip_then_lift",
-    "slide.reverse", "slide.slope", "slide.stick",
+    "slide.resist", "slide.reverse", "slide.slope", "slide.stick",
 }  # fmt: skip
+WITH_COUPLE = {"roll.resist", "slide.resist"}
 
 
 def colliding(hit: Callable[..., Any]) -> Callable[..., Any]:
@@ -82,6 +83,12 @@ BROKEN: dict[str, tuple[Callable[..., Any], set[str]]] = {
     ),
     "friction 1 % too large": (changed(friction=lambda scene: 1.01 * scene.friction), WITH_SLIP),
     "restitution ignored": (no_bounce, BOUNCES),
+    "rolling resistance ignored": (
+        changed(rolling_resistance=lambda scene: 0.0), WITH_COUPLE,
+    ),
+    "rolling resistance 1 % too large": (
+        changed(rolling_resistance=lambda scene: 1.01 * scene.rolling_resistance), WITH_COUPLE,
+    ),
     "g = 9.8": (changed(gravity=lambda scene: 9.8), {*IDS} - {"rest.lie", "roll.circle"}),
     "states half a step late": (
         lambda one, t, _: one.exact(np.maximum(t - 0.005, 0)), {*IDS} - {"rest.lie"},
@@ -128,14 +135,14 @@ def test_the_exact_motion_gets_a_perfect_score() -> None:
     Two such units are allowed for the rounding of the motion and of the known answer.
     """
     scores = benchmark.run(exact)
-    assert [score.problem for score in scores] == IDS and len(IDS) == 18
+    assert [score.problem for score in scores] == IDS and len(IDS) == 20
     for score in scores:
         assert score.passed and score.answer == "right" and score.digits > 12, score.problem
         assert score.over_condition < 4.4e-16, score.problem
         assert max(score.energy_gained, score.energy_lost, score.penetration, score.hop) < 1e-12
         forces = score.cone_excess, score.normal_force_error, score.friction_force_error
         assert 0 <= max(forces) < 1e-12 and "degrees" not in score.reason
-    assert scores.wrong == [] and "18 of 18 answers are right. 18 pass" in scores.verdict()
+    assert scores.wrong == [] and "20 of 20 answers are right. 20 pass" in scores.verdict()
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")  # held by the sticky ground
@@ -216,7 +223,7 @@ def test_the_picture_shows_which_answers_are_right(tmp_path: Path) -> None:
     chart = scores.plot(tmp_path / "scores.png")
     assert (tmp_path / "scores.png").stat().st_size > 1e4 and plt.get_fignums() == []
     rows = [text.get_text() for text in chart.ax.get_yticklabels()]
-    assert rows[:5] == ["roll.circle", "roll.rock", "roll.roll", "roll.thin", "brink.back"]
+    assert rows[:5] == ["roll.circle", "roll.resist", "roll.rock", "roll.roll", "roll.thin"]
     beside = [text.get_text() for text in chart.ax.texts]
     for score in scores:
         mark: Any = chart.marks[score.problem, score.setting]

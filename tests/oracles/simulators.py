@@ -1,10 +1,12 @@
 """Simulators for the benchmark, and their results."""
 
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from rolling_ellipse import Trajectory, benchmark, simulate
 
@@ -32,6 +34,12 @@ def changed(**changes: Callable[[Any], float]) -> Callable[..., Any]:
         return states_of(simulate(one.scene.replace(**given), t))
 
     return mine
+
+
+def adapter(name: str) -> Any:
+    """The simulator of an engine; the test is skipped where the engine is not installed."""
+    pytest.importorskip({"drake": "pydrake"}.get(name, name))
+    return import_module(f"rolling_ellipse.benchmark.adapters.{name}").simulate
 
 
 def score_of(one: benchmark.Problem, result: Any, **more: Any) -> benchmark.Score:

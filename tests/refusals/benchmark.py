@@ -106,6 +106,9 @@ def _rows() -> Iterator[Row]:
     slips = ["slide.slope", "slide.stick", "leave.slip_then_lift", "hit.drop_stick", "jam"]
     yield from wrong(lambda problem: benchmark.problem(problem).dae("ggl"), {}, problem=slips)
     yield from wrong(benchmark.problem("roll.roll").dae, {}, index=[0, "ida"])
+    yield "rolling_resistance", lambda _: benchmark.problem("roll.resist").ode()
+    yield "rolling_resistance", lambda _: benchmark.problem("slide.resist").ode()
+    yield "rolling_resistance", lambda _: benchmark.problem("roll.resist").dae()
     yield "states", scored(STATES[:, :5])
     yield TypeError, scored("x")
     yield "t", scored(STATES, t=T[1:])

@@ -1,6 +1,6 @@
 """Known answers for other simulators, integrators and gradients.
 
-We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Eighteen
+We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Twenty
 problems of an ellipse on the ground have exact answers, computed by two independent programs, and
 condition numbers. SI units and radians; ``x`` lies along the ground (downhill on a
 slope), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are

@@ -1,9 +1,11 @@
 """Whether a simulator answers the question of a problem.
 
-The answer must follow from its output: values at the end, or at all times, to 0.01 L or 0.01 rad;
-events of the right kinds, in order, each on time to 2 % of sqrt(L/g), or to a thousandth of the
-largest condition number up to it if that is larger, at most 10 %. Its states must be those of the
-motion: no farther off than if the inputs were off by 10 %, and in our conventions (`_mistakes`).
+The answer must follow from the simulator's output: the values at the end, or at all times, to
+within 0.01 L or 0.01 rad; the number of half swings (`_events`); and events of the right kinds, in
+order. Each event must be on time to within 2 % of sqrt(L/g), or to within a thousandth of the
+largest condition number before it, whichever is larger, but never more than 10 %. The states must
+match the motion as closely as if the inputs were off by at most 10 %, in our conventions
+(`_mistakes`).
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._ask.check import FloatArray
-from ._events import read_off
+from ._events import half_swings, read_off
 from ._mistakes import mistakes
 from ._problem import STATE, Problem, states_of
 from ._results import Rows
@@ -52,8 +54,11 @@ def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
     events: dict[str, dict[str, Any]] = {}
     if "over" in one.answer:
         wrong += _passes(one, mine)
-    elif not one.laws and "events" not in one.answer:
-        wrong += _values(one, mine)
+    for which in ("last", "always"):
+        if which in one.answer:
+            wrong += _values(one, mine, which)
+    if "half_swings" in one.answer:
+        wrong += _swings(one, mine)
     if "events" in one.answer or mine.events is not None:
         differences, events = _events(one, mine)
         wrong += differences
@@ -70,9 +75,14 @@ def _passes(one: Problem, mine: Rows) -> list[str]:
     return [] if over == one.answer["over"] else [words]
 
 
-def _values(one: Problem, mine: Rows) -> list[str]:
-    """Compare the values required of the last row, or of every row."""
-    (which, known), *_ = one.answer.items()
+def _swings(one: Problem, mine: Rows) -> list[str]:
+    count, known = half_swings(one, mine.states), one.answer["half_swings"]
+    return [] if count == known else [f"{count} half swings, right {known}"]
+
+
+def _values(one: Problem, mine: Rows, which: str) -> list[str]:
+    """Compare the values required of the "last" row, or "always", of every row."""
+    known = one.answer[which]
     t, states = (mine.t[-1:], mine.states[-1:]) if which == "last" else (mine.t, mine.states)
     wrong = []
     for name, value in known.items():
@@ -143,7 +153,8 @@ def _differences(
     for k, ((kind, t), (other, then)) in enumerate(zip(mine, known, strict=False), 1):
         if kind == other:
             off[kind] = max(off.get(kind, 0.0), abs(t - then))
-            if one.events and not abs(t - then) <= _allowed(one, then):
+            until = one.t_end if kind == "REST" else then  # REST is read off early
+            if one.events and not abs(t - then) <= _allowed(one, until):
                 wrong.append(f"{kind} {k} at {t:.6g} s, right {then:.6g} s")
     counts = {"missed": dict(wanted - kinds), "invented": dict(kinds - wanted)}
     if [kind for kind, _ in mine] != [kind for kind, _ in known]:

@@ -9,6 +9,10 @@ the first one flies: at the time at which the free flight from its last row touc
 other events are where the gap or the slip passes its limit, linear between two rows: LIFT_OFF if
 the second run flies, STICK if it rolls, SLIP if the first one rolls, and REVERSE, at zero slip, if
 both slip.
+
+With rolling resistance the last event is REST, if it is followed by sqrt(L/g)/10 or more without a
+velocity above its limit: sqrt(g L)/500, of the rotation sqrt(g/L)/500. It is where the last one
+passes that limit. A half swing ends where the rotation turns, by more than the limit on both sides.
 """
 
 from __future__ import annotations
@@ -24,6 +28,7 @@ from ..geometry import support, support_slope
 from ._problem import Problem
 
 _LEAST_GAP, _LEAST_SLIP, _LEAST_PUSH, _SHORTEST = 0.002, 0.01, 0.1, 0.1
+_LEAST_SPEED = 0.002
 _ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 mean slip
 
 
@@ -57,7 +62,18 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
                 passed = _passing(t, np.abs(slip), least_slip, start)
                 events.append(("STICK" if kind == _ROLLS else "SLIP", passed))
         before, rebounds = kind, False
+    if scene.rolling_resistance and before != _FLIES:
+        speeds = np.abs(states[:, 3:] / problem.scales[3:]).max(axis=1)
+        rests = _passing(t, speeds, _LEAST_SPEED, len(t) - 1)
+        if speeds[-1] < _LEAST_SPEED and t[0] < rests < t[-1] - shortest:
+            events.append(("REST", rests))
     return events
+
+
+def half_swings(problem: Problem, states: FloatArray) -> int:
+    """Return how often a body swings from one side to the other."""
+    omega = states[:, 5][np.abs(states[:, 5]) > _LEAST_SPEED * problem.scales[5]]
+    return int(np.count_nonzero(np.diff(np.sign(omega)))) + bool(omega.size)
 
 
 def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> list[int]:

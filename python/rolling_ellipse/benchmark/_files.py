@@ -140,7 +140,7 @@ def read(problem: Problem, path: Path) -> Result:
 def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
     """Return the rows of a table that are not blank; None for a file without any.
 
-    A pipe, which would block, is rejected. Of two columns with the same name the first counts.
+    A pipe, which would block, is rejected. Of two columns with the same name, the first counts.
     """
     if not path.is_file():
         raise ValueError(f"results must be files, got {path.name!r}, which is none")

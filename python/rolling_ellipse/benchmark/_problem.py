@@ -15,15 +15,18 @@ from .._ask.check import FloatArray, array, choice, shown
 from .._ask.printing import printable
 from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene
-from .._core import EventKind, Mode
+from .._core import EventKind, Mode, require_no_resistance
 from .._motion.trajectory import Trajectory
 from .._verbs.simulate import simulate
 from ._equations import FORMS, Dae, Ode, first_arc
 
-TAGS = ("flight", "non-round", "restitution", "slope", "spin", "stiction")
+TAGS = (
+    "flight", "non-round", "restitution", "rolling-resistance", "slope", "spin", "stiction",
+)  # fmt: skip
 FOLDER = Path(__file__).with_name("problems")
 STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 COLUMNS = ("t", *STATE, "normal_force", "friction_force")
+_EXACT = "exact and trajectory have the motion"
 OUTPUT_RATE = 100  # states per second requested from a simulator
 
 
@@ -64,8 +67,8 @@ class Problem(FieldsOnly):
     ----------
     id, title, question : str
     tags : tuple of str
-        Abilities that a simulator needs: "flight", "non-round", "restitution", "slope", "spin",
-        "stiction".
+        Abilities that a simulator needs: "flight", "non-round", "restitution",
+        "rolling-resistance", "slope", "spin", "stiction".
     scored : bool
         False for a problem for display only.
     scene : Scene
@@ -76,8 +79,9 @@ class Problem(FieldsOnly):
     answer : dict
         What the question asks: whether the body passes over its tip (``"over"``); values of the
         last state (``"last"``) or of all (``"always"``); kinds of events in order (``"events"``);
-        for bounces that come to an end, the first ones and the time of that end (``"end"``); or the
-        laws of impact that it may follow (``"law"``).
+        for bounces that come to an end, the first ones and the time of that end (``"end"``); for a
+        body that comes to rest, how often it swings from one side to the other
+        (``"half_swings"``); or the laws of impact that it may follow (``"law"``).
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
@@ -143,7 +147,13 @@ class Problem(FieldsOnly):
         ----------
         xp : module
             NumPy, or a module with its functions such as ``jax.numpy``.
+
+        Raises
+        ------
+        ValueError
+            If the problem has rolling resistance: its equations jump where the rotation turns.
         """
+        require_no_resistance(self.scene.core, "ode", _EXACT)
         return first_arc(self, xp)
 
     def dae(self, index: int | str = 1) -> Dae:
@@ -157,8 +167,9 @@ class Problem(FieldsOnly):
         Raises
         ------
         ValueError
-            If the motion does not always roll, or there is no such form.
+            If the motion does not always roll, has rolling resistance, or there is no such form.
         """
+        require_no_resistance(self.scene.core, "dae", _EXACT)
         if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
             raise ValueError(f"problem must roll all the time, got {self.id!r}")
         form = f"index{index}"
@@ -189,7 +200,7 @@ class Gradient:
     value: FloatArray
 
     def error(self, value: Any) -> float:
-        """Return the error of a derivative relative to the known one, both in the scales of states.
+        """Return the relative error of a derivative, with both values scaled like the states.
 
         Parameters
         ----------

@@ -4,6 +4,7 @@ MuJoCo locates the contact of ellipsoid and plane exactly; its contact is soft. 
 elliptic, which the manual calls more accurate. Contacts have a time constant of four steps:
 with two, the least that the manual allows, sliding bodies hop more. Restitution 1 is stiffness
 without damping, as in the manual, which offers no smaller one. Other integrators change little.
+Rolling resistance shares one cone with friction: both are too weak while a body slides and turns.
 """
 
 import mujoco
@@ -21,4 +22,5 @@ def simulate(scene: Scene, step: float, contact_steps: float | None = 4.0) -> Ru
     return (
         lambda steps: mujoco.mj_step(model, data, nstep=steps),
         lambda: [*data.qpos, *data.qvel, *data.qfrc_constraint[1::-1]],
+        "friction and rolling resistance share one cone" if scene.rolling_resistance else "",
     )

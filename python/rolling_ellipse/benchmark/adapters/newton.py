@@ -13,6 +13,8 @@ from . import Run, engine
 
 @engine
 def simulate(scene: Scene, step: float) -> Run:
+    if scene.rolling_resistance:
+        raise NotImplementedError("rolling resistance has not been tried with Newton")
     builder, at = newton.ModelBuilder(), scene.initial_state
     builder.add_mjcf(scene.to_mjcf(timestep=step))
     model = builder.finalize()

@@ -21,6 +21,8 @@ VERTICES = 2048
 def simulate(scene: Scene, step: float) -> Run:
     if scene.friction == math.inf:
         raise NotImplementedError("friction is finite in pymunk")
+    if scene.rolling_resistance:
+        raise NotImplementedError("pymunk has no rolling resistance")
     a, b, at, note = scene.a, scene.b, scene.initial_state, "circle"
     body = pymunk.Body(scene.mass, scene.mass * scene.gyration2)
     shape: pymunk.Shape = pymunk.Circle(body, a)
