@@ -80,11 +80,12 @@ _DATA = json.loads(resources.files(__package__).joinpath("course.json").read_tex
 _TASKS = {known["number"]: Task(**known) for known in _DATA["tasks"]}
 FILM: dict[str, FloatArray] = {name: np.array(track) for name, track in _DATA["film"].items()}
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.4")  # blows and impacts with friction
-_RESTS = ("2.2", "2.4")  # releases, from which nothing moves at theta = 0
+_RESTS = ("2.2", "2.4", "3.5")  # releases, from which nothing moves at theta = 0
 _WRONG = {  # wrong formulas; in 10.1 the velocities before the impact do not depend on inertia
     "2.4": [_Mistake("small", {}, "small.period")],
     "3.2": [_Mistake("torque", {}, "torque.friction_force")],
     "3.3": [_Mistake("torque", {}, "torque.omega_dot")],
+    "3.5": [_Mistake("small", {}, "small.rest")],
     "4.3": [_Mistake("torque", {}, "torque.friction_to_roll_over")],
     "6.4": [_Mistake("torque", {}, "torque.slip_windows")],
     "9.1": [_Mistake("torque", {}, "torque.theta")],
@@ -256,7 +257,7 @@ def _shape(s: Scene, theta: Any) -> Any:
 
 
 def _by_torque(s: Scene, theta: Any, omega_squared: Any) -> tuple[Any, Any, Any]:
-    """Return omega_dot, F and N of rolling as they follow from the wrong M_C = I_C omega_dot."""
+    """Return omega_dot, F and N of rolling by the incorrect equation M_C = I_C omega_dot."""
     h, lead, bend = _shape(s, theta)
     down, along = s.gravity * math.cos(s.slope), s.gravity * math.sin(s.slope)
     spin = (along * h - down * lead) / (s.gyration2 + h**2 + lead**2)
@@ -331,6 +332,15 @@ def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
         }[name]
 
 
+def _small(s: Scene, d: dict[str, float], name: str) -> float:
+    """Return the period of small rocking, or the time of its half swings until the couple holds."""
+    half = math.pi / float(_thresholds(s)["rocking_rate"])
+    if name == "period":
+        return 2 * half
+    held = d["rolling_resistance"] * s.b / (s.a**2 - s.b**2)  # largest angle of rest
+    return half * math.ceil((abs(s.theta) - held) / (2 * held))
+
+
 def _thresholds(of: Scene) -> dict[str, Any]:
     return _core.thresholds(of.a, of.b, of.gravity, of.gyration2, of.friction)
 
@@ -347,7 +357,8 @@ _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "least": lambda s, d, name: _core.roll_over_speed(s.core) / abs(
         s.replace(impulse=Impulse(jz=-1.0, dx=d["dx"])).initial_state.omega),
     "event": lambda s, d, name: getattr(simulate(s, 5.0).events[0], name),
-    "small": lambda s, d, name: 2 * math.pi / _thresholds(s)["rocking_rate"],
+    "rest": lambda s, d, name: simulate(s, 20.0).events[-1].t,
+    "small": _small,
     "torque": _torque,
     "after": lambda s, d, name: getattr(simulate(s, 5.0).events[0].state_after, name),
     "leave": lambda s, d, name: max(0.0, -s.gravity / _shape(s, s.theta)[2]) ** 0.5,

@@ -17,7 +17,7 @@ import pytest
 from oracles.contact import reaction_by_pieces, response
 from oracles.paths import ROOT
 from rolling_ellipse import course
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq, least_squares
 from sensitivity.chain import rates, support
 
@@ -74,6 +74,35 @@ class Given(SimpleNamespace):
 
     def turn(self, lift: float, end: float) -> float:
         return float(4 * quad(lambda q: 1 / self.speed(q, lift), 0, end)[0])
+
+    def rocked(self) -> float:
+        """Time from release to rest, from stop to stop, where the couple against the rotation
+        changes its side or holds the body."""
+        angle, now, lever = self.theta, 0.0, self.rolling_resistance
+        while abs(self.at(angle)[1]) > lever:
+            turn = -math.copysign(1, self.at(angle)[1])
+
+            def rates(_: float, y: Any, turn: float = turn) -> list[float]:
+                h, lead, bend = self.at(y[0])
+                arm, load = lead + turn * lever, self.gravity + bend * y[1] ** 2
+                inertia = self.gyration2 + h**2 + lead * arm
+                return [y[1], -(arm * load + h * lead * y[1] ** 2) / inertia]
+
+            def stops(_: float, y: Any, turn: float = turn) -> float:
+                return float(turn * y[1])
+
+            vars(stops).update(terminal=True, direction=-1)
+            how: Any = {"events": stops, "rtol": 1e-10, "atol": 1e-12, "method": "DOP853"}
+            swing: Any = solve_ivp(rates, (0, 9), [angle, 0.0], max_step=0.1, **how)
+            angle, now = swing.y[0, -1], now + swing.t[-1]
+        return now
+
+    def small_rocking(self) -> float:
+        """The same for small angles: amplitudes fall by the same step with each half swing."""
+        left, step, count = abs(self.theta), 2 * self.rolling_resistance / self.at(0)[2], 0
+        while left > step / 2:
+            left, count = left - step, count + 1
+        return count * math.pi / TRUE["2.3"](self)
 
     def hit(self) -> tuple[Any, ...]:
         """Reaction along and up, and velocities, after a blow and an impact by Stronge's law."""
@@ -141,6 +170,7 @@ TRUE: dict[str, Any] = {
     "3.1": lambda d: d.rolling(0, d.omega)[1], "3.2": lambda d: d.rolling(d.theta, d.omega)[2],
     "3.3": lambda d: d.rolling(d.theta, d.omega)[0],
     "3.4": lambda d: abs(d.rolling(d.theta, 0)[2] / d.rolling(d.theta, 0)[1]),
+    "3.5": Given.rocked,
     "4.1": lambda d: d.speed(0, d.a), "4.2": lambda d: d.speed(d.theta, d.a),
     "4.3": lambda d: d.needed(d.speed(0, d.a)),
     "4.4": lambda d: d.turn(d.b + d.about_contact(0) * d.omega**2 / 2 / d.gravity, TIP),
@@ -162,6 +192,7 @@ TRUE: dict[str, Any] = {
 }  # fmt: skip
 WRONG: dict[tuple[str, str], Any] = {  # formulas: small angles, and M_C = I_C omega_dot
     ("small", "2.4"): lambda d: 2 * math.pi / TRUE["2.3"](d),
+    ("small", "3.5"): Given.small_rocking,
     **{("torque", number): lambda d: TRUE[d.number](d.but(torque=True))
        for number in ("3.2", "3.3", "4.3", "6.4", "9.1", "9.2")},
 }  # fmt: skip
@@ -245,7 +276,7 @@ def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
         named = [set(names.split(" and ")) for names in mistake.split(" or ")]
         if abs(given - right) < 0.7 * near:
             assert mistake == "none"
-        elif least == ("angle",) and number in ("2.2", "2.4"):  # a rest, which is not marked
+        elif least == ("angle",) and number in ("2.2", "2.4", "3.5"):  # a rest, which is not marked
             assert mistake == "other"
         elif number in ("10.1", "10.2", "10.3") and "inertia" in least:
             assert "inertia" not in mistake  # noise, or an estimate by hand, leads as far
@@ -256,6 +287,11 @@ def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
                 numbers = [answer(number, tuple(way)) for way in ways]
                 assert names == {"per mille"} or any(
                     math.isclose(v, given, rel_tol=0.01) for v in numbers), mistake  # fmt: skip
+
+
+def test_the_time_to_rest_agrees_to_eight_digits() -> None:
+    _, ((_, right), *_) = course._known("3.5", None)
+    assert right == pytest.approx(answer("3.5"), rel=1e-8)
 
 
 def test_the_noise_of_the_film_is_as_stated() -> None:
