@@ -79,7 +79,7 @@ def test_the_problem_pages_agree_with_their_data(make: dict[str, Any]) -> None:
     listed = make["with_part"](page, "problems", made["listed"]())
     assert listed == page, "docs/makers/make.py problems"
     pages, folder = made["pages"](), DOCS / "problems"
-    assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 20
+    assert {path.stem for path in folder.glob("*.md")} == set(pages) and len(pages) == 22
     for name, page in pages.items():
         assert (folder / f"{name}.md").read_text(encoding="utf-8") == page, name
     assert sum((folder / f"{name}.png").stat().st_size for name in pages) < 1.5e6
