@@ -14,4 +14,4 @@ class CompletenessWarning(UserWarning):
 
 
 class ExtrapolationWarning(UserWarning):
-    """Warning: a forecast reaches beyond the change at which the order of events changes."""
+    """Warning: a forecast is for a change large enough to alter the order of events."""

@@ -50,7 +50,7 @@ def threads_of(workers: Any) -> int | None:
 def in_order(
     executor: Any, tasks: Iterable[tuple[_Key, Task]], size: Callable[[], int] = lambda: 0
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield key and result of each task, in order; `Lost` if its worker died or was missing.
+    """Yield each task's key and result, in order; `Lost` if its worker died or was missing.
 
     Tasks are taken as results are requested; at `size()` bytes each, their pending results stay
     within `_HELD` bytes. An interrupt cancels tasks that have not started; finished results are
@@ -130,7 +130,7 @@ def _next(
 def _mapped(
     pool: Any, sent: Iterator[tuple[_Key, bytes]], size: Callable[[], int]
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield key and result of each task by a pool's `map`; one failure fails the whole `map`."""
+    """Yield each task's key and result from a pool's `map`; one failure fails the whole `map`."""
     while True:
         part: list[tuple[_Key, bytes]] = []
         while taken := _next(sent, len(part), size):
