@@ -9,16 +9,11 @@ namespace rolling_ellipse {
 std::optional<double> cancelled_moment(const SlidingBody& body, const Geometry& at,
                                        const DoubleDouble& angle) {
     constexpr double little = 0x1p-4;  // terms whose sum is a smaller fraction have cancelled
-    const auto [a, b] = body.axes;
     const auto [into, along] = body.gravity;
     const double falling = at.h * along - (at.dh + body.ahead) * into;
     const double terms = std::abs(at.h * along) + (std::abs(at.dh) + std::abs(body.ahead)) * into;
     if (std::abs(falling) > little * terms) return {};
-    const auto [quarters, rest] = quarter_view(angle);
-    const auto [sine, cosine] = sine_cosine_of_rest(rest);
-    const double c2 = (is_odd(quarters) ? b - a : a - b) * (a + b);
-    const DoubleDouble u = sine * sine * c2 + square(is_odd(quarters) ? a : b);
-    const DoubleDouble p = sine * cosine * c2;
+    const auto [u, p] = precise_height2(body.axes, angle);
     const DoubleDouble h = square_root(u);
     return double(u * along - (p + h * body.ahead) * into) / double(h);
 }
@@ -35,8 +30,6 @@ ROLLING_ELLIPSE_WIDE SlideSeries rolling_series(const SlidingBody& body, const S
     auto& [motion, slip, rolled, pressure, response, u, work] = found;
     auto& [angle, w, x_dot, path, time] = motion;
     slip = response = work = time = LongSeries{};
-    // Factors of products computed side by side, coefficient by coefficient.
-    using Factors = std::array<Quad, long_order + 1>;
     Factors curve, by_curve;  // (p, q, h, (a b - u)(a b + u)) by (omega, omega, h, omega^2)
     Factors arm, by_arm;      // (u, p, h, h) by (h, C + u^2 omega^2, C, p)
     Factors turn, by_turn;    // (u, W, u, h) by (u h, u omega', omega', omega)
@@ -62,14 +55,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries rolling_series(const SlidingBody& body, const S
         const Quad turns = inner(turn, by_turn, k);
         const Quad pushes = inner(force, by_force, k);
         const Quad squares = self_product(squared, k, 1);
-        // Coefficient k of a product from its inner terms and the last coefficients of both
-        // factors.
-        const auto product = [k](const Quad& known, const Factors& first, const Factors& second,
-                                 int lane, double first_k, double second_k) {
-            const double ends =
-                k == 0 ? first_k * second_k : first[0][lane] * second_k + first_k * second[0][lane];
-            return known[lane] + ends;
-        };
+        const ProductAt product{k};
         const auto square_of = [&](int lane, double last) {
             return k == 0 ? last * last : squares[lane] + 2 * (squared[0][lane] * last);
         };

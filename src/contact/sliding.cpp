@@ -54,20 +54,23 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
     return {c, body.normal_share * gnn + body.friction_share * gtn + by_resistance};
 }
 
+PreciseHeight2 precise_height2(const Axes& axes, const DoubleDouble& angle) {
+    const auto [a, b] = axes;
+    const auto [quarters, rest] = quarter_view(angle);
+    const auto [sine, cosine] = sine_cosine_of_rest(rest);
+    const double c2 = (is_odd(quarters) ? b - a : a - b) * (a + b);
+    return {sine * sine * c2 + square(is_odd(quarters) ? a : b), sine * cosine * c2};
+}
+
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
                                          const DoubleDouble& angle) {
     constexpr double little = 0x1p-4;  // terms whose sum is a smaller fraction have cancelled
-    const auto [a, b] = body.axes;
     const double nu = body.normal_share;
     const double phi = body.friction_share;
     const double terms = body.gyration2 + square(at.dh) + std::abs(phi * at.h * at.dh) +
                          std::abs(nu * body.ahead * at.dh);
     if (!body.may_jam() || response(body, at, 0.0).b * body.gyration2 > little * terms) return {};
-    const auto [quarters, rest] = quarter_view(angle);
-    const auto [sine, cosine] = sine_cosine_of_rest(rest);
-    const double c2 = (is_odd(quarters) ? b - a : a - b) * (a + b);
-    const DoubleDouble u = sine * sine * c2 + square(is_odd(quarters) ? a : b);
-    const DoubleDouble p = sine * cosine * c2;
+    const auto [u, p] = precise_height2(body.axes, angle);
     DoubleDouble lever = p * nu + u * phi;
     if (body.ahead != 0) lever = lever + square_root(u) * (nu * body.ahead);
     return double(u * (nu * body.gyration2) + p * lever);
@@ -139,8 +142,6 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     SlideSeries slide;
     auto& [motion, slip, rolled, pressure, response, u, work] = slide;
     auto& [angle, w, x_dot, path, time] = motion;
-    // Factors of products computed side by side, coefficient by coefficient.
-    using Factors = std::array<Quad, long_order + 1>;
     Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) by (angle', angle', h, omega^2)
     Factors lever, by_lever;   // (p, u, u, h) by (L, h, V, V)
     Factors force, by_force;   // (L, h, u V, h V) by (C, omega, omega', impulse')
@@ -169,14 +170,7 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
         const Quad forces = inner(force, by_force, k);
         const Quad clocked = inner(clocks, by_clock, k);
         const Quad squares = self_product(squared, k, 1);
-        // Coefficient k of a product from its inner terms and the last coefficients of both
-        // factors.
-        const auto product = [k](const Quad& known, const Factors& first, const Factors& second,
-                                 int lane, double first_k, double second_k) {
-            const double ends =
-                k == 0 ? first_k * second_k : first[0][lane] * second_k + first_k * second[0][lane];
-            return known[lane] + ends;
-        };
+        const ProductAt product{k};
         const double h = k == 0 ? h0 : (u[k] - curves[2]) * over_2h0;
         const double l = k == 0 ? l0 : turns * (nu * p + phi * u[k]) + ahead * h;
         const double omega2 = k == 0 ? w[0] * w[0] : squares[0] + 2 * (squared[0][0] * w[k]);

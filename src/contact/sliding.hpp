@@ -46,6 +46,13 @@ struct Response {
 };
 Response response(const SlidingBody& body, const Geometry& at, double omega);
 
+// u = h^2 and p = h h' from an angle in double-double precision.
+struct PreciseHeight2 {
+    DoubleDouble u;
+    DoubleDouble p;
+};
+PreciseHeight2 precise_height2(const Axes& axes, const DoubleDouble& angle);
+
 // V = k^2 h^2 B where its terms all but cancel, as for a light body near B = 0; computed from an
 // angle in double-double precision. Empty where they do not cancel.
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,

@@ -87,6 +87,23 @@ template <class Coefficients>
     return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
 }
 
+// Factors of products computed side by side, one in each lane, coefficient by coefficient.
+using Factors = std::array<Quad, long_order + 1>;
+
+// Coefficient k of the product in a lane, from its inner terms and the last coefficients of both
+// factors.
+struct ProductAt {
+    int k;
+
+    [[gnu::always_inline]] double operator()(const Quad& known, const Factors& first,
+                                             const Factors& second, int lane, double first_k,
+                                             double second_k) const {
+        const double ends =
+            k == 0 ? first_k * second_k : first[0][lane] * second_k + first_k * second[0][lane];
+        return known[lane] + ends;
+    }
+};
+
 // The factors 1/(k + 1), which integrate coefficient k of a rate.
 inline constexpr auto over_next = [] {
     std::array<double, long_order + 1> found{};

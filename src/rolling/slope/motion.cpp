@@ -42,7 +42,6 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     // Factors of products computed side by side, coefficient by coefficient: (h, p, p, q) by
     // (lambda, lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda,
     // lambda').
-    using Factors = std::array<Quad, long_order + 1>;
     Factors left, right, late_left, late_right;
     const double sin2 = square(sin);
     double u = body.short_axis2 + body.c2 * sin2;
