@@ -19,10 +19,6 @@ G = 9.81
 ROCKING = Scene(2.0, 1.0, theta=0.5, friction=1.0, rolling_resistance=0.01)
 
 
-def kinds(scene: Scene, end: float) -> list[str]:
-    return [event.kind.name for event in simulate(scene, end, raise_on_failure=False).events]
-
-
 # ---------------------------------------------------------------------------- closed forms
 
 
