@@ -105,11 +105,10 @@ def collide(
     S. D. Poisson, Traité de mécanique, 1833.
     """
     meaning = _core.Restitution[choice("law", law, LAWS).upper()]
-    after: tuple[Any, Any, Any] = evaluate(
+    return evaluate(
         _core.collide_arrays, meaning, theta=theta, x_dot=x_dot, z_dot=z_dot, omega=omega, a=a, b=b,
         gyration2=gyration2, friction=friction, restitution=restitution,
     )  # fmt: skip
-    return after
 
 
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:

@@ -32,8 +32,7 @@ class cached_property(Generic[_Value]):
     def __get__(self, instance: object | None, owner: type) -> Self | _Value:
         if instance is None:
             return self
-        value: _Value = instance.__dict__.setdefault(self._name, self._compute(instance))
-        return value
+        return instance.__dict__.setdefault(self._name, self._compute(instance))
 
 
 class FieldsOnly:

@@ -19,8 +19,7 @@ def table(language: str) -> dict[str, str]:
     from pathlib import Path
 
     file = Path(__file__).with_name(f"words_{language}.json")
-    found: dict[str, str] = loads(file.read_text(encoding="utf-8"))
-    return found
+    return loads(file.read_text(encoding="utf-8"))
 
 
 def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:

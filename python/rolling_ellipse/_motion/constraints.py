@@ -178,11 +178,9 @@ def energy_error(motion: Trajectory) -> FloatArray:
         off[motion.mode == Mode.SLIDING] = np.nan
     if scene.rolling_resistance > 0:
         off[motion.mode != Mode.FLIGHT] = np.nan
-    error: FloatArray = off / np.max(motion.kinetic_energy + np.abs(potential))
-    return error
+    return off / np.max(motion.kinetic_energy + np.abs(potential))
 
 
 def worst(errors: Errors) -> FloatArray:
     """Return the largest of several errors at each time, (n,), ignoring NaN."""
-    largest: FloatArray = np.fmax.reduce(list(errors.values()))
-    return largest
+    return np.fmax.reduce(list(errors.values()))

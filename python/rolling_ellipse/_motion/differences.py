@@ -56,8 +56,7 @@ def differenced(
 
 def size(values: FloatArray) -> FloatArray:
     """Return the largest component, in magnitude, of vectors along the first axis."""
-    found: FloatArray = np.abs(values).max(axis=0)
-    return found
+    return np.abs(values).max(axis=0)
 
 
 class Best:
@@ -181,8 +180,7 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
     share = np.divide(times - knots[arc], length, out=np.zeros(len(arc)), where=length > 0)
     start, end = others[..., arc], others[..., arc + 1]
     within = np.where(arc < len(knots) - 2, np.nextafter(end, start), end)
-    found: FloatArray = np.clip(start + share * (end - start), start, within)
-    return found
+    return np.clip(start + share * (end - start), start, within)
 
 
 def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:

@@ -75,8 +75,7 @@ class Sensitivity(FieldsOnly):
         faster.
         """
         there = self.trajectory.sol(number("t", t))
-        found: FloatArray = sensitivity(there, self.wrt, side=self.side).state[0]
-        return found
+        return sensitivity(there, self.wrt, side=self.side).state[0]
 
     def forecast(self, **changes: float) -> FloatArray:
         """Return the states at the samples to first order in changes, shape (n, 6).
@@ -98,8 +97,7 @@ class Sensitivity(FieldsOnly):
                 ExtrapolationWarning,
                 stacklevel=2,
             )
-        found: FloatArray = columns(self.trajectory, STATE) + self.state @ added
-        return found
+        return columns(self.trajectory, STATE) + self.state @ added
 
     @cached_property
     def distance(self) -> FloatArray:
@@ -264,8 +262,7 @@ def _relative(
     """Return errors (r, k) relative to the largest entries of vectors (6, r, k), shape (k,)."""
     least = [1.0 if name == "t" else 1 / size_of(motion.scene, name) for name in names]
     largest = np.maximum(np.abs(value).max(axis=(0, 1), initial=0.0), least)
-    found: FloatArray = error.max(axis=0, initial=0.0) / largest
-    return found
+    return error.max(axis=0, initial=0.0) / largest
 
 
 def _distance(motion: Trajectory, name: str, side: int) -> float:

@@ -40,8 +40,7 @@ def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
     unit, fall = max(scene.a, scene.b), cmath.rect(1.0, scene.slope)
 
     def centres(at: Trajectory) -> _Places:
-        places: _Places = fall * ((at.x - trajectory.x[0]) - 1j * at.z) / unit
-        return places
+        return fall * ((at.x - trajectory.x[0]) - 1j * at.z) / unit
 
     bodies_at, points_at = (
         even_times(first, last, count if last > first else 1) for count in (_BODIES, _POINTS)

@@ -190,7 +190,7 @@ def figure_of(figure: Any, size: tuple[float, float], figsize: Any) -> Figure:
     whole: Any = require_figure(figure).get_figure(root=True)
     if whole.get_layout_engine() is None:
         whole.set_layout_engine("constrained")
-    return figure  # type: ignore[no-any-return]
+    return figure
 
 
 def require_figure(figure: Any) -> FigureBase:

@@ -45,8 +45,7 @@ def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray
             count += members
         blocks.append((start, count))
     starts = np.repeat([start for start, _ in blocks], [count for _, count in blocks])
-    places: FloatArray = np.minimum(np.maximum(starts, low), high - gap * (wanted.size - 1)) + steps
-    return places
+    return np.minimum(np.maximum(starts, low), high - gap * (wanted.size - 1)) + steps
 
 
 def size_in_points(ax: Axes) -> FloatArray:

@@ -283,11 +283,10 @@ def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Tex
         lines = [*(row if len(row) <= room else f"{row[: room - 1]}…" for row in table), "", *lines]
     foot = _TEXT / height
     figure.get_layout_engine().set(rect=(0, top := (1.2 * len(lines) + 1) * foot, 1, 1 - top))
-    written: Text = figure.text(
+    return figure.text(
         0.6 * _TEXT / width, 0.5 * foot, "\n".join(lines), va="bottom", fontsize=_TEXT,
         family="monospace", color=palette.grey, linespacing=1.2, in_layout=False,
     )  # fmt: skip
-    return written
 
 
 def _multiples(race: _Race) -> WorkPrecisionChart:

@@ -142,8 +142,7 @@ def required_friction(
         return _core.friction_to_rest(core) if rests else _core.required_friction(core)
     grid = SceneGrid(scene)
     needed = shared(workers, partial(_frictions, rests))(grid.total, [grid.table()])
-    friction: float | FloatArray = shaped(needed, grid.shape)
-    return friction
+    return shaped(needed, grid.shape)
 
 
 def _frictions(to_rest: bool, _: int, columns: Columns, threads: int) -> FloatArray:

@@ -97,12 +97,11 @@ def flow(
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2, 0.0)  # type: ignore[arg-type]
             times, of_one = array("t", t), partial(_times, (*one, gyration2))
-            return shaped(shared(workers, of_one)(times.size, [times.ravel()]), times.shape)  # type: ignore[no-any-return]
-    states: tuple[Any, Any, Any] = evaluate(
+            return shaped(shared(workers, of_one)(times.size, [times.ravel()]), times.shape)
+    return evaluate(
         shared(workers, _core.slope_flow_array if on_slope else _core.flow_array), t=t, a=a, b=b,
         theta=theta, omega=omega, gravity=gravity, gyration2=gyration2, **on_slope,
     )  # fmt: skip
-    return states
 
 
 def _times(one: tuple[Any, ...], _: int, columns: Columns, threads: int) -> Any:

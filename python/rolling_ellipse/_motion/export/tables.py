@@ -67,8 +67,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     variables["mode"] = ("t", trajectory.mode.copy(), attributes(MODE) | flags)
     times = "t", trajectory.t.copy(), attributes(TIME)
     coordinates = {"t": times, "constraint": ["f1", "f2", "f3", "f4"]}
-    dataset: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
-    return dataset
+    return xarray.Dataset(variables, coordinates, _facts(trajectory))
 
 
 def attributes(quantity: Quantity) -> dict[str, Any]:

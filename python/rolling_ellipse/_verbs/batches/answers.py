@@ -95,8 +95,7 @@ def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
 
 
 def _of_model(name: str, code: Mapping[str, npt.NDArray[Any]]) -> npt.NDArray[np.bool_]:
-    is_model: npt.NDArray[np.bool_] = code["model"] == MODELS.index(name)
-    return is_model
+    return code["model"] == MODELS.index(name)
 
 
 def answers(

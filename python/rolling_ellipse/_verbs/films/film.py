@@ -131,15 +131,13 @@ class Unknowns:
     def with_values(self, values: Mapping[str, float]) -> FloatArray:
         """Return the scene's unknowns with new values for the named ones."""
         pairs = zip(self.names, self.own * self.sizes, strict=True)
-        u: FloatArray = np.array([values.get(name, own) for name, own in pairs]) / self.sizes
-        return u
+        return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
 
     def turned(self, u: FloatArray) -> FloatArray:
         """Return changes of the unknowns; that of theta is reduced by half turns."""
         half = math.pi / self.sizes
         whole = np.where(np.array(self.names) == "theta", np.round(u / half), 0.0)
-        turned: FloatArray = u - half * whole
-        return turned
+        return u - half * whole
 
 
 def _bounds(scene: Scene, name: str, value: float) -> tuple[float, float]:

@@ -62,8 +62,7 @@ class Gaps(tuple[Gap, ...]):
 
     def to_dataframe(self) -> DataFrame:
         """Return a pandas DataFrame (``rolling_ellipse[data]``) with one row per gap."""
-        frame: DataFrame = required("pandas", "to_dataframe").DataFrame(map(asdict, self))
-        return frame
+        return required("pandas", "to_dataframe").DataFrame(map(asdict, self))
 
 
 @dataclass(frozen=True, repr=False)
@@ -273,8 +272,7 @@ class WorkPrecision:
         pandas = required("pandas", "to_dataframe")
         errors = ({name: run.value(name) for name in ERRORS} for run in self.runs)
         rows = [asdict(run) | {"tags": " ".join(run.tags)} for run in self.runs]
-        frame: DataFrame = pandas.DataFrame(map(dict.__or__, rows, errors)).drop(columns="errors")
-        return frame
+        return pandas.DataFrame(map(dict.__or__, rows, errors)).drop(columns="errors")
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a JSON file, one run per line, which appears whole or not at all."""
@@ -324,8 +322,7 @@ class WorkPrecision:
         return self.references[-1 if t_end is None else ends.index(t_end)]
 
     def _about(self) -> dict[str, Any]:
-        about: dict[str, Any] = plain({"schema": _SCHEMA, **asdict(self)})
-        return about
+        return plain({"schema": _SCHEMA, **asdict(self)})
 
     @classmethod
     def _restored(cls, content: bytes) -> WorkPrecision:

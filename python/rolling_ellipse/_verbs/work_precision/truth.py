@@ -132,8 +132,7 @@ class Judge:
             if sides:
                 apart = self._apart(sides[0], [*sides, middle][1])
                 known += _ROUNDING / (len(sides) * share) * apart
-        largest: FloatArray = np.max(known, axis=0)
-        return largest
+        return np.max(known, axis=0)
 
 
 def exact_rolling(scene: Scene) -> Callable[[Any], Columns]:
