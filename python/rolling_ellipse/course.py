@@ -335,10 +335,8 @@ def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
 def _small(s: Scene, d: dict[str, float], name: str) -> float:
     """Return the period of small rocking, or the time of its half swings until the couple holds."""
     half = math.pi / float(_thresholds(s)["rocking_rate"])
-    if name == "period":
-        return 2 * half
-    held = d["rolling_resistance"] * s.b / (s.a**2 - s.b**2)  # largest angle of rest
-    return half * math.ceil((abs(s.theta) - held) / (2 * held))
+    held = s.rolling_resistance * s.b / (s.a**2 - s.b**2)  # largest angle of rest
+    return half * (2 if name == "period" else math.ceil((abs(s.theta) - held) / (2 * held)))
 
 
 def _thresholds(of: Scene) -> dict[str, Any]:

@@ -130,10 +130,9 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 def may_lose_energy(motion: Trajectory) -> bool:
     """Whether impacts or friction may take energy: without friction, impacts may be elastic."""
-    if motion.scene.rolling_resistance > 0:
-        return True
     inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
-    return inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
+    lossy = inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
+    return lossy or motion.scene.rolling_resistance > 0
 
 
 def losses(motion: Trajectory) -> dict[str, FloatArray]:

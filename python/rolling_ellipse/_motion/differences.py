@@ -106,13 +106,10 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)
     problem: ValueError | None = None
-    if name == "rolling_resistance" and not motion.scene.rolling_resistance:
-        try:
-            motion = _with_turns(motion)
-        except ValueError as refusal:
-            return best, refusal
     for step in (scale * STEPS).tolist():
         try:
+            if name == "rolling_resistance" and not motion.scene.rolling_resistance:
+                motion = _with_turns(motion)
             value, rounding = _differences(motion, settings_of(motion), name, side, step)
         except ValueError as refusal:  # no such scene, or different events
             problem = refusal

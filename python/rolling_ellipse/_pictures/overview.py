@@ -107,7 +107,8 @@ def plot(
     label_lengths(panels[2].yaxis, "z of centre", trajectory.scene)
     (normal,), (friction,), (limit,), (impulses,) = draw_forces(panels[3], shown)
     (total,), (kinetic,), (potential,) = draw_curves(panels[4], shown, "energy [J]", ENERGIES)
-    lost = _draw_loss(panels[4], shown)
+    resisted = trajectory.scene.rolling_resistance > 0
+    lost = _draw_loss(panels[4], shown.motions[0]) if resisted else None
     errors = _draw_errors(panels[5], Comparison(trajectory).sampled(for_dots))
     marks = _dress_panels(panels, shown)
     whole.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
@@ -128,11 +129,10 @@ def _headline(trajectory: Trajectory, note: str) -> str:
     return f"{text}; {note}" if note else text
 
 
-def _draw_loss(ax: Axes, shown: Comparison) -> Line2D | None:
-    """Draw the energy lost since the start, where rolling resistance takes it all the time."""
-    (motion,) = shown.motions
-    lost, style = motion.energy[0] - motion.energy, {"color": palette_of(ax).grey, "label": "lost"}
-    return draw_line(ax, motion, lost, **style) if motion.scene.rolling_resistance else None
+def _draw_loss(ax: Axes, motion: Trajectory) -> Line2D:
+    """Draw the energy lost since the start."""
+    lost = motion.energy[0] - motion.energy
+    return draw_line(ax, motion, lost, color=palette_of(ax).grey, label="lost")
 
 
 def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:

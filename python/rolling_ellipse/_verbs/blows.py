@@ -179,9 +179,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         circle.
     """
     bare = require_scene(scene).replace(impulse=None)
-    _core.require_no_resistance(
-        bare.core, "blow_to", "the events of simulate tell what a blow does"
-    )
+    _core.require_no_resistance(bare.core, "blow_to", "simulate shows what a blow does")
     distance = number("distance", distance)
     if bare.initial_state.mode is Mode.FLIGHT:
         raise ValueError("scene must touch the ground: no contact holds a body in the air")

@@ -52,13 +52,15 @@ def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
     """
     states, law, wrong = _nearest_law(one, rows, mine.states[places])
     events: dict[str, dict[str, Any]] = {}
-    if "over" in one.answer:
-        wrong += _passes(one, mine)
+    over = bool((np.abs(mine.states[:, 2]) > math.pi / 2).any())
+    if one.answer.get("over", over) != over:
+        wrong.append("passes over the tip" if over else "never passes over the tip")
     for which in ("last", "always"):
         if which in one.answer:
             wrong += _values(one, mine, which)
-    if "half_swings" in one.answer:
-        wrong += _swings(one, mine)
+    swings = half_swings(one, mine.states)
+    if (known := one.answer.get("half_swings", swings)) != swings:
+        wrong.append(f"{swings} half swings, right {known}")
     if "events" in one.answer or mine.events is not None:
         differences, events = _events(one, mine)
         wrong += differences
@@ -67,17 +69,6 @@ def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
     if not wrong and not (errors / one.condition[rows, None]).max(initial=0.0) <= _NEAR:
         wrong = ["the states are those of another motion"]
     return Answer(not wrong, law + wrong, errors, events)
-
-
-def _passes(one: Problem, mine: Rows) -> list[str]:
-    over = bool((np.abs(mine.states[:, 2]) > math.pi / 2).any())
-    words = "passes over the tip" if over else "never passes over the tip"
-    return [] if over == one.answer["over"] else [words]
-
-
-def _swings(one: Problem, mine: Rows) -> list[str]:
-    count, known = half_swings(one, mine.states), one.answer["half_swings"]
-    return [] if count == known else [f"{count} half swings, right {known}"]
 
 
 def _values(one: Problem, mine: Rows, which: str) -> list[str]:
