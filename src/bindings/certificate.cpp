@@ -42,18 +42,12 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
     })[0];
 }
 
-// A scene with its certificate, for the sentences about it.
-struct Proof {
-    Scene scene;
-    Certificate certificate;
-};
+using Maybe = std::optional<double>;
 
-// A proof, and its certificate by field name, with the validity as a code, since creating Python
-// enums is slow.
+// A certificate by field name, with the validity as a code, since creating Python enums is slow.
 py::dict certificate(const Scene& scene) {
     const Certificate c = certify(scene);
     py::dict fields;
-    fields["_core"] = Proof{scene, c};
     fields["validity"] = static_cast<int>(c.end.validity);
     fields["smallest_normal_force"] = c.smallest_normal_force;
     fields["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
@@ -143,11 +137,15 @@ void bind_certificate(py::module_& m) {
           "scene"_a, "theta"_a);
     m.def("certify", certificate, "scene"_a);
     m.def("describe", description, "scene"_a, "solution"_a);
-    bind_class<Proof>(m, "Proof");
     m.def(
         "describe_proof",
-        [](const Proof& proof) { return describe_proof(proof.scene, proof.certificate); },
-        "proof"_a);
+        [](const Scene& scene, Validity validity, Maybe normal, Maybe normal_angle, Maybe friction,
+           Maybe friction_angle, Maybe end) {
+            return describe_proof(
+                scene, {{validity, end}, normal, normal_angle, friction, friction_angle});
+        },
+        "_of"_a, "validity"_a, "smallest_normal_force"_a, "smallest_normal_force_angle"_a,
+        "largest_friction_needed"_a, "largest_friction_needed_angle"_a, "ends_at"_a);
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },
         "scene"_a);

@@ -61,7 +61,6 @@ def core_objects() -> dict[str, Any]:
     return {
         "Scene": motion.scene.core,
         "Impulse": rl.Impulse(jx=1.0).core,
-        "Proof": vars(rl.certify(motion.scene))["_core"],
         "Settings": motion.settings.core,
         "Solution": motion._solution,
     }

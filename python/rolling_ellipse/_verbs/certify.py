@@ -83,8 +83,8 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    found = _core.certify(require_scene(scene).core)
-    return trusted(Certificate, found | {"validity": _VALIDITIES[found["validity"]]})
+    found = _core.certify(core := require_scene(scene).core)
+    return trusted(Certificate, found | {"validity": _VALIDITIES[found["validity"]], "_of": core})
 
 
-find_late(Certificate, reason=lambda proof: in_words(_core.describe_proof(vars(proof)["_core"])))
+find_late(Certificate, reason=lambda proof: in_words(_core.describe_proof(**vars(proof))))
