@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
@@ -233,12 +232,14 @@ class Scene(FieldsOnly, Listed):
         ValueError
             As for the constructor: kept and changed arguments must fit together.
         """
-        names = [field.name for field in fields(self)]
+        kept = {name: getattr(self, name) for name in _FIELDS}
         for name in changes:
-            if name not in names:
-                hint = meant(name, names)
-                raise TypeError(f"changes must be of {', '.join(names)}, got {name}{hint}")
-        return dataclasses.replace(self, **changes)
+            if name not in kept:
+                hint = meant(name, kept)
+                raise TypeError(f"changes must be of {', '.join(kept)}, got {name}{hint}")
+        scene = object.__new__(type(self))
+        scene._hold(kept | changes)
+        return scene
 
     @property
     def gyration2(self) -> float:
@@ -284,6 +285,7 @@ def _doubt(name: str, value: float) -> str:
     return " (degrees? times pi/180)" if whole and value and value % whole == 0 else ""
 
 
+_FIELDS = tuple(field.name for field in fields(Scene))
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)
 
 
