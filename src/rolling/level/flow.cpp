@@ -18,37 +18,28 @@ EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     return {kinetic + h, kinetic - under_tip(at, h), kinetic + over_flat(at, h)};
 }
 
-// The radius at which the last terms of a series are half an ulp of the series; the omitted terms
-// are a tenth of that.
-double radius_of(const Series& series) {
+// Whether the last terms of a series at 1 are within half an ulp of it; the omitted terms are a
+// tenth of that.
+bool is_complete(const Series& series) {
     constexpr double half_ulp = 1e-16;
-    double radius = 1.0;
-    for (int i = 0; i < 3; ++i) {  // iterated, since the size depends weakly on the radius
-        const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
-                                      std::abs(series[2]) * square(radius)});
-        double least = infinity;
-        for (const int k : {series_order - 1, series_order}) {
-            const double last = std::abs(series[k]);
-            if (last > 0) least = std::min(least, std::pow(half_ulp * size / last, 1.0 / k));
-        }
-        radius = least;
-    }
-    return radius;
+    const double size = std::max({std::abs(series[0]), std::abs(series[1]), std::abs(series[2])});
+    const double last =
+        std::max(std::abs(series[series_order - 1]), std::abs(series[series_order]));
+    return last <= half_ulp * size;
 }
 
 // The state after a short move, by one power series, which keeps small changes accurate; empty if
 // the move is too long for it.
-std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
-    const auto [unit, short_axis, c2, sin, cos] = flow.from.view;
-    if (!may_be_short(flow.from, t)) return std::nullopt;
-    const SeriesConstants body = series_constants(flow, t);
-    const auto series = motion_series<series_order>(body, sin, cos, flow.from.omega * t);
-    if (!(std::min(radius_of(series.angle), radius_of(series.omega)) >= 1)) return std::nullopt;
+std::optional<FlowSample> short_move(const RollingStart& from, double x, double t) {
+    const auto [unit, short_axis, c2, sin, cos] = from.view;
+    if (from.rests || c2 == 0 || t == 0 || !may_be_short(from, t)) return std::nullopt;
+    const SeriesConstants body = series_constants(from, phase_integrand(phase_start(from)), t);
+    const auto series = motion_series<series_order>(body, sin, cos, from.omega * t);
+    if (!is_complete(series.angle) || !is_complete(series.omega)) return std::nullopt;
     Series gain = series.omega;
     gain[0] = 0.0;
-    return FlowSample{flow.from.theta + value(series.angle, 1.0),
-                      flow.from.omega + value(gain, 1.0) / t,
-                      flow.x + unit * value(series.path, 1.0)};
+    return FlowSample{from.theta + value(series.angle, 1.0), from.omega + value(gain, 1.0) / t,
+                      x + unit * value(series.path, 1.0)};
 }
 
 }  // namespace
@@ -85,13 +76,14 @@ FlowSample sample(const RollingFlow& flow, double t) {
         const double turn = omega * t;
         return {theta + turn, omega, flow.x + view.long_axis * turn};
     }
-    if (const auto moved = short_move(flow, t)) return *moved;
+    if (const auto moved = short_move(flow.from, flow.x, t)) return *moved;
     FlowSample moved = sample_at<double>(flow, phase_start(flow.from), t);
     moved.x += flow.x;
     return moved;
 }
 
 FlowSample sample_alone(const RollingStart& from, double t) {
+    if (const auto moved = short_move(from, 0.0, t)) return *moved;  // before a quarter is set up
     const RollingFlow flow = rolling_flow(from);
     validate_time(t, longest_time(flow));
     return sample(flow, t);

@@ -36,7 +36,7 @@ class TableMaker {
         const double fastest = (rotates_ ? 1.0 : std::sqrt(integrand.amplitude2)) /
                                shape_factor<double>(integrand, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
-        body_ = series_constants(flow, unit_);
+        body_ = series_constants(flow.from, flow.phase.integrand, unit_);
     }
 
     // The table of the motion; empty if no series is accurate enough.

@@ -179,12 +179,12 @@ struct MotionSeries {
 };
 
 // The constants for the series of a motion, with `time_unit` [s] as the unit of time.
-inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
-    const PhaseIntegrand<double>& integrand = flow.phase.integrand;
-    const double length = flow.from.view.long_axis;
+inline SeriesConstants series_constants(const RollingStart& from,
+                                        const PhaseIntegrand<double>& integrand, double time_unit) {
+    const double length = from.view.long_axis;
     const double area = length * length;
     return {integrand.short_axis / length * (integrand.short_axis / length), integrand.c2 / area,
-            flow.from.body.gravity * (time_unit * time_unit) / length, integrand.d0 / (area * area),
+            from.body.gravity * (time_unit * time_unit) / length, integrand.d0 / (area * area),
             integrand.d1 / (area * area)};
 }
 
