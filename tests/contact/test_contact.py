@@ -1,6 +1,5 @@
 """The contact model: transitions between arcs, closed forms, and laws that every motion obeys."""
 
-import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -33,40 +32,6 @@ def random_motions(
 
 
 # ----------------------------------------------------------------------------- closed forms
-
-
-@pytest.mark.parametrize("slope", [0.0, 0.1, 0.5])
-@pytest.mark.parametrize(
-    ("inertia", "speed", "omega"), [(None, 3.0, 0.0), (2.0, 3.0, 0.0), (0.0135, -0.0255, -30.3)]
-)
-def test_a_sliding_disc_follows_its_closed_form(
-    slope: float, inertia: float | None, speed: float, omega: float
-) -> None:
-    """x.. = g (sin - mu cos), omega. = mu g cos a/k^2 until omega a = x.; then the disc rolls."""
-    a, mu, mass = 0.7, 0.1, 2.0
-    scene = Scene(
-        a, a, mass=mass, inertia=inertia, slope=slope, friction=mu, x_dot=speed, omega=omega
-    )
-    down, load = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
-    spin = mu * load * a / scene.gyration2
-    grips = (speed - a * omega) / (a * spin - down + mu * load)
-    motion = simulate(scene, np.linspace(0, 1.0, 301))
-    rolls = abs(math.tan(slope)) <= mu * (1 + a * a / scene.gyration2)
-    sliding = motion.mode == Mode.SLIDING
-    t = motion.t[sliding]
-    assert np.all(sliding == ((motion.t < grips) | (not rolls and grips < 0)))
-    x_dot, x = speed + (down - mu * load) * t, (speed + (down - mu * load) * t / 2) * t
-    for found, true in ((motion.x_dot, x_dot), (motion.x, x), (motion.omega, omega + spin * t)):
-        assert np.allclose(found[sliding], true, rtol=1e-12, atol=1e-12)
-    assert np.allclose(motion.normal_force[sliding], mass * load, rtol=1e-12)
-    assert np.allclose(motion.friction_force[sliding], -mu * mass * load, rtol=1e-12)
-    if 0 < grips < 1:
-        assert kinds(motion) == [EventKind.STICK]
-        assert motion.events[0].t == pytest.approx(grips, rel=1e-12)
-        rolling = motion.omega[-1] - (omega + spin * grips)
-        gained = down * a / (scene.gyration2 + a * a) * (1 - grips)
-        rounding = 8 * EPS * max(abs(omega), spin * grips)
-        assert rolling == pytest.approx(gained, rel=1e-11, abs=rounding)
 
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.5, 0.5), (0.7, 1.9)])
@@ -141,22 +106,6 @@ def test_a_body_bouncing_down_a_steep_slope_accelerates_uniformly() -> None:
     fallen = GRAVITY * math.sin(slope) * motion.t**2 / 2
     assert np.all(np.abs(motion.x - fallen) <= 4 * EPS * fallen)
     assert np.ptp(motion.energy) <= 8 * EPS * motion.kinetic_energy.max()
-
-
-@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
-@pytest.mark.parametrize("side", [1, -1])
-def test_enough_friction_holds_a_body_on_a_slope(a: float, b: float, side: int) -> None:
-    """The contact is below the centre, tan(alpha) = h'/h, and mu >= tan(alpha) holds the body."""
-    theta = side * 0.3
-    at = support(theta, a, b)
-    slope = math.atan2(at.slope, at.h)
-    scene = Scene(a, b, theta=theta, slope=slope, friction=abs(math.tan(slope)) * (1 + 1e-9))
-    motion = simulate(scene, 5.0)
-    assert np.all(motion.mode == Mode.REST) and motion.events == ()
-    assert np.all(motion.omega == 0) and np.all(motion.theta == theta)
-    assert np.allclose(motion.friction_force, -GRAVITY * math.sin(slope), rtol=1e-14)
-    slips = scene.replace(friction=abs(math.tan(slope)) * (1 - 1e-9))
-    assert np.all(simulate(slips, 0.1).mode == Mode.SLIDING)
 
 
 # ----------------------------------------------------------------------------- transitions
@@ -332,18 +281,6 @@ def test_large_friction_approaches_the_infinite_limit() -> None:
     assert off[1] / off[2] == pytest.approx(10**1.5, rel=0.1)
 
 
-def test_a_jam_at_the_start_ends_the_motion_there() -> None:
-    """tests/stability/test_painleve.py has the law. Slip to the other side does not jam."""
-    jamming = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
-    motion = simulate(jamming, 1.0)
-    assert motion.status is Status.JAMMED and motion.t_end == 0 and motion.x_dot.tolist() == [5.0]
-    with pytest.raises(ValueError, match=r"t must be within \[0, 0.0\]"):
-        motion.sol(0.1)
-    assert simulate(jamming.replace(x_dot=-5.0), 1.0).status is Status.COMPLETED
-    below = jamming.replace(friction=1.35)  # Painleve's smallest friction is 1.3527
-    assert simulate(below, 1.0).status is Status.COMPLETED
-
-
 def test_only_a_slipping_contact_jams() -> None:
     """A jam needs slip; without slip the contact acceleration always has a solution. A slide ends
     before two motions become possible, and an impact leaves no slip for it."""
@@ -438,19 +375,6 @@ def test_the_first_arc_is_exact_rolling() -> None:
         assert np.array_equal(getattr(contact, name), getattr(rolling, name)), name
 
 
-def test_auto_chooses_the_contact_model_only_where_needed() -> None:
-    for scene, model in (
-        (rl.scenes.report, "rolling"), (rl.scenes.circle, "rolling"),
-        (rl.scenes.jump, "contact"), (rl.scenes.slip, "contact"),
-        (rl.scenes.drop, "contact"), (rl.scenes.slope, "contact"),
-        (rl.scenes.rolling.replace(friction=0.1), "contact"),
-    ):  # fmt: skip
-        for t in (0.001, 5.0):  # a short and a long span
-            assert simulate(scene, t).model == model
-    forced = simulate(rl.scenes.report, 5.0, model="contact")
-    assert np.array_equal(forced.theta, simulate(rl.scenes.report, 5.0).theta)
-
-
 @eventful
 def test_samples_at_an_event_show_the_state_after_it(name: str) -> None:
     motion = simulate(getattr(rl.scenes, name), 5.0)
@@ -472,30 +396,6 @@ def test_an_event_at_the_last_time_is_included() -> None:
         motion = simulate(rl.scenes.bounce, event.t)
         assert motion.events[-1] == event and motion.status is Status.COMPLETED
         assert motion.t[-1] == event.t and motion.omega[-1] == event.state_after.omega
-
-
-@eventful
-def test_a_scene_taken_from_a_motion_continues_it(name: str) -> None:
-    motion = simulate(getattr(rl.scenes, name), 5.0)
-    ends = [0.0, *(event.t for event in motion.events), 5.0]
-    for i, (begin, end) in enumerate(itertools.pairwise(ends)):
-        half = (begin + end) / 2
-        later = simulate(motion.scene_at(half), 5.0 - half)
-        assert kinds(later) == kinds(motion)[i:]
-        for one, other in zip(later.events, motion.events[i:], strict=True):
-            # bounces without friction magnify a rounding tenfold each
-            assert one.t + half == pytest.approx(other.t, rel=1e-13 * 10 ** len(motion.events[i:]))
-
-
-def test_a_start_that_cannot_roll_slides_at_once() -> None:
-    """|F| > mu N at t = 0: the body slips against the friction needed; the slip grows like t."""
-    scene = Scene(2.0, 1.0, theta=0.5, friction=0.1)
-    needed = simulate(scene.replace(friction=math.inf), [0.0]).friction_force[0]
-    motion = simulate(scene, [0.0, 1e-4, 2e-4])
-    assert np.all(motion.mode == Mode.SLIDING)
-    slip = motion.constraint_residuals().slip
-    assert slip[0] == 0 and slip[1] * needed < 0
-    assert slip[2] / slip[1] == pytest.approx(2, rel=1e-3)
 
 
 def test_a_motion_stops_at_max_events() -> None:

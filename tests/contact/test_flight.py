@@ -163,26 +163,6 @@ def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
         assert t == pytest.approx(2 * u / GRAVITY, rel=4 * EPS)
 
 
-def test_samples_in_flight_lie_on_a_parabola() -> None:
-    scene = Scene(
-        2.0, 1.0, theta=0.4, omega=2.0, z=5.0, x=-1.0, x_dot=0.7, z_dot=3.0, slope=0.3,
-        restitution=1.0,
-    )  # fmt: skip
-    landing = first_impact(scene)
-    motion = simulate(scene, np.linspace(0, 0.999 * landing, 100))
-    along, away = GRAVITY * math.sin(0.3), GRAVITY * math.cos(0.3)
-    t = motion.t
-    assert np.all(motion.mode == Mode.FLIGHT) and motion.events == ()
-    assert np.allclose(motion.x, -1 + 0.7 * t + along * t**2 / 2, rtol=0, atol=1e-14)
-    assert np.allclose(motion.z, 5 + 3 * t - away * t**2 / 2, rtol=0, atol=1e-14)
-    assert np.allclose(motion.x_dot, 0.7 + along * t, rtol=0, atol=1e-14)
-    assert np.allclose(motion.z_dot, 3 - away * t, rtol=0, atol=1e-14)
-    assert np.all(motion.omega == 2.0) and np.allclose(motion.theta, 0.4 + 2 * t, rtol=1e-15)
-    assert np.all(motion.normal_force == 0) and np.all(motion.friction_force == 0)
-    assert np.allclose(motion.x_ddot, along, rtol=1e-15)
-    assert np.allclose(motion.z_ddot, -away, rtol=1e-15)
-
-
 @pytest.mark.parametrize("omega", [1.0, 10.0])
 def test_small_hops_of_a_turning_circle_are_exact_to_a_few_ulp(omega: float) -> None:
     """A circle's h is its radius, rounded up or down; the hops are far lower than that rounding."""
