@@ -187,23 +187,6 @@ def test_a_warning_states_the_loss_and_a_remedy() -> None:
     assert "or method 'exact'" in said and motion.success
 
 
-@pytest.mark.parametrize(
-    "how",
-    [
-        {},
-        {"model": "contact"},
-        {"model": "rolling", "method": "dop853"},
-        {"model": "rolling", "method": "gauss", "step": 0.1},
-        {"model": "multipliers"},
-        {"model": "multipliers", "stabilization": "none"},
-        {"model": "multipliers", "stabilization": "baumgarte", "method": "rk4", "step": 0.01},
-        {"model": "multipliers", "stabilization": "ggl", "method": "radau", "step": 0.02},
-    ],
-)
-def test_a_good_motion_gives_no_warning(how: dict[str, Any]) -> None:
-    assert advice(SCENE, 5.0, **how)[1] == []
-
-
 def test_loose_tolerances_are_taken_at_their_word() -> None:
     """Energy losses up to ten times a requested rtol give no warning; larger ones do."""
     motion, said = advice(SCENE, 3.0, model="rolling", method="dop853", rtol=5e-3)

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.contact import random_scenes
-from oracles.numbers import EPS
-from oracles.spread import known_to, known_to_in_two_moves, path_grain, state
 from oracles.trajectory import SCENES
 from rolling_ellipse import Impulse, Mode, Trajectory, simulate
 
@@ -70,23 +68,14 @@ def test_the_order_of_times_changes_no_bit() -> None:
     assert looked_at > 50
 
 
-@pytest.mark.parametrize("name", ["report", "rocking", "standing", "circle"])
-def test_scene_at_continues_the_motion(name: str) -> None:
-    """The scene at 1.7 s continues the same motion, to within the effect of its rounding."""
-    scene, t1, t2 = SCENES[name], 1.7, 4.0
-    whole = simulate(scene, t2)
-    later = whole.scene_at(t1)
+def test_scene_at_takes_the_state_of_a_rolling_motion() -> None:
+    """tests/properties/test_restarts.py shows how it continues."""
+    scene = SCENES["standing"].replace(impulse=Impulse(jx=0.1))
+    whole = simulate(scene, 4.0)
+    later, at = whole.scene_at(1.7), whole.sol(1.7)
     assert later.impulse is None and later.mass == scene.mass and later.friction == scene.friction
-    at = whole.sol(t1)
     assert (later.theta, later.omega, later.x) == (at.theta[0], at.omega[0], at.x[0])
     assert later.initial_state.mode is Mode.ROLLING
-    rest = simulate(later, t2 - t1)
-    body = {name: getattr(scene, name) for name in ("a", "b", "gyration2", "gravity")}
-    motion = body | {name: getattr(scene.initial_state, name) for name in ("theta", "omega")}
-    allowed = known_to(state, {"t": t2} | motion) + known_to_in_two_moves(t1, t2 - t1, motion)
-    allowed += path_grain(motion) + 2 * EPS * np.array([0, 0, abs(at.x[0]) + abs(whole.x[-1])])
-    for field, bound in zip(("theta", "omega", "x"), allowed, strict=True):
-        assert abs(getattr(rest, field)[-1] - getattr(whole, field)[-1]) <= bound
 
 
 def test_scene_at_accepts_another_impulse() -> None:

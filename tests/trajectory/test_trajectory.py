@@ -140,14 +140,6 @@ def test_a_body_at_rest_stays_at_rest(theta: float) -> None:
     assert np.all(np.abs(trajectory.friction_force) <= 8 * EPS * 30)
 
 
-@pytest.mark.parametrize("name", ["drop", "bounce", "slip"])
-def test_a_body_that_does_not_roll_is_simulated_anyway(name: str) -> None:
-    scene = getattr(rl.scenes, name)
-    trajectory = simulate(scene, 2.0)
-    assert (trajectory.model, trajectory.status) == ("contact", Status.COMPLETED)
-    assert trajectory.t.size == 1001 and trajectory.events
-
-
 def test_a_motion_may_end_before_the_first_sample() -> None:
     """A motion that jams at t = 0 has none of the later samples requested."""
     scene = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
