@@ -1,12 +1,7 @@
 """A picture or film that fails leaves no file behind; names of films and their writers."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-
-import matplotlib
-
-matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,23 +9,12 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from oracles.curves import PICTURES
 
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
-CURVES = [
-    rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
-    rl.plot_error,
-]  # fmt: skip
 SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
 
 FRAMES = (".gif", ".mp4")  # formats written frame by frame; an .html file is one string
-
-
-@pytest.fixture(autouse=True)
-def no_figure_stays() -> Iterator[None]:
-    yield
-    opened = plt.get_fignums()
-    plt.close("all")
-    assert opened == []
 
 
 def test_axes_may_be_given_as_arrays_lists_or_tuples() -> None:
@@ -47,7 +31,7 @@ def test_a_rejected_call_leaves_a_given_figure_empty() -> None:
     assert figure.axes == []
 
 
-@pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *CURVES])
+@pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *PICTURES.values()])
 def test_a_failing_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
     mine = plt.figure()
     monkeypatch.setattr(Axes, "plot", lambda *args, **options: 1 / 0)
@@ -64,7 +48,7 @@ def test_an_extremely_short_motion_is_animated(units: int) -> None:
     assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
     motion = rl.simulate(rl.scenes.rocking, [0.0, end])
     draw: Any
-    for draw in (rl.plot, rl.plot_strobe, *CURVES):
+    for draw in (rl.plot, rl.plot_strobe, *PICTURES.values()):
         draw(motion)
         plt.close()
     assert rl.animate(motion)._repr_html_() and motion._repr_html_()

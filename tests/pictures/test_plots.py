@@ -70,19 +70,6 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     return other
 
 
-def test_each_constraint_has_its_own_line(trajectory: rl.Trajectory) -> None:
-    shown = rl.plot_constraints(trajectory, ax=two_axes())
-    names = [[text.removesuffix(" = 0") for text in legend_of(ax)] for ax in shown.axes]
-    assert names == [
-        ["f2", "f3", "f4", "gap"],
-        ["f1", "df2/dt", "df3/dt", "df4/dt", "slip"],
-    ]
-    for line in itertools.chain(*shown.lines):
-        assert np.array_equal(data(line)[0], seen(trajectory, line).t)
-        # an exact motion has a few hundred roundings; the thin body has 2/0.02 times as many
-        assert np.all(data(line)[1] < 1e-13)
-
-
 @own_samples
 def test_errors_of_constraints_are_dimensionless(report: rl.Trajectory) -> None:
     position = {"f2": -1e-3, "f3": 2e-5, "f4": -1e-7, "gap": -4e-3}

@@ -26,7 +26,8 @@ STILL = [*REPORT_AND_ROCKING, *moved(6.0, rl.scenes.circle)]
 FOLLOWED = moved(14.0, SLOW, FAST)  # paths of 51 m, ends 20 m apart
 PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # ends 113 m apart
 SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Scene(0.7, 1.9))
-COMPARISONS = {"still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
+FAR = moved(6.0, rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0))  # alone, in kilometres
+COMPARISONS = {"far": FAR, "still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
 
 
 @pytest.fixture(params=list(COMPARISONS.values()), ids=list(COMPARISONS))
@@ -57,6 +58,8 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
             assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
             assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
+            place = np.asarray(strip.contact.get_data())[:, 0]
+            assert place == pytest.approx([at.contact_x[0], 0], rel=1e-14)
 
 
 def test_every_body_is_fully_visible_on_its_ground(motions: list[rl.Trajectory]) -> None:
