@@ -170,14 +170,6 @@ def test_no_impact_gains_energy() -> None:
 # ----------------------------------------------------------------------------- special cases
 
 
-def one_hit(**given: Any) -> Hit:
-    """The first impact of the 2:1 disc that falls at an angle of 0.5 rad."""
-    h = float(support(0.5, 2.0, 1.0).h)
-    values = {"theta": 0.5, "z": h + 0.3, "x_dot": 0.0, "omega": 0.0} | given
-    scene = Scene(2.0, 1.0, mass=1.7, **values)
-    return Hit(scene, simulate(scene, 5.0, model="contact").events[0])
-
-
 def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
     """Three cases of u1 = u - v Gnt/Gtt, the gap rate without slip: stuck, stuck without pressure,
     or friction alone. The terms are of the size of the velocities and the response, and the angle
@@ -209,19 +201,17 @@ def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
     assert min(met) >= 10, met
 
 
-def test_the_reaction_of_an_event_is_the_momentum_the_centre_gains() -> None:
-    hit = one_hit(friction=0.3, restitution=0.5, x_dot=1.0)
-    after = hit.event.state_after
-    assert (after.reaction_x, after.reaction_z) == pytest.approx(impulses(hit), rel=4 * EPS)
-    assert after.free_omega == hit.event.state_before.omega
-
-
 def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
     """The energy lost is the impulse times the mean velocity of the contact, up to roundings of the
-    kinetic energy."""
+    kinetic energy. The reaction is the momentum that the centre gains, to those of its momenta."""
     lossless = 0
     for hit in hits(600, 19, bounces=3):
         along, away = impulses(hit)
+        before, after = hit.event.state_before, hit.event.state_after
+        momentum = hit.scene.mass * (abs(before.x_dot) + abs(before.z_dot) + after.reaction_z)
+        rounding = (100 + abs(before.theta)) * EPS * (momentum + abs(after.reaction_x))
+        assert (after.reaction_x, after.reaction_z) == pytest.approx((along, away), abs=rounding)
+        assert after.free_omega == before.omega
         work = 0.5 * along * (hit.before.slip + hit.after.slip)
         work += 0.5 * away * (hit.before.gap_rate + hit.after.gap_rate)
         state = hit.event.state_before
