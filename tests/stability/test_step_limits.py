@@ -10,16 +10,12 @@ import math
 import numpy as np
 import pytest
 from oracles.margins import told
-from rolling_ellipse import Scene, Status, Trajectory, simulate
+from rolling_ellipse import Status
 from stability_laws import (
     EXPLICIT,
-    GRAVITY,
-    GYRATION2,
     OMEGA,
     SMALL,
     STABILIZATIONS,
-    A,
-    B,
     amplification,
     amplitude,
     given_up_from,
@@ -127,17 +123,3 @@ def test_only_conserving_the_energy_keeps_large_multiplier_steps_bounded(name: s
         beyond = 0.75 if name == "baumgarte" else 3.0
         assert amplitude(y=beyond, steps=300, **how)[-1] > 1 + 1e-4
         assert amplitude(y=beyond - 0.25, steps=300, **how)[-1] <= 1 + 1e-4
-
-
-# ---------------------------------------------------------------------------- losses of the energy
-
-
-def lost(scene: Scene, found: Trajectory) -> tuple[float, float]:
-    """Change of the energy at the end and the largest change, relative to the largest energy, by
-    formulas of this suite."""
-    h2 = (A * np.sin(found.theta)) ** 2 + (B * np.cos(found.theta)) ** 2
-    size = GYRATION2 + A * A + B * B - (A * B) ** 2 / h2
-    energy = size * found.omega**2 / 2 + GRAVITY * np.sqrt(h2)
-    start = simulate(scene, 0.0).energy[0] / scene.mass
-    change = np.abs(energy - start) / max(start, float(np.max(energy)))
-    return float(change[-1]), float(np.max(change))
