@@ -156,13 +156,6 @@ def test_after_a_downward_blow_no_velocity_into_the_ground_remains(
     check(scene, scene.replace(omega=start.omega, z_dot=rising, impulse=None))
 
 
-def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
-    """A flat body that leaves with speed u and no spin flies for 2 u/g, however small u is."""
-    for u in (1e-3, 1e-7, 1e-11):
-        t = first_impact(Scene(2.0, 1.0, z_dot=u, friction=0.0, restitution=0.5))
-        assert t == pytest.approx(2 * u / GRAVITY, rel=4 * EPS)
-
-
 @pytest.mark.parametrize("omega", [1.0, 10.0])
 def test_small_hops_of_a_turning_circle_are_exact_to_a_few_ulp(omega: float) -> None:
     """A circle's h is its radius, rounded up or down; the hops are far lower than that rounding."""
