@@ -326,13 +326,6 @@ def test_the_last_step_ends_exactly_at_the_end_time(
 
 
 @each_method
-def test_a_motion_that_ends_at_time_zero_is_its_start(name: str) -> None:
-    trajectory = stepped(rl.scenes.rolling, 0, name)
-    assert trajectory.t.tolist() == [0.0] and trajectory.omega.tolist() == [3.2]
-    assert trajectory.stats["steps"] == 0 and trajectory.status is Status.COMPLETED
-
-
-@each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
     """Samples keep their bits among others: more than a thousand, every third one, and beyond any
     chunk."""

@@ -16,7 +16,7 @@ import rolling_ellipse as rl
 from oracles.constraints import along, no_slip, positions
 from oracles.multipliers import GENERIC, SCENES, forces, matrix, matrix_slopes, settings
 from oracles.numbers import DIGITS, EPS, ulps
-from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
+from rolling_ellipse import Scene, Status, _core, simulate
 from rolling_ellipse._ask.settings import Settings
 
 Shape = tuple[float, float]
@@ -346,13 +346,3 @@ def test_arrays_of_coordinates_equal_the_individual_fields(stabilization: Any) -
     assert misses(GENERIC, motion.settings, *solved) <= 1e-13
     energy = (motion.x_dot**2 + motion.z_dot**2 + GENERIC.gyration2 * motion.omega**2) / 2
     assert np.allclose(motion.energy, energy + GENERIC.gravity * motion.z, rtol=8 * EPS, atol=0)
-
-
-def test_a_motion_starts_at_the_given_coordinates() -> None:
-    """A motion without stabilization starts at the given q, even off the constraints."""
-    q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
-    q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3
-    times = np.array([0.0, 0.5])
-    moving = Trajectory.computed(Scene(2.0, 1.0), settings(), times, start=(q, q_dot))
-    assert np.array_equal(moving.q[0], q) and np.array_equal(moving.q_dot[0], q_dot)
-    assert np.max(np.abs(moving.constraint_residuals().position)) > 1e-3
