@@ -47,7 +47,7 @@ _BASE = (
     "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
     "centre; options change it."
 )
-_ABOUT = str(benchmark.__doc__).partition("\n\n>>>")[0].replace("``", "")
+_ABOUT = str(benchmark.__doc__).partition("\n\nExamples")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
 # argparse would take -1e-3, -inf and -nan for unknown options
 _NEGATIVE = re.compile(r"-(\d[\d_]*\.?[\d_]*|\.[\d_]+)(e[-+]?\d+)?$|-inf(inity)?$|-nan$", re.I)

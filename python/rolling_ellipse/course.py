@@ -1,11 +1,15 @@
 """Marks for the answers to the tasks of a course of ten sheets, docs/course.
 
->>> from rolling_ellipse import course
->>> course.mark("3.2", 1.91).mistake
-'sign and inertia'
-
 The package computes the right answers, and those of usual mistakes by making the mistake.
 ``FILM`` is the film of sheet 10, with noise of 0.5 mm and 0.01 rad: t [s], x, z [m], theta [rad].
+
+Examples
+--------
+>>> height = rl.geometry.support(0.6, a=0.3, b=0.2)
+>>> rl.course.mark("1.1", height).right
+True
+>>> rl.course.mark("3.2", 1.91).mistake
+'sign and inertia'
 """
 
 from __future__ import annotations
@@ -39,7 +43,16 @@ def __dir__() -> list[str]:
 
 @dataclass(frozen=True)
 class Task:
-    """A task: number, question, unit of the answer, and data in SI units."""
+    """A task: number, question, unit of the answer, and data in SI units.
+
+    Examples
+    --------
+    >>> task = rl.course.tasks()[0]
+    >>> print(task.question)
+    How high is the centre above the ground, $h$?
+    >>> task.data
+    {'a': 0.3, 'b': 0.2, 'theta': 0.6}
+    """
 
     number: str
     question: str
@@ -56,6 +69,16 @@ class Mark:
     in a blow or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
     (I_C omega_dot about the contact), "task 4.1" (its answer), "per mille" (nearly right) or
     "other"; "sign and inertia" if both were made, "angle or task 4.1" if either explains it.
+
+    Examples
+    --------
+    >>> mark = rl.course.mark("3.2", 1.91)
+    >>> mark.right, mark.mistake
+    (False, 'sign and inertia')
+    >>> print(mark.sentence)
+    The sign is wrong: mind which way x, z and theta (clockwise) grow. Wrong moment of
+    inertia: k^2 is twice too large. (a^2 + b^2)/4 belongs to a uniform elliptic plate
+    or cylinder.
     """
 
     task: str
@@ -100,16 +123,23 @@ _STEP = 1e-6  # relative step of the differences for the condition
 
 
 def tasks() -> tuple[Task, ...]:
-    """Return all tasks, 1.1 to 10.4."""
+    """Return all tasks, 1.1 to 10.4.
+
+    Examples
+    --------
+    >>> task = rl.course.tasks()[0]
+    >>> task.number, task.unit
+    ('1.1', 'm')
+    """
     return tuple(replace(task, data=dict(task.data)) for task in _TASKS.values())
 
 
 def mark(task: str, answer: float) -> Mark:
-    """Return the mark of an answer in SI units and radians.
+    """Return whether an answer is right, or which mistake explains it.
 
-    It is right within half a unit of its fourth digit plus 1e-4 of its condition, the root sum of
-    squares of its changes per relative change of the data; at most 0.5 %. An answer from the film
-    is right within twice its standard error.
+    Answers are in SI units and radians. One is right within half a unit of its fourth digit plus
+    1e-4 of its condition, the root sum of squares of its changes per relative change of the data;
+    at most 0.5 %. An answer from the film is right within twice its standard error.
 
     Raises
     ------
@@ -120,6 +150,14 @@ def mark(task: str, answer: float) -> Mark:
         If the answer is not a number.
     ImportError
         If SciPy is not installed (sheet 10).
+
+    Examples
+    --------
+    >>> height = rl.geometry.support(0.6, a=0.3, b=0.2)
+    >>> rl.course.mark("1.1", height).right
+    True
+    >>> rl.course.mark("3.2", 1.91).mistake
+    'sign and inertia'
     """
     if not (isinstance(task, str) and task in _TASKS):
         from difflib import get_close_matches  # only on a mistake: it takes a millisecond
@@ -152,6 +190,15 @@ def measured_impacts() -> tuple[FloatArray, FloatArray]:
     """Return the impacts of sheet 8 before, (4, n), and after, (3, n), as `impacts.fit` takes them.
 
     The environment variable ROLLING_ELLIPSE_IMPACTS names their CSV file; else they are synthetic.
+
+    Examples
+    --------
+    >>> before, after = rl.course.measured_impacts()
+    >>> before.shape, after.shape
+    ((4, 24), (3, 24))
+    >>> fitted = rl.impacts.fit(before, after, a=0.035, b=0.025)
+    >>> print(f"e = {fitted.restitution:.2f}")
+    e = 0.52
     """
     path, table, names = os.environ.get(_FILE), _DATA["impacts"], tuple(_DATA["impacts"])
     if path is not None:

@@ -5,6 +5,13 @@ be of any size, the semi-axes ``a`` and ``b`` [m] in any order. Scalars give flo
 broadcast.
 All functions raise ValueError for angles that are not finite, and for semi-axes that are not
 positive or whose ratio is outside [1e-3, 1e3].
+
+Examples
+--------
+>>> theta = np.radians(30.0)
+>>> height = rl.geometry.support(theta, a=2.0, b=1.0)
+>>> print(f"the centre is {height:.4f} m above the ground")
+the centre is 1.3229 m above the ground
 """
 
 from __future__ import annotations
@@ -31,32 +38,77 @@ def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the support function h, the height of the centre of a body on the ground [m]."""
+    """Return the support function h, the height of the centre of a body on the ground [m].
+
+    Examples
+    --------
+    >>> rl.geometry.support(0.0, a=2.0, b=1.0)
+    1.0
+    >>> rl.geometry.support(np.radians([0.0, 45.0, 90.0]), a=2.0, b=1.0).round(4)
+    array([1.    , 1.5811, 2.    ])
+    """
     return _evaluate(_core.support, theta, a, b)
 
 
 def support_slope(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return h' = dh/dtheta = x_contact - x_centre [m]."""
+    """Return h' = dh/dtheta = x_contact - x_centre [m].
+
+    Examples
+    --------
+    >>> ahead = rl.geometry.support_slope(np.radians(30.0), a=2.0, b=1.0)
+    >>> print(f"it touches {ahead:.4f} m ahead of its centre")
+    it touches 0.9820 m ahead of its centre
+    """
     return _evaluate(_core.support_slope, theta, a, b)
 
 
 def support_curvature(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return h'', the second derivative of the support function [m]."""
+    """Return h'', the second derivative of the support function [m].
+
+    Examples
+    --------
+    >>> rl.geometry.support_curvature(0.0, a=2.0, b=1.0)
+    3.0
+    >>> rl.geometry.support_curvature(np.pi / 2, a=2.0, b=1.0)
+    -1.5
+    """
     return _evaluate(_core.support_curvature, theta, a, b)
 
 
 def curvature_radius(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return rho = h + h'' = a^2 b^2/h^3, the radius of curvature at the contact [m]."""
+    """Return rho = h + h'' = a^2 b^2/h^3, the radius of curvature at the contact [m].
+
+    Examples
+    --------
+    >>> rl.geometry.curvature_radius(0.0, a=2.0, b=1.0)
+    4.0
+    >>> rl.geometry.curvature_radius(np.pi / 2, a=2.0, b=1.0)
+    0.5
+    """
     return _evaluate(_core.curvature_radius, theta, a, b)
 
 
 def contact_distance(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return r = sqrt(h^2 + h'^2), the distance from the centre to the contact [m]."""
+    """Return r = sqrt(h^2 + h'^2), the distance from the centre to the contact [m].
+
+    Examples
+    --------
+    >>> theta = np.radians([0.0, 30.0, 90.0])
+    >>> rl.geometry.contact_distance(theta, a=2.0, b=1.0).round(4)
+    array([1.    , 1.6475, 2.    ])
+    """
     return _evaluate(_core.contact_distance, theta, a, b)
 
 
 def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return psi [rad], continuous over all theta, with tan(psi) = (a/b)^2 tan(theta)."""
+    """Return psi [rad], continuous over all theta, with tan(psi) = (a/b)^2 tan(theta).
+
+    Examples
+    --------
+    >>> psi = rl.geometry.contact_angle(np.radians([30.0, 90.0, 210.0]), a=2.0, b=1.0)
+    >>> np.degrees(psi).round(2)
+    array([ 66.59,  90.  , 246.59])
+    """
     return _evaluate(_core.contact_angle, theta, a, b)
 
 
@@ -65,6 +117,12 @@ def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
 
     By Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms without
     cancellation, for any number of turns.
+
+    Examples
+    --------
+    >>> way = rl.geometry.centre_path(2 * np.pi, a=2.0, b=1.0)
+    >>> print(f"{way:.6f} m in a turn")
+    9.688448 m in a turn
     """
     return _evaluate(_core.centre_path, theta, a, b)
 
@@ -73,6 +131,12 @@ def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
     """Return the arc of the ellipse from its contact at angle 0 to its contact at theta [m].
 
     Equal to ``centre_path + support_slope``; 2 pi gives the perimeter.
+
+    Examples
+    --------
+    >>> perimeter = rl.geometry.arc_length(2 * np.pi, a=2.0, b=1.0)
+    >>> print(f"{perimeter:.6f} m")
+    9.688448 m
     """
     return _evaluate(_core.arc_length, theta, a, b)
 

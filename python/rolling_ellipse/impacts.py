@@ -3,6 +3,13 @@
 ``theta`` is the clockwise rotation [rad]; ``x_dot``, ``z_dot`` [m/s] are the velocity of the
 centre along the ground and away from it, ``omega`` [rad/s] is positive clockwise. The mass enters
 only through k^2 = I/m, ``gyration2`` [m^2].
+
+Examples
+--------
+>>> egg = {"a": 0.035, "b": 0.025, "friction": 0.3, "restitution": 0.6}
+>>> after = rl.impacts.collide(0.4, 0.2, -1.0, 5.0, **egg)
+>>> np.round(after, 4)
+array([-0.1173,  0.5953, -4.3841])
 """
 
 from __future__ import annotations
@@ -103,6 +110,16 @@ def collide(
     ----------
     W. J. Stronge, Impact Mechanics, Cambridge University Press, 2000, ch. 3 to 5.
     S. D. Poisson, Traité de mécanique, 1833.
+
+    Examples
+    --------
+    >>> egg = {"a": 0.035, "b": 0.025, "friction": 0.3}
+    >>> x_dot, z_dot, omega = rl.impacts.collide(0.4, 0.2, -1.0, 5.0, **egg, restitution=0.6)
+    >>> print(f"{x_dot:.4f} m/s, {z_dot:.4f} m/s, {omega:.3f} rad/s")
+    -0.1173 m/s, 0.5953 m/s, -4.384 rad/s
+    >>> flat = rl.impacts.collide(0.0, 0.2, -1.0, 5.0, **egg, restitution=[0.0, 0.5, 0.9])
+    >>> flat[1].round(3)
+    array([0. , 0.5, 0.9])
     """
     meaning = _core.Restitution[choice("law", law, LAWS).upper()]
     return evaluate(
@@ -132,6 +149,12 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     ------
     ValueError
         If a velocity is not finite, gyration2 is not positive, or shapes do not broadcast.
+
+    Examples
+    --------
+    >>> speed = rl.impacts.kinetic_speed(0.3, -0.4, 10.0, gyration2=4.6e-4)
+    >>> print(f"{speed:.4f} m/s")
+    0.5441 m/s
     """
     arguments = {"x_dot": x_dot, "z_dot": z_dot, "omega": omega, "gyration2": gyration2}
     shape, (x_dot, z_dot, omega, k2) = broadcast(**arguments)
@@ -162,6 +185,14 @@ class FittedImpacts(Listed):
         Velocities after each impact [m/s, m/s, rad/s].
     median_error, rms_error : float
         Median and root mean square of `errors` [m/s].
+
+    Examples
+    --------
+    >>> fitted = rl.impacts.fit(*rl.course.measured_impacts(), a=0.035, b=0.025)
+    >>> print(f"{fitted.restitution:.2f} +- {fitted.restitution_error:.2f}")
+    0.52 +- 0.01
+    >>> print(f"{fitted.errors.size} impacts, median error {fitted.median_error:.4f} m/s")
+    24 impacts, median error 0.1132 m/s
     """
 
     _units: ClassVar[dict[str, str]] = dict.fromkeys(("errors", "median_error", "rms_error"), "m/s")
@@ -196,6 +227,13 @@ class FittedImpacts(Listed):
         ----------
         path, figure, figsize
             As in `rolling_ellipse.plot`, with its errors.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> fitted = rl.impacts.fit(*rl.course.measured_impacts(), a=0.035, b=0.025)
+        >>> chart = fitted.plot()
+        >>> plt.show()
         """
         from ._pictures.fit import draw_impacts
 
@@ -212,19 +250,10 @@ def fit(
     law: Law = "stronge",
     minimise: Measure = "median",
 ) -> FittedImpacts:
-    """Find the pair of coefficients that predicts a series of measured impacts best.
+    """Return the coefficients of restitution and friction that predict measured impacts best.
 
-    The error of an impact is the kinetic speed of predicted minus measured velocities after it.
-    Its median, or root mean square, is evaluated on a grid over restitution (0 to 1) and the angle
-    of friction (0 to a right angle, which is infinite friction). The step is halved eight times, to
-    1e-4, about the 50 best points of the series and the best of each of 50 random halves of it: the
-    median has many local minima, and every serious candidate is the best of some half. Each half
-    chooses among all points tried. Halves scatter about the series as the series does about the
-    truth, exactly so for a linear least-squares fit [1]_.
-
-    The halves are the same every time and depend only on the magnitudes of the values: neither
-    the order of the impacts nor mirroring them changes the answer. A coefficient that the impacts
-    do not determine is arbitrary: if all of them stick, they only bound friction from below.
+    The error of an impact is the kinetic speed of predicted minus measured velocities after it; its
+    median, or root mean square, is made as small as possible.
 
     Parameters
     ----------
@@ -251,16 +280,29 @@ def fit(
     ValueError
         If a number is out of its range, there is no impact, or one does not move into the ground.
 
+    Notes
+    -----
+    The measure is evaluated on a grid over restitution (0 to 1) and the angle
+    of friction (0 to a right angle, which is infinite friction). The step is halved eight times, to
+    1e-4, about the 50 best points of the series and the best of each of 50 random halves of it: the
+    median has many local minima, and every serious candidate is the best of some half. Each half
+    chooses among all points tried. Halves scatter about the series as the series does about the
+    truth, exactly so for a linear least-squares fit [1]_.
+
+    The halves are the same every time and depend only on the magnitudes of the values: neither
+    the order of the impacts nor mirroring them changes the answer. A coefficient that the impacts
+    do not determine is arbitrary: if all of them stick, they only bound friction from below.
+
     References
     ----------
     .. [1] J. Shao, C. F. J. Wu, Ann. Statist. 17 (1989) 1176: the jackknife that deletes a half.
 
     Examples
     --------
-    >>> from rolling_ellipse import course, impacts
-    >>> fitted = impacts.fit(*course.measured_impacts(), a=0.035, b=0.025)
-    >>> 0.5 < fitted.restitution < 0.6
-    True
+    >>> before, after = rl.course.measured_impacts()
+    >>> fitted = rl.impacts.fit(before, after, a=0.035, b=0.025)
+    >>> print(f"e = {fitted.restitution:.3f}, friction = {fitted.friction:.3f}")
+    e = 0.517, friction = 0.154
     """
     measure = _MEASURES[choice("minimise", minimise, get_args(Measure))]
     start, end = _series("before", before, 4), _series("after", after, 3)

@@ -18,6 +18,12 @@
 They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are two
 of those; the others have finite friction, round heights, or are farther from limits, so that any
 simulator can be set up and rounding decides nothing (docs/benchmark.md compares them).
+
+Examples
+--------
+>>> motion = rl.simulate(rl.scenes.jump, 2.0)
+>>> [event.kind.name for event in motion.events]
+['SLIP', 'LIFT_OFF', 'IMPACT']
 """
 
 from __future__ import annotations

@@ -41,6 +41,16 @@ class Impulse:
         broadcast.
     TypeError
         If an argument is neither a number nor an array of numbers.
+
+    Examples
+    --------
+    >>> push = rl.Impulse(jx=12.0, jz=-30.0, dx=1.0, dz=0.5)
+    >>> start = rl.Scene(2.0, 1.0, mass=10.0, impulse=push).initial_state
+    >>> print(f"{start.omega:.4f} rad/s")
+    2.1333 rad/s
+    >>> many = rl.Impulse.press(np.linspace(1.0, 80.0, 200), 1.5)
+    >>> many.shape
+    (200,)
     """
 
     jx: Any = 0.0
@@ -83,6 +93,15 @@ class Impulse:
         ----------
         F, d : float or array_like
             Arrays that broadcast make many blows.
+
+        Examples
+        --------
+        >>> blow = rl.Impulse.press(48.0, 1.5)
+        >>> blow
+        Impulse(jx=0.0, jz=-48.0, dx=1.5, dz=0.0)
+        >>> start = rl.Scene(2.0, 1.0, mass=10.0, impulse=blow).initial_state
+        >>> print(f"{start.omega:.4f} rad/s")
+        3.2000 rad/s
         """
         force, distance = array("F", F), array("d", d)
         try:

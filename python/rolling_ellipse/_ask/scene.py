@@ -42,6 +42,16 @@ class InitialState(Listed):
         work depends on how the forces vary in time.
     reason : str
         One sentence: the effect of the blow, the motion after it, and why.
+
+    Examples
+    --------
+    >>> start = rl.scenes.report.initial_state
+    >>> start
+    <InitialState ROLLING: theta = 0 rad, omega = 3.2 rad/s, x = 0 m, z = 1 m, x_dot =
+    3.2 m/s, z_dot = 0 m/s>
+    >>> print(start.reason)
+    The contact sticks during the blow: the ground answers with 32 N s along and 48 N s
+    up. Free in the air it would turn at 5.76 rad/s. It rolls.
     """
 
     _units: ClassVar[dict[str, str]] = _core.FIELDS["InitialState"]
@@ -132,6 +142,15 @@ class Scene(FieldsOnly, Listed):
     the motion continues in the mode that follows, without repeating the event. Where a start is at
     the limit of its mode, abs(F) = mu N, N = 0 or slip 0 to within eight roundings, the motion just
     afterwards decides the mode, without an event.
+
+    Examples
+    --------
+    >>> egg = rl.Scene(a=0.03, b=0.02, mass=0.06, friction=0.4, theta=np.radians(30.0))
+    >>> egg
+    Scene(a=0.03, b=0.02, mass=0.06, friction=0.4, theta=0.5235987755982988)
+    >>> pressed = rl.Scene(2.0, 1.0, mass=10.0, impulse=rl.Impulse.press(48.0, 1.5))
+    >>> print(f"{pressed.initial_state.omega:.4f} rad/s after the blow")
+    3.2000 rad/s after the blow
     """
 
     _units: ClassVar[dict[str, str]] = SCENE_UNITS
@@ -213,6 +232,12 @@ class Scene(FieldsOnly, Listed):
         ------
         ValueError
             If a number is out of its range.
+
+        Examples
+        --------
+        >>> log = rl.Scene.from_density(0.3, 0.2, density=700.0, thickness=1.0, friction=0.5)
+        >>> print(f"{log.mass:.1f} kg, {log.mass * log.gyration2:.3f} kg m^2")
+        131.9 kg, 4.288 kg m^2
         """
         height = positive("thickness", thickness) * positive("density", density)
         return cls(a, b, mass=math.pi * number("a", a) * number("b", b) * height, **others)
@@ -231,6 +256,12 @@ class Scene(FieldsOnly, Listed):
             If scenes have no such argument.
         ValueError
             As for the constructor: kept and changed arguments must fit together.
+
+        Examples
+        --------
+        >>> scene = rl.Scene(2.0, 1.0, omega=3.2)
+        >>> scene.replace(friction=0.3, theta=0.5)
+        Scene(a=2.0, b=1.0, friction=0.3, theta=0.5, omega=3.2)
         """
         kept = {name: getattr(self, name) for name in _FIELDS}
         for name in changes:

@@ -29,6 +29,12 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     ------
     ValueError
         If a number is not positive, friction is infinite, or restitution neither 0 nor 1.
+
+    Examples
+    --------
+    >>> text = rl.scenes.jump.to_mjcf(timestep=1e-3)
+    >>> text.splitlines()[0]
+    '<mujoco model="rolling_ellipse">'
     """
     step, time, contact, cone = positive("timestep", timestep), 0.02, "", ""
     if contact_steps is not None:
@@ -55,6 +61,12 @@ def to_sdf(scene: Any) -> str:
     ------
     ValueError
         If friction is infinite, or the scene has rolling resistance.
+
+    Examples
+    --------
+    >>> text = rl.scenes.jump.to_sdf()
+    >>> text.splitlines()[0]
+    '<sdf version="1.9">'
     """
     _core.require_no_resistance(scene.core, "SDF", "to_mjcf writes it")
     return _filled("scene.sdf", scene)

@@ -37,6 +37,16 @@ class ConstraintResiduals:
         Height of the lowest point above the ground [m], from the implicit equation of the ellipse.
     slip : ndarray, shape (...)
         Velocity of the material point there, along the ground [m/s].
+
+    Examples
+    --------
+    >>> q, q_dot = rl.kinematics(np.radians([0.0, 30.0]), 1.0, a=2.0, b=1.0)
+    >>> q[1, 1] += 0.01
+    >>> off = rl.constraints(q, q_dot, a=2.0, b=1.0)
+    >>> off.gap.round(4)
+    array([0.  , 0.01])
+    >>> off.position.shape, off.velocity.shape
+    ((2, 3), (2, 4))
     """
 
     position: FloatArray
@@ -46,7 +56,9 @@ class ConstraintResiduals:
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
-    """Evaluate the four constraints of any state and, independently of them, its gap and slip.
+    """Return the residuals of the four constraints of any state, and its gap and slip.
+
+    Gap and slip are computed independently of the constraints:
 
     f1 = x_dot - r cos(psi - theta) theta_dot, f2 = z - r cos(psi - theta),
     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi),
@@ -67,6 +79,14 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     ------
     ValueError
         If a shape or a semi-axis is wrong, or a coordinate or rate is not finite.
+
+    Examples
+    --------
+    >>> q, q_dot = rl.kinematics(0.5, 1.0, a=2.0, b=1.0)
+    >>> lifted = q + [0.0, 0.01, 0.0, 0.0, 0.0]
+    >>> off = rl.constraints(lifted, q_dot, a=2.0, b=1.0)
+    >>> print(f"{off.gap:.4f} m above the ground")
+    0.0100 m above the ground
     """
     q, q_dot = coordinates("q", q), coordinates("q_dot", q_dot)
     require_together(q=q, q_dot=q_dot)
@@ -96,6 +116,14 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
     ------
     ValueError
         If a semi-axis is out of its range, or an angle or speed is not finite.
+
+    Examples
+    --------
+    >>> q, q_dot = rl.kinematics(np.radians(30.0), 2.0, a=2.0, b=1.0)
+    >>> q.round(4)
+    array([0.5853, 1.3229, 0.5236, 1.1622, 1.6475])
+    >>> print(f"x_dot = {q_dot[0]:.4f} m/s")
+    x_dot = 2.6458 m/s
     """
     shape, (angle, speed) = broadcast(theta=finite("theta", theta), omega=finite("omega", omega))
     size = math.prod(shape)

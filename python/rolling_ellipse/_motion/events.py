@@ -41,6 +41,15 @@ class Event(FieldsOnly):
         Kinetic and potential energy of the two states [J].
     theta, x : float
         Angle [rad] and centre [m] at the event; an event does not change them.
+
+    Examples
+    --------
+    >>> motion = rl.simulate(rl.scenes.bounce, 3.0)
+    >>> first = motion.events[0]
+    >>> print(f"{first.kind.name} at {first.t:.4f} s, then {first.state_after.z_dot:.3f} m/s up")
+    IMPACT at 0.4515 s, then 0.620 m/s up
+    >>> np.round([event.t for event in motion.events if event.kind == "IMPACT"], 3)
+    array([0.452, 0.677, 1.662, 2.645, 2.871])
     """
 
     t: float

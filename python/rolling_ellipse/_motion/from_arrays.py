@@ -35,7 +35,7 @@ def from_arrays(
     *,
     scene: Scene,
 ) -> _Made:
-    """Make a trajectory from external samples: a tracker's, or another simulator's.
+    """Return a trajectory made of external samples: a tracker's, or another simulator's.
 
     Each track is the fourth-degree polynomial through five samples about the nearest one: rates
     have errors of fourth order; accelerations, from which forces follow, of third. Before the first
@@ -57,6 +57,14 @@ def from_arrays(
     ------
     ValueError
         If times do not increase or are negative, or arrays differ in length or are not finite.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> theta, omega, x = rl.flow(t, a=2.0, b=1.0, theta=0.5, omega=0.0)
+    >>> mine = rl.Trajectory.from_arrays(t, theta=theta, scene=rl.scenes.rocking)
+    >>> print(f"{mine.energy[0]:.4f} J at the start, {np.ptp(mine.energy):.0e} J of error")
+    12.7513 J at the start, 3e-05 J of error
     """
     times = vector("t", finite("t", t))
     if times.size < _NEAR or times[0] < 0 or not (np.diff(times) > 0).all():

@@ -47,14 +47,7 @@ def when(
     """Return all times in [0, t_end] at which the motion passes a value.
 
     They are those of the motion itself, accurate to the last bits, and do not depend on its
-    samples. No time is missed where the turning points of the quantity are known: they are found,
-    by Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. A
-    `CompletenessWarning` is issued where no polynomial agrees, and for every `function`, whose
-    values are known only at single times.
-
-    A jump of omega across the value counts, at the event. A value that is only touched, as at a
-    turning point, counts once, even at the start or end; a value that is held for a while counts
-    when it is reached. Touching is resolved to 8 ulp of the quantity.
+    samples. A `CompletenessWarning` is issued where some may be missed, as for every `function`.
 
     Parameters
     ----------
@@ -81,6 +74,29 @@ def when(
     ValueError
         If there are more than a million times, no quantity or several are given, or a value is
         not finite.
+
+    Notes
+    -----
+    No time is missed where the turning points of the quantity are known: they are found, by
+    Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. The
+    warning is issued where no polynomial agrees, and for a `function`, whose values are known only
+    at single times.
+
+    A jump of omega across the value counts, at the event. A value that is only touched, as at a
+    turning point, counts once, even at the start or end; a value that is held for a while counts
+    when it is reached. Touching is resolved to 8 ulp of the quantity.
+
+    Examples
+    --------
+    >>> motion = rl.simulate(rl.scenes.report, 6.0)
+    >>> motion.when(theta=np.radians(90.0)).round(4)
+    array([1.0945])
+    >>> motion.when(z=1.5, direction=1).round(4)
+    array([0.294 , 2.4831, 4.6721])
+    >>> motion.when(event="roll_over").round(4)
+    array([1.0945, 3.2836, 5.4726])
+    >>> rl.simulate(rl.scenes.jump, 6.0).when(event="impact").round(4)
+    array([0.9763])
     """
     given = locals()
     del given["motion"], given["direction"]

@@ -157,7 +157,14 @@ def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
 
 @dataclass(frozen=True)
 class Sample:
-    """A motion at one time: numbers with the names and units of the arrays of a Trajectory."""
+    """A motion at one time: numbers with the names and units of the arrays of a Trajectory.
+
+    Examples
+    --------
+    >>> now = rl.simulate(rl.scenes.report, 6.0).at(1.5)
+    >>> print(f"{now.x:.3f} m, {np.degrees(now.theta):.1f} degrees, {now.normal_force:.1f} N")
+    3.119 m, 110.3 degrees, 79.3 N
+    """
 
     t: float
     x: float

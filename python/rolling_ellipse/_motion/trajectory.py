@@ -134,6 +134,20 @@ class Trajectory(FieldsOnly):
         samples.
     kept_events : tuple of Event, or None
         Events from a file, for `events`; if missing, the motion is solved again for its events.
+
+    Examples
+    --------
+    >>> motion = rl.simulate(rl.scenes.report, 6.0)
+    >>> motion
+    <Trajectory rolling/exact: 1001 samples, t = 0 ... 6 s, 1.33 turns, COMPLETED>
+    >>> motion.theta.shape, motion.q.shape, motion.status.name
+    ((1001,), (1001, 5), 'COMPLETED')
+    >>> print(f"{np.degrees(motion.theta[-1]):.2f} degrees")
+    477.81 degrees
+    >>> print(motion.reason)
+    It rolls over. Proved: it rolls for ever, N is 59.5561 N or more (least at theta =
+    42.2908 deg), and |F|/N is 0.275257 or less. No friction is given: it is unlimited.
+    The blow itself needs friction 0.666667.
     """
 
     t: FloatArray
@@ -271,7 +285,16 @@ class Trajectory(FieldsOnly):
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
-        """Return the residuals of the constraints at the samples (see `constraints`)."""
+        """Return the residuals of the constraints at the samples (see `constraints`).
+
+        Examples
+        --------
+        >>> off = rl.simulate(rl.scenes.report, 6.0).constraint_residuals()
+        >>> bool(abs(off.position).max() < 1e-14)
+        True
+        >>> off.velocity.shape
+        (1001, 4)
+        """
         return constraints(self.q, self.q_dot, a=self.scene.a, b=self.scene.b)
 
     # -- the same motion at other times ----------------------------------------------------------
@@ -288,6 +311,13 @@ class Trajectory(FieldsOnly):
         ------
         ValueError
             If a time is outside.
+
+        Examples
+        --------
+        >>> motion = rl.simulate(rl.scenes.report, 6.0)
+        >>> finer = motion.sol(np.linspace(1.0, 1.1, 5))
+        >>> np.degrees(finer.theta).round(2)
+        array([85.61, 86.78, 87.94, 89.1 , 90.25])
         """
         times = np.atleast_1d(array("t", t))
         if times.ndim != 1:
@@ -306,6 +336,13 @@ class Trajectory(FieldsOnly):
         ------
         ValueError
             If t is outside of [0, t_end].
+
+        Examples
+        --------
+        >>> motion = rl.simulate(rl.scenes.report, 6.0)
+        >>> state = motion.at(2.0)
+        >>> print(f"x = {state.x:.4f} m, omega = {state.omega:.4f} rad/s")
+        x = 4.2864 m, omega = 2.0965 rad/s
         """
         time = number("t", t)
         if not 0 <= time <= self.t_end:
@@ -326,6 +363,13 @@ class Trajectory(FieldsOnly):
         ------
         ValueError
             If t is outside of [0, t_end].
+
+        Examples
+        --------
+        >>> motion = rl.simulate(rl.scenes.rocking, 4.0)
+        >>> again = motion.scene_at(1.5).replace(impulse=rl.Impulse.press(2.0, 1.0))
+        >>> rl.outcome(again).name
+        'ROCKS'
         """
         at = self.sol(number("t", t))
         names = ("theta", "omega", "x", *FREE[_core.Mode(int(at.mode[0]))])

@@ -62,11 +62,7 @@ colors : sequence of matplotlib colours, optional
     One for each motion.
 **options
     Properties of `matplotlib.lines.Line2D` for all curves.""",
-}
-"""Parts of docstrings; each replaces its `{name}`."""
-_RETURNS = """
-
-Returns
+    "returns": """Returns
 -------
 {drawn}
     The artists.
@@ -76,8 +72,9 @@ Raises
 ValueError
     If an argument is out of range or not as above, or there is nothing to show.
 TypeError
-    If something is not a trajectory, or another argument is of a wrong kind.
-"""
+    If something is not a trajectory, or another argument is of a wrong kind.""",
+}
+"""Parts of docstrings; each replaces its `{name}`."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,7 +129,6 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
     text = inspect.getdoc(draw) or ""
     for name, part in _SHARED.items():
         text = text.replace(f"{{{name}}}", part)
-    text += "" if "\nReturns\n" in text else _RETURNS
     drawn.__doc__ = text.replace("{drawn}", draw.__annotations__["return"])
     return drawn
 

@@ -105,9 +105,6 @@ def plot_energy(
     event, and a slide, or rolling with resistance, has no error. Losses are split into those by
     rolling resistance, by sliding friction and by impacts, summed from the first sample on.
 
-    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
-    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
-
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
@@ -116,6 +113,22 @@ def plot_energy(
         errors.
     {ax}
     {motions}
+
+    {returns}
+
+    Notes
+    -----
+    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
+    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> motion = rl.simulate(rl.scenes.drop, 4.0)
+    >>> energies, losses = rl.plot_energy(motion), rl.plot_energy(motion, kind="losses")
+    >>> below = losses.ax.secondary_xaxis(-0.3, functions=(lambda t: 1e3 * t, lambda t: t / 1e3))
+    >>> label = below.set_xlabel("t [ms]")
+    >>> plt.show()
     """
     shown = Comparison(trajectories, labels, colors, ax, options)
     if kind is None:
@@ -174,6 +187,17 @@ def plot_constraints(
         figure.
     {figsize}
     {motions}
+
+    {returns}
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> how = {"model": "multipliers", "method": "rk4", "step": 0.01}
+    >>> ways = ("none", "projection")
+    >>> motions = [rl.simulate(rl.scenes.report, 5.0, **how, stabilization=way) for way in ways]
+    >>> errors = rl.plot_constraints(motions, labels=ways)
+    >>> plt.show()
     """
     shown = Comparison(trajectories, labels, colors, ax, options).sampled(for_dots)
     panels = panels_of(ax, figsize)
@@ -239,6 +263,16 @@ def plot_error(
         1e15 half turns. The references used are among the artists.
     {ax}
     {motions}
+
+    {returns}
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> steps = (0.04, 0.02, 0.01)
+    >>> runs = [rl.simulate(rl.scenes.report, 9.0, method="rk4", step=step) for step in steps]
+    >>> errors = rl.plot_error(runs, labels=[f"step {step} s" for step in steps])
+    >>> plt.show()
     """
     quantity = choice("quantity", quantity, tuple(QUANTITIES))
     compared = Comparison(trajectories, labels, colors, ax, options)

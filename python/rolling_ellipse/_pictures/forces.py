@@ -65,14 +65,7 @@ def plot_forces(
     The upper panel shows N and F [N], F over the band +-friction N; if a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
     impacts, as mean forces over the time that the legend states. The lower panel shows ``|F|/N``
-    and the coefficient of friction; the former is infinite where N <= 0. The background is hatched
-    while the body slides, grey in flight, where both forces are 0, and dotted at rest (each of
-    several motions has a row at the top); dotted lines mark events, named for a single motion if
-    there is room, else counted. Where the model is not valid, the whole background is grey.
-
-    The curves are those of the motion itself, whatever samples the trajectory has. If there are too
-    many half turns to distinguish, ranges are drawn: from the least to the largest value in each of
-    800 equal intervals; the title then states the number of half turns.
+    and the coefficient of friction; the former is infinite where N <= 0.
 
     Parameters
     ----------
@@ -82,6 +75,28 @@ def plot_forces(
         pyplot figure.
     {figsize}
     {motions}
+
+    {returns}
+
+    Notes
+    -----
+    The background is hatched while the body slides, grey in flight, where both forces are 0, and
+    dotted at rest (each of several motions has a row at the top); dotted lines mark events, named
+    for a single motion if there is room, else counted. Where the model is not valid, the whole
+    background is grey.
+
+    The curves are those of the motion itself, whatever samples the trajectory has. If there are too
+    many half turns to distinguish, ranges are drawn: from the least to the largest value in each of
+    800 equal intervals; the title then states the number of half turns.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> motion = rl.simulate(rl.scenes.jump, 1.5)
+    >>> right = rl.plot_forces(motion).axes[1].twinx()
+    >>> label = right.set_ylabel("theta [degrees]")
+    >>> curve = right.plot(motion.t, np.degrees(motion.theta), "k:")
+    >>> plt.show()
     """
     shown = Comparison(trajectories, labels, colors, ax, options).sampled(over_time)
     panels = panels_of(ax, figsize)

@@ -86,6 +86,16 @@ def plot(
     {figsize}
     count, t_end
         For the positions, as in `plot_strobe`; the curves show the whole motion.
+
+    {returns}
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> motion = rl.simulate(rl.scenes.jump, 3.0)
+    >>> overview = rl.plot(motion)
+    >>> overview.savefig("jump.png")
+    >>> plt.show()
     """
     check_strobe(trajectory, count, t_end)  # rejects wrong arguments before anything is drawn
     shown = Comparison(trajectory).sampled(over_time)

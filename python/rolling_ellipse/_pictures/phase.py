@@ -68,10 +68,6 @@ def plot_phase(
     outside it turns over and over. Circles mark the flat positions, where the body can rest, and
     crosses the tips, where it can balance. Where the model is not valid, the background is grey.
 
-    The lines are those of the motions themselves, whatever samples the trajectories have. If there
-    are many turns, only one turn of exact rolling is drawn, as all its turns are alike, and only
-    the first 1000 half turns of other motions; the title then says so.
-
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
@@ -81,6 +77,23 @@ def plot_phase(
         ellipse is the same again; default: if a motion makes more than two turns.
     {ax}
     {motions}
+
+    {returns}
+
+    Notes
+    -----
+    The lines are those of the motions themselves, whatever samples the trajectories have. If there
+    are many turns, only one turn of exact rolling is drawn, as all its turns are alike, and only
+    the first 1000 half turns of other motions; the title then says so.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> scenes = [rl.Scene(2.0, 1.0, omega=speed) for speed in (1.5, 2.9, 3.2)]
+    >>> phase = rl.plot_phase([rl.simulate(scene, 4.0) for scene in scenes])
+    >>> phase.ax.xaxis.set_major_formatter(lambda theta, _: f"{np.degrees(theta):.0f}")
+    >>> label = phase.ax.set_xlabel("theta [degrees]")
+    >>> plt.show()
     """
     shown = Comparison(trajectories, labels, colors, ax, options)
     for motion in shown.motions:

@@ -104,22 +104,9 @@ def plot_phase_map(
     ax: Axes | None = None,
     figsize: tuple[float, float] | None = None,
 ) -> PhaseMap:
-    """Colour the outcome of `classify` for uniform discs at the flat position, over two quantities.
+    """Draw a map of the outcomes of uniform discs at the flat position, over two quantities.
 
-    ============  ========================================================  ====================
-    quantity      meaning                                                   shown by default
-    ============  ========================================================  ====================
-    ``aspect``    a/b, the long semi-axis over the short one                1 to 20, logarithmic
-    ``energy``    kinetic, in units of what rolling over takes,             0 to 4
-                  (omega/roll-over speed)^2
-    ``speed``     omega [rad/s]                                             0 to 2 sqrt(gravity/b)
-    ``friction``  coefficient of friction                                   0 to 2
-    ============  ========================================================  ====================
-
-    Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
-    (solid), the lift-off of the body (dash-dotted, plum), and Painlevé's friction (dash-dotted).
-    Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which no
-    friction lets a disc roll over.
+    The outcomes are those of `classify`; the Notes list the quantities and the lines in view.
 
     Parameters
     ----------
@@ -141,6 +128,32 @@ def plot_phase_map(
     ax : matplotlib Axes, optional
         Where to draw; default: a new pyplot figure. Limits set before are kept.
     {figsize}
+
+    {returns}
+
+    Notes
+    -----
+    ============  ========================================================  ====================
+    quantity      meaning                                                   shown by default
+    ============  ========================================================  ====================
+    ``aspect``    a/b, the long semi-axis over the short one                1 to 20, logarithmic
+    ``energy``    kinetic, in units of what rolling over takes,             0 to 4
+                  (omega/roll-over speed)^2
+    ``speed``     omega [rad/s]                                             0 to 2 sqrt(gravity/b)
+    ``friction``  coefficient of friction                                   0 to 2
+    ============  ========================================================  ====================
+
+    Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
+    (solid), the lift-off of the body (dash-dotted, plum), and Painlevé's friction (dash-dotted).
+    Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which no
+    friction lets a disc roll over.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> by_energy = rl.plot_phase_map(friction=0.5)
+    >>> by_friction = rl.plot_phase_map("aspect", "friction", speed=3.2)
+    >>> plt.show()
     """
     if ax is not None:
         require_axes(ax)  # rejects a wrong ax before any work

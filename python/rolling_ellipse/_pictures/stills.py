@@ -87,6 +87,16 @@ def plot_strobe(
         three turns or its first swing (the title then says so).
     **options
         Properties of `matplotlib.patches.Ellipse` for all bodies.
+
+    {returns}
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> motion = rl.simulate(rl.scenes.report, 6.0)
+    >>> strobe = motion.plot_strobe(count=9, t_end=4.4)
+    >>> strobe.savefig("strobe.png")
+    >>> plt.show()
     """
     check_strobe(trajectory, count, t_end)
     first, last = span_of(trajectory)
@@ -215,6 +225,15 @@ def plot_paths(
         On the same slope.
     {ax}
     {motions}
+
+    {returns}
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> grips = [rl.scenes.jump.replace(friction=mu) for mu in (0.3, 1.0)]
+    >>> paths = rl.plot_paths([rl.simulate(scene, 1.5) for scene in grips])
+    >>> plt.show()
     """
     shown = Comparison(trajectories, labels, colors, ax, options)
     slopes = sorted({motion.scene.slope for motion in shown.motions})

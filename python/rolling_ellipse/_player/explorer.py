@@ -37,14 +37,11 @@ def explore(
     language: str | Mapping[str, str] = "en",
     live: bool | None = None,
 ) -> Explorer:
-    """Let the reader strike the body by dragging a hand over it, which sets where and how hard.
+    """Make a page on which the reader strikes the body by dragging a hand over it.
 
-    The page shows the motion with its forces, its first outcome with the reason, its events, and a
-    map of the outcomes of all blows. It contains the core, compiled to WebAssembly, and computes
-    each blow with the same results as `simulate`, without a kernel or a network. A button copies
-    the Python code that simulates it. The whole page can be used with a keyboard alone. Where a
-    browser or a policy forbids WebAssembly, or this installation came without the file, it plays
-    the film of the first blow, and says so.
+    The hand sets where and how hard. The page shows the motion with its forces, its first outcome
+    with the reason, its events, and a map of the outcomes of all blows. It needs no kernel and no
+    network.
 
     Parameters
     ----------
@@ -75,6 +72,11 @@ def explore(
 
     Notes
     -----
+    The page contains the core, compiled to WebAssembly, and computes each blow with the same
+    results as `simulate`. A button copies the Python code that simulates it. The whole page can be
+    used with a keyboard alone. Where a browser or a policy forbids WebAssembly, or this
+    installation came without the file, it plays the film of the first blow, and says so.
+
     The page follows the light or dark theme of the reader's system, unless it is inside an element
     (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.
 
@@ -88,6 +90,13 @@ def explore(
           if (frame && data.rollingEllipse) frame.style.height = `${data.rollingEllipse.height}px`;
         });
         </script>
+
+    Examples
+    --------
+    >>> page = rl.explore(rl.Scene(2.0, 1.0, mass=10.0, friction=0.7))
+    >>> page.save("strike.html")
+    >>> rl.explore(rl.scenes.report, language="de").words["title"]
+    'Stoß eine Ellipse an'
     """
     require_scene(scene)
     require_near("scene", max(scene.a, scene.b), max(abs(scene.x), scene.initial_state.z))
@@ -105,7 +114,7 @@ def explore(
 
 @dataclass(frozen=True)
 class Explorer(FieldsOnly):
-    """The result of `explore`; a notebook displays it.
+    """A page on which the reader strikes the body, made by `explore`; a notebook displays it.
 
     Attributes
     ----------
@@ -115,6 +124,13 @@ class Explorer(FieldsOnly):
         How long each motion is followed [s].
     words : dict of str to str
         All texts of the page.
+
+    Examples
+    --------
+    >>> page = rl.explore(rl.scenes.report, t_end=5.0)
+    >>> page.scene.mass, page.t_end
+    (10.0, 5.0)
+    >>> mine = rl.explore(page.scene, language=page.words | {"title": "Strike the egg"})
     """
 
     scene: Scene
@@ -136,6 +152,13 @@ class Explorer(FieldsOnly):
             If it is not a path.
         OSError
             If it cannot be written; an old file is kept.
+
+        Examples
+        --------
+        >>> page = rl.explore(rl.scenes.report)
+        >>> page.to_html("strike.html")
+        >>> page.to_html()[:15]
+        '<!DOCTYPE html>'
         """
         if path is None:
             return document(self.words["title"], self._repr_html_(), self.words["lang"])
@@ -143,7 +166,13 @@ class Explorer(FieldsOnly):
         return None
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the page; errors are those of `to_html`."""
+        """Write the page to a file, with the errors of `to_html`.
+
+        Examples
+        --------
+        >>> page = rl.explore(rl.scenes.report)
+        >>> page.save("strike.html")
+        """
         name = file_name("path", path)
         if not name.lower().endswith((".html", ".htm")):
             raise ValueError(f"path must end in .html, got {name!r}")

@@ -31,26 +31,7 @@ def outcome(scene: Scene, impulse: Impulse) -> Any: ...
 def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArray[np.int8]:
     """Return the first outcome of the motion after a blow.
 
-    ==================  ==========================================================================
-    ``SLIPS``           the contact slides just after the blow (without friction whenever the body
-                        moves), or the body rolls until it slips, as in `classify`
-    ``LOSES_CONTACT``   the blow lifts the body off the ground, or the body is in the air; or it
-                        is too fast for the ground, as in `classify`; or, on a slope, it rolls
-                        until it flies
-    ``JAMS``            the contact slides, and no rigid-body motion continues it, or two do
-                        (Painlevé)
-    ``RESTS``           it is in equilibrium and stays
-    ``ROCKS``           it rolls until it turns back
-    ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, keeps rolling
-    ``EDGE``            undecided within rounding
-    ==================  ==========================================================================
-
-    No steps are taken: the blow obeys the collision law of `Scene.initial_state`, and the rolling
-    after it is decided by the proofs of `classify`. On a slope the power series of `certify` follow
-    the rolling motion to the first of these events: ``ROCKS`` is the first instant without
-    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis perpendicular to the
-    ground (for a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which is
-    a flight if the body turns too fast for its weight by then (c < 0 < N).
+    No steps are taken; the Notes say what each outcome means.
 
     Parameters
     ----------
@@ -68,6 +49,38 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     ValueError
         If a blow misses the body, or is stronger than a Scene accepts, or the scene has rolling
         resistance: the events of `simulate` then tell what happens.
+
+    Notes
+    -----
+    ==================  ==========================================================================
+    ``SLIPS``           the contact slides just after the blow (without friction whenever the body
+                        moves), or the body rolls until it slips, as in `classify`
+    ``LOSES_CONTACT``   the blow lifts the body off the ground, or the body is in the air; or it
+                        is too fast for the ground, as in `classify`; or, on a slope, it rolls
+                        until it flies
+    ``JAMS``            the contact slides, and no rigid-body motion continues it, or two do
+                        (Painlevé)
+    ``RESTS``           it is in equilibrium and stays
+    ``ROCKS``           it rolls until it turns back
+    ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, keeps rolling
+    ``EDGE``            undecided within rounding
+    ==================  ==========================================================================
+
+    The blow obeys the collision law of `Scene.initial_state`, and the rolling
+    after it is decided by the proofs of `classify`. On a slope the power series of `certify` follow
+    the rolling motion to the first of these events: ``ROCKS`` is the first instant without
+    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis perpendicular to the
+    ground (for a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which is
+    a flight if the body turns too fast for its weight by then (c < 0 < N).
+
+    Examples
+    --------
+    >>> rl.outcome(rl.scenes.report).name
+    'ROLLS_OVER'
+    >>> blows = rl.Impulse.press([10.0, 48.0, 60.0], 1.5)
+    >>> codes = rl.outcome(rl.scenes.report.replace(friction=0.7), blows)
+    >>> [rl.Outcome(code).name for code in codes]
+    ['ROCKS', 'ROLLS_OVER', 'ROLLS_OVER']
     """
     scene = require_scene(scene)
     if impulse is None:
@@ -133,8 +146,12 @@ def required_friction(
 
     Examples
     --------
-    >>> required_friction({"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}).round(3)
-    array([0.055, 0.206])
+    >>> print(f"{rl.required_friction(rl.scenes.report):.4f}")
+    0.6667
+    >>> rl.required_friction({"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}).round(3)
+    array([0.328, 0.43 ])
+    >>> print(f"{rl.required_friction(rl.scenes.slope, to='rest'):.4f}")
+    0.1003
     """
     rests = choice("to", to, ("roll", "rest")) == "rest"
     if not isinstance(scene, Mapping):
@@ -177,6 +194,15 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         has no lever, would have to pull, or slips; the ground cannot hold the body at that speed;
         the body is in the air, rolls over without a blow, or, without omega, is on a slope or is a
         circle.
+
+    Examples
+    --------
+    >>> scene = rl.Scene(2.0, 1.0, mass=10.0)
+    >>> blow = rl.blow_to(scene, 1.5)
+    >>> print(f"{-blow.jz:.3f} N s rolls it over")
+    44.294 N s rolls it over
+    >>> print(f"{-rl.blow_to(scene, 1.5, omega=1.0).jz:.3f} N s starts it with 1 rad/s")
+    15.000 N s starts it with 1 rad/s
     """
     bare = require_scene(scene).replace(impulse=None)
     _core.require_no_resistance(bare.core, "blow_to", "simulate shows what a blow does")

@@ -41,6 +41,15 @@ class Certificate(FieldsOnly, Listed):
         moving body without friction, whose contact slides at once, the angle of the start.
     reason : str
         What is proved, in words, with the friction that it assumes and that the blow needs.
+
+    Examples
+    --------
+    >>> proof = rl.certify(rl.scenes.jump)
+    >>> print(f"{proof.validity.name}: rolling ends at {np.degrees(proof.ends_at):.2f} degrees")
+    INVALID: rolling ends at 35.38 degrees
+    >>> print(proof.reason)
+    Proved: rolling is valid up to theta = 35.376 deg, where it would need more than
+    friction 1.
     """
 
     _units: ClassVar[dict[str, str]] = {
@@ -61,8 +70,20 @@ class Certificate(FieldsOnly, Listed):
 
 
 def certify(scene: Scene) -> Certificate:
-    """Prove, without integrating, whether rolling is valid for the motion that starts from a scene.
+    """Return a proof that rolling is valid for the whole motion from a scene on, or where it ends.
 
+    Nothing is integrated: the signs of polynomials decide.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Certificate
+
+    Notes
+    -----
     On level ground N and F of rolling are rational functions of the height h of the centre.
     Bernstein coefficients with subdivision decide the signs of a quintic (N > 0) and of a
     polynomial of degree 10 (``|F| <= friction N``) on the heights that the motion reaches; every
@@ -75,13 +96,17 @@ def certify(scene: Scene) -> Certificate:
     only those that decide all others are examined. A margin within rounding of 0 is EDGE.
     Rolling that holds for 1e15 half turns is VALID.
 
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Certificate
+    Examples
+    --------
+    >>> proof = rl.certify(rl.Scene(2.0, 1.0, omega=3.2, friction=0.5))
+    >>> proof.validity.name
+    'VALID'
+    >>> print(f"N >= {proof.smallest_normal_force:.3f} N")
+    N >= 5.956 N
+    >>> print(f"friction needed {proof.largest_friction_needed:.4f}")
+    friction needed 0.2753
+    >>> rl.certify(rl.scenes.jump).validity.name
+    'INVALID'
     """
     found = _core.certify(core := require_scene(scene).core)
     return trusted(Certificate, found | {"validity": _VALIDITIES[found["validity"]], "_of": core})

@@ -61,6 +61,14 @@ class Thresholds(FieldsOnly, Listed):
         Angular frequency of small rocking [rad/s].
     tip_rate : float
         Growth rate of the fall from the tip [1/s].
+
+    Examples
+    --------
+    >>> speeds = rl.thresholds(2.0, 1.0)
+    >>> print(f"friction to roll over: {speeds.friction_to_roll_over:.4f}")
+    friction to roll over: 0.3159
+    >>> print(f"small rocking takes {2 * np.pi / speeds.rocking_rate:.4f} s")
+    small rocking takes 1.7373 s
     """
 
     _units: ClassVar[dict[str, str]] = {
@@ -128,6 +136,29 @@ def classify(
 ) -> Outcome | npt.NDArray[np.int8]:
     """Return the first outcome of rolling from t = 0 on, without integrating.
 
+    On level ground; the Notes say what each outcome means. `outcome` also takes blows and slopes.
+
+    Parameters
+    ----------
+    a, b, omega, theta, gravity, gyration2, workers
+        As for `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
+        [m/s^2], k^2 [m^2] and workers.
+    friction : float or array_like
+        Coefficient of friction; inf allowed.
+
+    Returns
+    -------
+    Outcome or ndarray of int8
+        The outcome, if all arguments are scalars; else `Outcome` codes in the broadcast shape.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range (in an array it is named with its index in the common shape,
+        ``a[3]``) or shapes do not broadcast.
+
+    Notes
+    -----
     The body starts rolling without slip (or at rest) on level ground. It rolls until the first of
 
     ==================  ==========================================================================
@@ -149,24 +180,13 @@ def classify(
     polynomials of N and ``friction N - |F|`` on the heights that the motion reaches (Bernstein
     coefficients with subdivision, every coefficient with its margin for rounding).
 
-    Parameters
-    ----------
-    a, b, omega, theta, gravity, gyration2, workers
-        As for `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
-        [m/s^2], k^2 [m^2] and workers.
-    friction : float or array_like
-        Coefficient of friction; inf allowed.
-
-    Returns
-    -------
-    Outcome or ndarray of int8
-        The outcome, if all arguments are scalars; else `Outcome` codes in the broadcast shape.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range (in an array it is named with its index in the common shape,
-        ``a[3]``) or shapes do not broadcast.
+    Examples
+    --------
+    >>> rl.classify(a=2.0, b=1.0, omega=3.2, friction=0.5).name
+    'ROLLS_OVER'
+    >>> codes = rl.classify(a=2.0, b=1.0, omega=np.linspace(0.0, 6.0, 1000), friction=0.5)
+    >>> {rl.Outcome(code).name: int((codes == code).sum()) for code in np.unique(codes)}
+    {'RESTS': 1, 'ROCKS': 491, 'ROLLS_OVER': 247, 'SLIPS': 261}
     """
     codes = evaluate(
         shared(workers, _core.classify_array), a=a, b=b, omega=omega, theta=theta,
@@ -202,6 +222,14 @@ def thresholds(
     ------
     ValueError
         If a number is out of its range.
+
+    Examples
+    --------
+    >>> speeds = rl.thresholds(2.0, 1.0, friction=0.5)
+    >>> print(f"rolls over above {speeds.roll_over_speed:.4f} rad/s")
+    rolls over above 2.9530 rad/s
+    >>> print(f"slips above {speeds.slip_speed:.4f} rad/s")
+    slips above 4.4344 rad/s
     """
     body = (
         number("a", a), number("b", b), number("gravity", gravity),

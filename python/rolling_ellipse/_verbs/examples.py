@@ -38,6 +38,12 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
         If `folder` is not a path.
     OSError
         If a file cannot be written. Each file appears whole or not at all.
+
+    Examples
+    --------
+    >>> written = rl.examples("lessons")
+    >>> sorted(path.name for path in written)[:2]
+    ['01_first_roll.ipynb', '02_physics.ipynb']
     """
     place = Path(file_name("folder", folder))
     with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:

@@ -59,6 +59,17 @@ class Fit:
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
         film does not determine; and if the scene does not fit the film, a statement of that, with
         any reading of the film that fits.
+
+    Examples
+    --------
+    >>> egg = rl.Scene(0.035, 0.025, theta=0.5)
+    >>> seen = rl.simulate(egg, np.arange(1, 30) / 60)
+    >>> tracks = {"theta": seen.theta.round(2)}
+    >>> fit = rl.fit_motion(seen.t, **tracks, scene=egg.replace(theta=0.4), free=["theta"])
+    >>> print(f"{fit.values['theta']:.4f} +- {fit.errors['theta']:.4f} rad")
+    0.4991 +- 0.0005 rad
+    >>> fit.trajectory.theta[:3].round(3)
+    array([0.49 , 0.461, 0.414])
     """
 
     scene: Scene
@@ -91,6 +102,15 @@ class Fit:
         ----------
         path, figure, figsize
             As in `rolling_ellipse.plot`, with its errors.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> egg = rl.Scene(0.035, 0.025, theta=0.5)
+        >>> seen = rl.simulate(egg, np.arange(1, 30) / 60)
+        >>> fit = rl.fit_motion(seen.t, theta=seen.theta.round(2), scene=egg, free=["theta"])
+        >>> chart = fit.plot()
+        >>> plt.show()
         """
         from .._pictures.fit import draw_fit
 
@@ -108,28 +128,12 @@ def fit_motion(
     sigma: Any = None,
     loss: str = "linear",
 ) -> Fit:
-    """Fit parameters of a scene, and of the camera, to a film: places and angles of the body.
+    """Return the parameters of a scene, and of the camera, that fit a film best, with errors.
 
     Angles are in radians, between the semi-axis a and the ground, clockwise if x points to the
     right; z is the height of the centre above the ground, and t the time since the start of the
     scene. What a camera has instead can be free, too: x_film = scale x, z_film = ground + scale z,
     t_scene = t_film + clock, where no frame with data is before the start.
-
-    Nonlinear least squares [1]_ by SciPy starts from the scene itself and from straight lines and
-    parabolas through the first frames, each with several coefficients, for longer and longer parts
-    of the film; then from points around the best solutions, since chi2 has many minima. Each
-    parameter is moved by three times its error, and then further, with the others refitted. If the
-    change divided by the square root of the rise in chi2 is larger than the error, it replaces it;
-    this happens beyond a friction threshold, or where another scene fits equally well. A parameter
-    that the film does not determine keeps its guess.
-
-    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
-    that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above
-    3.5 in a track of eight pairs or more, or if chi2 for given deviations is five deviations above
-    its mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the
-    largest of those ratios of sums, which is only an estimate, and the conventions of other
-    trackers are tried. A film whose free fall is not that of the scene is not fitted if other units
-    fit.
 
     Parameters
     ----------
@@ -167,21 +171,39 @@ def fit_motion(
     ImportError
         If SciPy is not installed.
 
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rolling_ellipse import Scene, fit_motion, simulate
-    >>> t = np.arange(1, 40) / 120
-    >>> seen = simulate(Scene(0.035, 0.025, z=0.06, restitution=0.6, friction=0.3), t)
-    >>> z = seen.z + np.random.default_rng(1).normal(0, 5e-4, t.size)
-    >>> guess = Scene(0.035, 0.025, z=0.05, restitution=0.5, friction=0.3)
-    >>> fit = fit_motion(t, z=z, scene=guess, free=("z", "restitution"))
-    >>> abs(fit.scene.restitution - 0.6) < 4 * fit.errors["restitution"]
-    True
+    Notes
+    -----
+    Nonlinear least squares [1]_ by SciPy starts from the scene itself and from straight lines and
+    parabolas through the first frames, each with several coefficients, for longer and longer parts
+    of the film; then from points around the best solutions, since chi2 has many minima. Each
+    parameter is moved by three times its error, and then further, with the others refitted. If the
+    change divided by the square root of the rise in chi2 is larger than the error, it replaces it;
+    this happens beyond a friction threshold, or where another scene fits equally well. A parameter
+    that the film does not determine keeps its guess.
+
+    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
+    that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above
+    3.5 in a track of eight pairs or more, or if chi2 for given deviations is five deviations above
+    its mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the
+    largest of those ratios of sums, which is only an estimate, and the conventions of other
+    trackers are tried. A film whose free fall is not that of the scene is not fitted if other units
+    fit.
 
     References
     ----------
     .. [1] M. A. Branch, T. F. Coleman, Y. Li, SIAM J. Sci. Comput. 21 (1999) 1.
+
+    Examples
+    --------
+    >>> egg = rl.Scene(0.035, 0.025, theta=0.5)
+    >>> t = np.arange(1, 30) / 60
+    >>> theta = rl.simulate(egg, t).theta + np.random.default_rng(1).normal(0.0, 0.01, t.size)
+    >>> guess = egg.replace(theta=0.4, inertia=4e-4)
+    >>> fit = rl.fit_motion(t, theta=theta, scene=guess, free=("theta", "inertia"))
+    >>> fit
+    theta    0.4998     ± 0.0021
+    inertia  0.0004667  ± 0.0000038
+    29 data, sigma estimated: theta 0.0085 rad.
     """
     loss = choice("loss", loss, _LOSSES)
     names = distinct("free", free, (*INPUTS[:-1], *CAMERA))

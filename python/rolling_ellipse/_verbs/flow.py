@@ -78,6 +78,17 @@ def flow(
     ValueError
         If a number is out of its range (in an array it is named with its index in the common shape,
         ``a[3]``) or shapes do not broadcast.
+
+    Examples
+    --------
+    >>> theta, omega, x = rl.flow([0.0, 1.0, 2.0], a=2.0, b=1.0, theta=0.0, omega=3.2)
+    >>> theta.round(4)
+    array([0.    , 1.4942, 2.6389])
+    >>> x.round(4)
+    array([0.    , 2.269 , 4.2864])
+    >>> bodies, _, _ = rl.flow(1e6, a=np.linspace(1.5, 2.0, 3), b=1.0, theta=0.5, omega=0.0)
+    >>> np.degrees(bodies).round(2)
+    array([-24.48, -27.82,  25.68])
     """
     # Plain floats, as in most calls, need no conversion.
     if (
@@ -134,6 +145,13 @@ def period(scene: Scene) -> float:
     ------
     ValueError
         If it does not, as with rolling resistance.
+
+    Examples
+    --------
+    >>> print(f"{rl.period(rl.scenes.rocking):.4f} s for a swing")
+    2.4435 s for a swing
+    >>> print(f"{rl.period(rl.scenes.rolling):.4f} s for a turn")
+    4.3781 s for a turn
     """
     return _core.period(require_scene(scene).core)
 
@@ -156,6 +174,16 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
         the centre x [m], as an array in the shape of y, (2,) or (3,); columns of shape (2, n) or
         (3, n) are n states. omega' is physics (18), x' = h omega is (9). It raises ValueError for
         any other shape of y.
+
+    Examples
+    --------
+    >>> from scipy.integrate import solve_ivp
+    >>> start = rl.scenes.report.initial_state
+    >>> rhs = rl.rolling_equation(rl.scenes.report)
+    >>> mine = solve_ivp(rhs, (0.0, 6.0), [start.theta, start.omega], rtol=1e-10)
+    >>> exact = rl.simulate(rl.scenes.report, mine.t)
+    >>> bool(abs(mine.y[0] - exact.theta).max() < 1e-5)
+    False
     """
     core, axes = require_scene(scene).core, {"a": scene.a, "b": scene.b}
 

@@ -51,6 +51,16 @@ def flow_jacobian(
     ValueError
         As for `flow`; or if a name is unknown or repeated, or no steps agree to a thousandth, as
         when a body has almost stopped on its tip.
+
+    Examples
+    --------
+    >>> slopes = rl.flow_jacobian([1.0, 2.0], a=2.0, b=1.0, theta=0.0, omega=3.2)
+    >>> slopes.shape
+    (2, 3, 2)
+    >>> slopes[-1].round(3)
+    array([[ 0.655,  4.984],
+           [ 1.387, 11.435],
+           [-0.147,  6.491]])
     """
     given = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
     given |= {"slope": slope} if gyration2 is None else {"slope": slope, "gyration2": gyration2}

@@ -25,7 +25,7 @@ def read_track(
     delimiter: str | None = None, decimal: str | None = None, y_up: bool = True,
     clockwise: bool = False, degrees: bool = False, scale: float = 1.0,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """Read the track of a body from a tracker's table, as `fit_motion` takes it.
+    """Return times, places and angles from a tracker's table, as `fit_motion` takes them.
 
     Names are those in the last line above the numbers; where a name occurs again, ".1", ".2", ...
     follow it, and without such a line names are "0", "1", .... Empty cells are NaN.
@@ -70,10 +70,11 @@ def read_track(
 
     Examples
     --------
-    >>> from rolling_ellipse import read_track
-    >>> table = {"frame": [0, 1], "u": [310.0, 316.0], "v": [200.0, 198.0]}
-    >>> read_track(table, t="frame", fps=240, x="u", z="v", y_up=False, scale=5e-4)[1]
-    array([0.155, 0.158])
+    >>> table = {"frame": [0, 1, 2], "u": [310.0, 316.0, 322.0], "v": [200.0, 198.0, 197.0]}
+    >>> columns = {"t": "frame", "x": "u", "z": "v"}
+    >>> t, x, z, theta = rl.read_track(table, **columns, fps=240, y_up=False, scale=5e-4)
+    >>> x
+    array([0.155, 0.158, 0.161])
     """
     table = _table(path, delimiter, decimal)
     names, size = tuple(table), len(next(iter(table.values()), ()))

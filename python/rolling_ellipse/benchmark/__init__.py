@@ -6,8 +6,12 @@ condition numbers. SI units and radians; ``x`` lies along the ground (downhill o
 slope), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are
 in the order x, z, theta, x_dot, z_dot, omega.
 
->>> from rolling_ellipse import benchmark
->>> benchmark.problem("slide.stick").question
+Examples
+--------
+>>> rl.benchmark.problem("slide.stick").question
+'When does the slip end?'
+>>> len(rl.benchmark.problems())
+20
 """
 
 from ._equations import Dae, Ode

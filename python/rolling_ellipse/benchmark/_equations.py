@@ -32,7 +32,17 @@ class Dae(FieldsOnly):
     """The report's five coordinates and four constraints as F(t, y, y') = 0.
 
     q = (x, z, theta, psi, r) with the contact at the polar angle psi and distance r in the body,
-    v = q', and the constraints of report eq 10 with f1 and the branch of f4 corrected:
+    v = q'. The Notes have the equations.
+
+    Attributes
+    ----------
+    problem : Problem
+    form, index : str, int
+        "index3", "index2", "index1" or "ggl", and its differentiation index: 3, 2, 1 or 2.
+
+    Notes
+    -----
+    The constraints are those of report eq 10 with f1 and the branch of f4 corrected:
 
         f1 = x_dot - r cos(psi - theta) theta_dot,    f2 = z - r cos(psi - theta),
         f3 = r - a b/sqrt((b sin psi)^2 + (a cos psi)^2),    f4 = psi - psi_C(theta).
@@ -42,11 +52,13 @@ class Dae(FieldsOnly):
     f3, f4 with q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput.
     Appl. Math. 12 (1985) 77). f1 constrains velocities: alone it would have index 2, not 3.
 
-    Attributes
-    ----------
-    problem : Problem
-    form, index : str, int
-        "index3", "index2", "index1" or "ggl", and its differentiation index: 3, 2, 1 or 2.
+    Examples
+    --------
+    >>> system = rl.benchmark.problem("roll.rock").dae("ggl")
+    >>> system.index, len(system.names)
+    (2, 17)
+    >>> system.y0[:5].round(4)
+    array([0.    , 1.2998, 0.5   , 1.1416, 1.6225])
     """
 
     problem: Problem
@@ -79,18 +91,41 @@ class Dae(FieldsOnly):
         return np.hstack([at.q_dot[0], *v_dot, np.zeros(len(self.rows))])
 
     def exact(self, t: Any) -> FloatArray:
-        """Return the exact y at times, shape (n,) or (m, n); see `Problem.exact`."""
+        """Return the exact y at times, shape (n,) or (m, n); see `Problem.exact`.
+
+        Examples
+        --------
+        >>> system = rl.benchmark.problem("roll.rock").dae()
+        >>> system.exact(1.0)[:3].round(4)
+        array([-1.0311,  1.2416, -0.4389])
+        """
         at = self.problem.trajectory.sol(np.atleast_1d(array("t", t)))
         mu = np.zeros((at.t.size, len(self.rows) - 4))
         y = np.hstack([at.q, at.q_dot, at.multipliers, mu])
         return y if np.ndim(t) else y[0]
 
     def states(self, y: Any) -> FloatArray:
-        """Return x, z, theta, x_dot, z_dot, omega of y, shape (..., 6) for (..., n)."""
+        """Return x, z, theta, x_dot, z_dot, omega of y, shape (..., 6) for (..., n).
+
+        Examples
+        --------
+        >>> system = rl.benchmark.problem("roll.rock").dae()
+        >>> system.states(system.exact([0.0, 1.0])).round(4)
+        array([[ 0.    ,  1.2998,  0.5   ,  0.    ,  0.    ,  0.    ],
+               [-1.0311,  1.2416, -0.4389, -0.6939,  0.5194, -0.5588]])
+        """
         return array("y", y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
-        """Return F, shape (n,) or (m, n): q' and M v' minus right sides, and the constraints."""
+        """Return F, shape (n,) or (m, n): q' and M v' minus right sides, and the constraints.
+
+        Examples
+        --------
+        >>> system = rl.benchmark.problem("roll.rock").dae(index=2)
+        >>> off = system.residual(0.0, system.y0, system.yp0)
+        >>> off.shape, bool(abs(off).max() < 1e-14)
+        ((14,), True)
+        """
         if np.ndim(y) == 1:
             return self.residual(t, np.array([y]), np.array([yp]))[0]
         # No operation below depends on the layout or the number of states
@@ -123,7 +158,14 @@ class Dae(FieldsOnly):
         return np.concatenate([moved, pushed, [held[row] for row in self.rows]]).T
 
     def jacobian(self, t: float, y: Any, yp: Any, cj: float) -> Any:
-        """Return dF/dy + cj dF/dy', shape (n, n), exact to within rounding, by complex steps."""
+        """Return dF/dy + cj dF/dy', shape (n, n), exact to within rounding, by complex steps.
+
+        Examples
+        --------
+        >>> system = rl.benchmark.problem("roll.rock").dae()
+        >>> system.jacobian(0.0, system.y0, system.yp0, cj=100.0).shape
+        (14, 14)
+        """
         steps = 1e-30j * np.eye(len(y))  # no truncation error in doubles, and no cancellation
         return self.residual(t, y + steps, yp + cj * steps).imag.T / 1e-30
 
@@ -134,15 +176,6 @@ class Ode:
 
     States are x, z, theta, x_dot, z_dot, omega; the equations are those of a rigid body with
     Coulomb friction, written independently of the package's solver.
-
-    >>> arc = problem.ode()
-    >>> while True:
-    ...     span, how = (arc.t0, problem.t_end), {"rtol": 1e-10, "atol": 1e-12}
-    ...     found = solve_ivp(arc.rhs, span, arc.y0, events=arc.events, **how)
-    ...     fired = [k for k, times in enumerate(found.t_events) if times.size]
-    ...     if not fired:
-    ...         break
-    ...     arc = arc.jump(found.t[-1], found.y[:, -1], fired[0])
 
     Attributes
     ----------
@@ -161,6 +194,16 @@ class Ode:
         Time from the start during which event functions are kept positive [s]; see `events`.
     xp : module
         NumPy or another array module such as ``jax.numpy``, with which `rhs` is computed.
+
+    Examples
+    --------
+    >>> from scipy.integrate import solve_ivp
+    >>> arc = rl.benchmark.problem("slide.stick").ode()
+    >>> found = solve_ivp(arc.rhs, (arc.t0, 5.0), arc.y0, events=arc.events, rtol=1e-10)
+    >>> fired = [k for k, times in enumerate(found.t_events) if times.size]
+    >>> then = arc.jump(found.t[-1], found.y[:, -1], fired[0])
+    >>> arc.mode, then.kind, then.mode
+    ('sliding', 'STICK', 'rolling')
     """
 
     problem: Problem
@@ -173,7 +216,14 @@ class Ode:
     xp: Any = np
 
     def rhs(self, t: Any, y: Any) -> Any:
-        """Return dy/dt, shape (6,)."""
+        """Return dy/dt of the state y on this arc, shape (6,).
+
+        Examples
+        --------
+        >>> arc = rl.benchmark.problem("slide.stick").ode()
+        >>> arc.rhs(0.0, arc.y0).round(4)
+        array([ 3.    ,  0.    ,  0.    , -1.962 ,  0.    ,  1.5696])
+        """
         spin_up, normal, friction = self._forces(y)
         down, into = self._gravity
         return self.xp.stack([y[3], y[4], y[5], friction + down, normal - into, spin_up])
@@ -205,7 +255,15 @@ class Ode:
         return [event(kind, function) for kind, function in ends.items()]
 
     def jump(self, t: float, y: Any, index: int) -> Ode:
-        """Return the arc that starts with event number `index` of this one."""
+        """Return the arc that starts with event number `index` of this one.
+
+        Examples
+        --------
+        >>> arc = rl.benchmark.problem("slide.stick").ode()
+        >>> t, k = arc.switching_times[0], [event.kind for event in arc.events].index("STICK")
+        >>> arc.jump(t, arc.exact(t), k).mode
+        'rolling'
+        """
         x, _, theta, x_dot, z_dot, omega = map(float, y)
         kind, scene = str(vars(self.events[index])["kind"]), self.problem.scene
         h, o, _ = map(float, self._geometry(y))
@@ -232,7 +290,14 @@ class Ode:
         return replace(arc, kind="REVERSE") if reverses else arc
 
     def exact(self, t: Any) -> FloatArray:
-        """Return the exact states at times, like `Problem.exact`."""
+        """Return the exact states at times, like `Problem.exact`.
+
+        Examples
+        --------
+        >>> arc = rl.benchmark.problem("slide.stick").ode()
+        >>> arc.exact(1.0).round(4)
+        array([ 2.0174,  1.0079,  0.0726,  1.0521, -0.0706, -0.3277])
+        """
         return self.problem.exact(t)
 
     @property

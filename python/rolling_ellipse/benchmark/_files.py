@@ -40,6 +40,12 @@ def export(folder: Any) -> list[Path]:
         then.
     OSError
         If a file cannot be written. Each file appears whole or not at all.
+
+    Examples
+    --------
+    >>> written = rl.benchmark.export("problems")
+    >>> sorted(path.name for path in written)[:3]
+    ['README.txt', 'brink.back.csv', 'brink.back.json']
     """
     place = Path(file_name("folder", folder))
     files = {"README.txt": FOLDER.with_name("export.txt").read_bytes()}

@@ -48,6 +48,12 @@ class KnownEvent:
         States.
     normal_force, friction_force : ndarray, shape (2,)
         Forces of the ground on the body before and after [N].
+
+    Examples
+    --------
+    >>> end = rl.benchmark.problem("slide.stick").events[0]
+    >>> print(f"{end.kind.name} at {end.t:.6f} s, condition {end.condition}")
+    STICK at 1.446602 s, condition 10.6
     """
 
     kind: EventKind
@@ -61,7 +67,7 @@ class KnownEvent:
 
 @dataclass(frozen=True, eq=False)
 class Problem(FieldsOnly):
-    """A problem with its known answer.
+    """A scene with a question, and its known answer.
 
     Attributes
     ----------
@@ -92,6 +98,14 @@ class Problem(FieldsOnly):
     events : tuple of KnownEvent
     laws : dict of ndarray, shape (n, 6)
         States at the given times by other laws of restitution.
+
+    Examples
+    --------
+    >>> one = rl.benchmark.problem("slide.stick")
+    >>> one.scene.friction, one.answer
+    (0.2, {'events': ['STICK']})
+    >>> one.states[-1].round(4)
+    array([2.2968, 1.0005, 0.0187, 0.1494, 0.0084, 0.1494])
     """
 
     id: str
@@ -136,6 +150,14 @@ class Problem(FieldsOnly):
         Returns
         -------
         ndarray, shape (6,) or (n, 6)
+
+        Examples
+        --------
+        >>> one = rl.benchmark.problem("slide.stick")
+        >>> one.exact(1.0).round(4)
+        array([ 2.0174,  1.0079,  0.0726,  1.0521, -0.0706, -0.3277])
+        >>> one.exact([0.0, 1.0, 2.0])[:, 0].round(4)
+        array([0.    , 2.0174, 2.3152])
         """
         states = states_of(self.trajectory.sol(np.atleast_1d(array("t", t))))
         return states if np.ndim(t) else states[0]
@@ -152,6 +174,14 @@ class Problem(FieldsOnly):
         ------
         ValueError
             If the problem has rolling resistance: its equations jump where the rotation turns.
+
+        Examples
+        --------
+        >>> from scipy.integrate import solve_ivp
+        >>> arc = rl.benchmark.problem("slide.stick").ode()
+        >>> found = solve_ivp(arc.rhs, (0.0, 5.0), arc.y0, events=arc.events, rtol=1e-10)
+        >>> print(f"the slip ends at {found.t[-1]:.6f} s")
+        the slip ends at 1.446601 s
         """
         require_no_resistance(self.scene.core, "ode", _EXACT)
         return first_arc(self, xp)
@@ -168,6 +198,15 @@ class Problem(FieldsOnly):
         ------
         ValueError
             If the motion does not always roll, has rolling resistance, or there is no such form.
+
+        Examples
+        --------
+        >>> system = rl.benchmark.problem("roll.rock").dae(index=3)
+        >>> system.names[:5]
+        ('x', 'z', 'theta', 'psi', 'r')
+        >>> start = system.residual(0.0, system.y0, system.yp0)
+        >>> bool(abs(start).max() < 1e-14)
+        True
         """
         require_no_resistance(self.scene.core, "dae", _EXACT)
         if self.events or self.scene.initial_state.mode not in (Mode.ROLLING, Mode.REST):
@@ -192,6 +231,14 @@ class Gradient:
         Time of the state [s].
     value : ndarray, shape (6,)
         Derivatives of x, z, theta, x_dot, z_dot, omega.
+
+    Examples
+    --------
+    >>> known = rl.benchmark.gradients()[0]
+    >>> known.problem, known.wrt, known.t
+    ('hit.ball', 'z', 0.8)
+    >>> known.value.round(4)
+    array([0.    , 0.5436, 0.    , 0.    , 4.4294, 0.    ])
     """
 
     problem: str
@@ -210,6 +257,13 @@ class Gradient:
         ------
         ValueError
             If it has another shape.
+
+        Examples
+        --------
+        >>> known = rl.benchmark.gradients()[0]
+        >>> mine = known.value * 1.001
+        >>> print(f"{known.error(mine):.1e}")
+        1.0e-03
         """
         derivatives = array("value", value)
         if derivatives.shape != self.value.shape:
@@ -259,6 +313,14 @@ def problem(id: str | Problem) -> Problem:
     ------
     ValueError
         If there is no such problem; the message lists all, the nearest first.
+
+    Examples
+    --------
+    >>> one = rl.benchmark.problem("slide.stick")
+    >>> one.question
+    'When does the slip end?'
+    >>> one.scene
+    Scene(a=2.0, b=1.0, inertia=1.25, friction=0.2, z=1.0, x_dot=3.0, z_dot=0.0)
     """
     return id if isinstance(id, Problem) else _made(choice("id", id, tuple(_read())))
 
@@ -276,6 +338,13 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
     ------
     ValueError
         If there is no such tag.
+
+    Examples
+    --------
+    >>> [one.id for one in rl.benchmark.problems()][:3]
+    ['brink.back', 'brink.over', 'hit.bounce']
+    >>> [one.id for one in rl.benchmark.problems(tags="stiction")]
+    ['roll.circle']
     """
     typed = [tag.strip() for tag in tags.split(",")] if isinstance(tags, str) else tags
     able = TAGS if typed is None else [choice("tags", tag, TAGS) for tag in typed]
@@ -298,7 +367,14 @@ def scored_ones(
 
 
 def gradients() -> list[Gradient]:
-    """Return the known derivatives."""
+    """Return the known derivatives of states by arguments of their scenes.
+
+    Examples
+    --------
+    >>> known = rl.benchmark.gradients()
+    >>> sorted({each.wrt for each in known})
+    ['friction', 'omega', 'restitution', 'theta', 'z']
+    """
     return [
         Gradient(name, row["wrt"], float(row["t"]), np.array(row["value"], dtype=float))
         for name, data in _read().items()

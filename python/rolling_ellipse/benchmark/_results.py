@@ -34,6 +34,13 @@ class Result:
         Forces of the ground on the body [N]; NaN where there is none.
     note : str
         A remark on the result, for tables.
+
+    Examples
+    --------
+    >>> one = rl.benchmark.problem("slide.stick")
+    >>> mine = rl.benchmark.Result(one.exact(one.times) + 1e-4, t=one.times, note="by hand")
+    >>> rl.benchmark.score({"slide.stick": mine}, problems="slide.stick")[0].passed
+    True
     """
 
     states: Any

@@ -24,7 +24,7 @@ def run(
     ladder: Iterable[float | None] = (None,),
     tolerance: float = TOLERANCE,
 ) -> Scores:
-    """Run a simulator on problems, and score it.
+    """Run a simulator on problems, and return its scores.
 
     Parameters
     ----------
@@ -55,8 +55,16 @@ def run(
 
     Examples
     --------
-    >>> from rolling_ellipse import benchmark
-    >>> benchmark.run(lambda problem, times, step: problem.exact(times), problems="rest.lie")
+    >>> from scipy.integrate import solve_ivp
+    >>> def mine(problem, times, rtol):
+    ...     arc = problem.ode()
+    ...     return solve_ivp(arc.rhs, (0.0, times[-1]), arc.y0, t_eval=times, rtol=rtol).y.T
+    >>> rl.benchmark.run(mine, problems="roll.rock", ladder=[1e-4, 1e-8])
+    problem    setting  answer  error    digits  over condition  passed  why
+    roll.rock  0.0001   right   2.0e-02  1.7     3.3e-04         yes
+    roll.rock  1e-08    right   1.9e-05  4.7     1.1e-06         yes
+    1 of 1 answers are right. 1 pass; the largest error over condition is 1.1e-06, in
+    roll.rock. With smaller settings 1 become better.
     """
     require_simulator("mine", mine)
     tolerance, settings = positive("tolerance", tolerance), list(ladder)
@@ -99,7 +107,7 @@ def score(
     tags: str | Iterable[str] | None = None,
     tolerance: float = TOLERANCE,
 ) -> Scores:
-    """Score existing results.
+    """Return the scores of existing results.
 
     Parameters
     ----------
@@ -114,6 +122,18 @@ def score(
     ValueError
         If there is no such folder, a result or a table is not named after a scored problem, or a
         result is malformed.
+
+    Examples
+    --------
+    >>> chosen = rl.benchmark.problems()[:3]
+    >>> mine = {one.id: one.exact(one.output_times) + 1e-4 for one in chosen}
+    >>> rl.benchmark.score(mine, problems=chosen)
+    problem     setting  answer  error    digits  over condition  passed  why
+    brink.back           right   1.0e-04  4.0     5.0e-05         yes
+    brink.over           right   1.0e-04  4.0     5.0e-05         yes
+    hit.bounce           right   1.0e-04  4.0     1.0e-04         yes
+    3 of 3 answers are right. 3 pass; the largest error over condition is 1.0e-04, in
+    hit.bounce. One setting shows no trend.
     """
     given_results = results if isinstance(results, Mapping) else read_folder(results)
     names = tuple(one.id for one in scored_ones(None))

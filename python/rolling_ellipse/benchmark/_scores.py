@@ -64,6 +64,15 @@ class Score:
         times before the horizon. NaN without forces.
     tolerance : float
         Largest `over_condition` that passes.
+
+    Examples
+    --------
+    >>> def rough(problem, times, step):
+    ...     return problem.exact(times) + step**2
+    >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+    >>> last = scores[-1]
+    >>> last.answer, last.passed, f"{last.digits:.1f} digits"
+    ('right', True, '6.0 digits')
     """
 
     problem: str
@@ -102,7 +111,22 @@ class Score:
 
 
 class Scores(tuple[Score, ...]):
-    """Scores in order; prints as a table."""
+    """The scores of a simulator in order; they print as a table.
+
+    Examples
+    --------
+    >>> def rough(problem, times, step):
+    ...     return problem.exact(times) + step**2
+    >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+    >>> scores
+    problem    setting  answer  error    digits  over condition  passed  why
+    roll.rock  0.01     right   1.0e-04  4.0     8.8e-05         yes
+    roll.rock  0.001    right   1.0e-06  6.0     8.8e-07         yes
+    1 of 1 answers are right. 1 pass; the largest error over condition is 8.8e-07, in
+    roll.rock. With smaller settings 1 become better.
+    >>> scores.wrong
+    []
+    """
 
     __slots__ = ()
 
@@ -122,6 +146,15 @@ class Scores(tuple[Score, ...]):
         ------
         ValueError
             If there is no such problem.
+
+        Examples
+        --------
+        >>> def rough(problem, times, step):
+        ...     return problem.exact(times) + step**2
+        >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+        >>> order, helps = scores.order("roll.rock")
+        >>> print(f"order {order:.2f}; do smaller steps help? {helps}")
+        order 2.00; do smaller steps help? yes
         """
         (one,) = scored_ones(problem, "problem")
         rows = [s for s in self if s.problem == one.id and s.setting and 0 < s.error < math.inf]
@@ -136,7 +169,17 @@ class Scores(tuple[Score, ...]):
         return float(slope), f"plateau at {errors[-1]:.1e}" if flat else "yes"
 
     def verdict(self) -> str:
-        """Return three sentences: answers, accuracy, and the effect of the setting."""
+        """Return three sentences: answers, accuracy, and the effect of the setting.
+
+        Examples
+        --------
+        >>> def rough(problem, times, step):
+        ...     return problem.exact(times) + step**2
+        >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+        >>> print(scores.verdict())
+        1 of 1 answers are right. 1 pass; the largest error over condition is 8.8e-07, in
+        roll.rock. With smaller settings 1 become better.
+        """
         last = list({score.problem: score for score in self}.values())
         count = Counter(score.answer for score in last)
         said = f"{count[RIGHT]} of {len(last)} answers are right"
@@ -168,13 +211,32 @@ class Scores(tuple[Score, ...]):
         ----------
         path, ax, figsize
             As in `rolling_ellipse.plot` and `rolling_ellipse.plot_forces`, with their errors.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> def rough(problem, times, step):
+        ...     return problem.exact(times) + step**2
+        >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+        >>> chart = scores.plot()
+        >>> plt.show()
         """
         from .._pictures.benchmark import draw
 
         return draw(self, path, ax=ax, figsize=figsize)
 
     def records(self) -> list[dict[str, Any]]:
-        """Return a dict of plain numbers and text for each score."""
+        """Return a dict of plain numbers and text for each score.
+
+        Examples
+        --------
+        >>> def rough(problem, times, step):
+        ...     return problem.exact(times) + step**2
+        >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+        >>> first = scores.records()[0]
+        >>> first["problem"], first["setting"], first["answer"]
+        ('roll.rock', 0.01, 'right')
+        """
         return [
             asdict(score)
             | {"errors": dict(zip(STATE, map(float, score.errors), strict=True))}
@@ -183,7 +245,18 @@ class Scores(tuple[Score, ...]):
         ]
 
     def to_dataframe(self) -> Any:
-        """Return the scores as a pandas DataFrame, one row each."""
+        """Return the scores as a pandas DataFrame, one row each.
+
+        Examples
+        --------
+        >>> def rough(problem, times, step):
+        ...     return problem.exact(times) + step**2
+        >>> scores = rl.benchmark.run(rough, problems="roll.rock", ladder=[0.01, 0.001])
+        >>> scores.to_dataframe()[["problem", "setting", "passed"]]
+             problem  setting  passed
+        0  roll.rock    0.010    True
+        1  roll.rock    0.001    True
+        """
         return required("pandas", "to_dataframe").json_normalize(self.records(), sep="_")
 
     def __repr__(self) -> str:

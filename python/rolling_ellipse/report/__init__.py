@@ -8,6 +8,13 @@ those for right ones by words. SI units, theta positive clockwise.
 Common arguments: ``q``, ``q_dot``, ``q_ddot`` array_like of shape (..., 5), whose leading axes
 broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. Everything raises
 ValueError naming the argument if a shape or a number is out of its range.
+
+Examples
+--------
+>>> motion = rl.simulate(rl.scenes.report, 2.0)
+>>> off = abs(rl.report.f1(motion.q, motion.q_dot)).max()
+>>> print(f"f1 as printed is off by {off:.1f} m/s")
+f1 as printed is off by 12.8 m/s
 """
 
 from . import _equations

@@ -199,6 +199,16 @@ def multipliers(
 
     lambda3 follows from the equation of r without a division by sin(2 psi). lambda4 vanishes on the
     ground, since r cos(psi - theta) has its largest value over psi there.
+
+    Examples
+    --------
+    >>> now = rl.simulate(rl.scenes.report, [0.5, 1.0])
+    >>> rates = (now.x_ddot, now.z_ddot, now.omega_dot, now.psi_ddot, now.r_ddot)
+    >>> body = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
+    >>> rl.report.multipliers(now.q, np.stack(rates, axis=-1), **body)[:, 1].round(3)
+    array([68.425, 87.87 ])
+    >>> now.normal_force.round(3)
+    array([68.425, 87.87 ])
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot)

@@ -227,7 +227,17 @@ _ERRATA = tuple(
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors of the report in its order; `evaluate()` gives the two numbers of each."""
+    """Return the errors of the report in its order; `evaluate()` gives the two numbers of each.
+
+    Examples
+    --------
+    >>> first = rl.report.errata()[0]
+    >>> print(first.where, "-", first.quantity)
+    section 2.2, before eq 6 - length of r_OC after rolling from θ = 0.2 rad [m]
+    >>> numbers = first.evaluate()
+    >>> print(f"printed {numbers.printed:.4f}, right {numbers.right:.4f}")
+    printed 1.7940, right 1.6168
+    """
     return _ERRATA
 
 

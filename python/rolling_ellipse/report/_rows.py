@@ -114,6 +114,16 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
     ------
     ValueError
         If a name, a shape or a semi-axis is wrong.
+
+    Examples
+    --------
+    >>> q, q_dot = rl.kinematics(0.5, 2.0, a=2.0, b=1.0)
+    >>> right = rl.report.constraint_matrix(q, a=2.0, b=1.0, printed=())
+    >>> bool(abs(right @ q_dot).max() < 1e-14)
+    True
+    >>> printed = rl.report.constraint_matrix(q, a=2.0, b=1.0)
+    >>> (printed @ q_dot)[[0, 1, 3]].round(3)
+    array([ 3.643,  0.391, 20.775])
     """
     body = Scene(a, b)
     return rows(coordinates("q", q), body.a, body.b, misprints(printed))

@@ -60,7 +60,7 @@ def simulate(
     step: float | None = None,
     max_steps: int = 100_000,
 ) -> Trajectory | PrintedMotion:
-    """Simulate from the report's coordinates, as its section 4 does; the body is a uniform disc.
+    """Return the motion of a uniform disc from the report's coordinates, as in its section 4.
 
     Three things lift the report's ellipse off the ground: wrong equations (``printed``), a start
     that violates the constraints (``consistent="as_given"``), and the drift of accelerations
@@ -108,6 +108,17 @@ def simulate(
         size), or an argument is out of range or has no effect.
     IntegrationError
         If the integration of the corrected equations stops before the last time.
+
+    Examples
+    --------
+    >>> q, q_dot = rl.kinematics(0.0, 3.2, a=2.0, b=1.0)
+    >>> right = rl.report.simulate(q, q_dot, 3.0, a=2.0, b=1.0)
+    >>> bool(abs(right.constraint_residuals().gap).max() < 1e-12)
+    True
+    >>> how = {"equations": "printed", "consistent": "project"}
+    >>> printed = rl.report.simulate(q, q_dot, 3.0, a=2.0, b=1.0, **how)
+    >>> print(f"by the printed equations it floats up to {printed.gap.max():.3f} m")
+    by the printed equations it floats up to 0.687 m
     """
     equations = choice("equations", equations, get_args(Equations))
     consistent = choice("consistent", consistent, get_args(Consistent))

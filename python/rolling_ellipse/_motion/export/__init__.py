@@ -8,5 +8,13 @@ from ..trajectory import Trajectory
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory written by `Trajectory.save`."""
+    """Return a trajectory read from a file of `Trajectory.save`.
+
+    Examples
+    --------
+    >>> rl.simulate(rl.scenes.report, 6.0).save("motion.npz")
+    >>> motion = rl.load("motion.npz")
+    >>> print(f"{motion.turns[-1]:.4f} turns")
+    1.3272 turns
+    """
     return Trajectory.load(path)

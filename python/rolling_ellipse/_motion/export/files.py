@@ -50,6 +50,13 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
         reject.
     OSError
         If the file cannot be written.
+
+    Examples
+    --------
+    >>> motion = rl.simulate(rl.scenes.report, 6.0)
+    >>> motion.save("motion.npz")
+    >>> rl.load("motion.npz") == motion
+    True
     """
     name = file_name("path", path)
     if (ending := os.path.splitext(name)[1]) not in ("", ".npz"):
@@ -64,7 +71,7 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
 
 
 def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
-    """Read a trajectory written by `save`.
+    """Return a trajectory read from a file of `save`.
 
     Raises
     ------
@@ -73,6 +80,12 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
         and the problem.
     OSError
         If the file is missing or cannot be read.
+
+    Examples
+    --------
+    >>> rl.simulate(rl.scenes.report, 6.0).save("motion.npz")
+    >>> rl.Trajectory.load("motion.npz")
+    <Trajectory rolling/exact: 1001 samples, t = 0 ... 6 s, 1.33 turns, COMPLETED>
     """
     return strict.restored(path, lambda content: _of_bytes(kind, content), strict.ARCHIVE)
 

@@ -28,6 +28,19 @@ def to_dataframe(trajectory: Trajectory) -> DataFrame:
     ------
     ImportError
         Without pandas: it comes with ``rolling_ellipse[data]``.
+
+    Examples
+    --------
+    >>> table = rl.simulate(rl.scenes.report, [0.0, 1.0, 2.0]).to_dataframe()
+    >>> table[["theta", "omega", "x", "normal_force"]].round(4)
+          theta   omega       x  normal_force
+    t
+    0.0  0.0000  3.2000  0.0000      405.3000
+    1.0  1.4942  0.8176  2.2690       87.8705
+    2.0  2.6389  2.0965  4.2864       77.2625
+    >>> table.attrs["units"]["normal_force"]
+    'N'
+    >>> table.to_csv("motion.csv")
     """
     pandas = required("pandas", "to_dataframe")
     columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
@@ -51,6 +64,14 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     ------
     ImportError
         Without xarray: it comes with ``rolling_ellipse[data]``.
+
+    Examples
+    --------
+    >>> data = rl.simulate(rl.scenes.report, 6.0).to_xarray()
+    >>> print(f"{float(data.x.sel(t=3.0)):.4f} {data.x.units}")
+    6.7940 m
+    >>> data.multipliers.dims
+    ('t', 'constraint')
     """
     xarray = required("xarray", "to_xarray")
     variables: dict[str, Any] = {

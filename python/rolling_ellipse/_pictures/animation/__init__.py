@@ -45,19 +45,10 @@ def animate(
     panel: Literal["phase", "forces", "energy"] | None = None,
     progress: bool | None = None,
 ) -> RollingAnimation:
-    """Make a moving picture in true time: frame i shows t = i · speed / fps and lasts 1 / fps.
+    """Make a film of one motion or several in true time, for a file, a window or a notebook.
 
-    The body is always where the motion puts it at the time on the clock. A film that would last
-    more than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts
-    of the motion in real time: start, end and middle, and the first and last event between them;
-    captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
-    turn per frame, and seem to roll backwards, is shown in slow motion, as the clock then states.
-
-    Several motions are shown in strips, stacked or side by side, with one clock, one scale and the
-    same stretch of ground, so that it is clear which is ahead. The camera stands still if all
-    motions fit into about three turns; else it follows their middle. Motions too far apart for that
-    are each followed in their own strip, and the captions state where they are. A motion that ends
-    before the others stays where it ended, and its caption says so.
+    Frame i shows t = i · speed / fps and lasts 1 / fps; the body is where the motion puts it then.
+    The Notes say what a long film, a fast one, and one of several motions show.
 
     Parameters
     ----------
@@ -120,6 +111,29 @@ def animate(
         If there is no such folder, or no ffmpeg for a video.
     OSError
         If the file cannot be written; an old file is kept.
+
+    Notes
+    -----
+    A film that would last
+    more than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts
+    of the motion in real time: start, end and middle, and the first and last event between them;
+    captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
+    turn per frame, and seem to roll backwards, is shown in slow motion, as the clock then states.
+
+    Several motions are shown in strips, stacked or side by side, with one clock, one scale and the
+    same stretch of ground, so that it is clear which is ahead. The camera stands still if all
+    motions fit into about three turns; else it follows their middle. Motions too far apart for that
+    are each followed in their own strip, and the captions state where they are. A motion that ends
+    before the others stays where it ended, and its caption says so.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> grips = [rl.simulate(rl.scenes.report.replace(friction=mu), 2.0) for mu in (1.0, 0.1)]
+    >>> film = rl.animate(grips, figure=plt.figure(figsize=(7, 4)))
+    >>> film.save("grips.html")
+    >>> film.frame(1.5, "grips.png")
+    >>> plt.show()
     """
     width, dpi = round(within("width", width, *WIDTHS)), within("dpi", dpi, *DPI)
     if figure is not None:

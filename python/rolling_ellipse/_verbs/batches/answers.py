@@ -201,6 +201,17 @@ class MotionArrays(dict[str, FloatArray]):
         Names of `Status`, or REFUSED, or LOST (with a worker), in the scenes' shape.
     errors : dict
         The exceptions that the list of `simulate_many` holds, by the scene's index, a tuple.
+
+    Examples
+    --------
+    >>> grid = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0, 3.2]}
+    >>> many = rl.simulate_many(grid, [1.0, 2.0], returns="theta")
+    >>> many["theta"].round(3)
+    array([[ 0.006, -0.011],
+           [ 0.565, -0.639],
+           [ 1.494,  2.639]])
+    >>> many.axes, many.status.tolist()
+    (('omega0',), ['COMPLETED', 'COMPLETED', 'COMPLETED'])
     """
 
     t: FloatArray
@@ -227,12 +238,33 @@ class MotionArrays(dict[str, FloatArray]):
         ------
         ImportError
             Without xarray: it comes with ``rolling_ellipse[data]``.
+
+        Examples
+        --------
+        >>> grid = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0, 3.2]}
+        >>> data = rl.simulate_many(grid, [1.0, 2.0], returns="theta").to_xarray()
+        >>> data.theta.dims
+        ('omega0', 't')
+        >>> print(f"{float(data.theta.sel(omega0=2.0, t=1.0)):.4f} rad")
+        0.5652 rad
         """
         found = dataset_of(self, (*self.axes, "t"), self, self._scenes)
         return found.assign_coords({"t": ("t", self.t, attributes(TIME))})
 
     def to_dataframe(self) -> DataFrame:
-        """Return `to_xarray` as a pandas DataFrame: a row for each scene and time."""
+        """Return `to_xarray` as a pandas DataFrame: a row for each scene and time.
+
+        Examples
+        --------
+        >>> grid = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}
+        >>> rl.simulate_many(grid, [1.0, 2.0], returns="theta").to_dataframe().round(3)
+                       status  theta
+        omega0 t
+        1.0    1.0  COMPLETED  0.006
+               2.0  COMPLETED -0.011
+        2.0    1.0  COMPLETED  0.565
+               2.0  COMPLETED -0.639
+        """
         found = self.to_xarray()
         frame: DataFrame = found.to_dataframe()
         frame.attrs = dict(found.attrs)

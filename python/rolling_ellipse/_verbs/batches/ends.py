@@ -56,6 +56,16 @@ class Ends(FieldsOnly):
         Names of the axes, as in `MotionArrays`; "t" where only the times vary.
     t : ndarray
         Requested times [s].
+
+    Examples
+    --------
+    >>> last = rl.ends({"a": 2.0, "b": 1.0, "theta": 0.5, "z": [2.0, 3.0]}, 5.0)
+    >>> last
+    <Ends of shape (2,): 2 COMPLETED>
+    >>> last.theta.round(3), last.events.tolist()
+    (array([-0.06 , -0.724]), [1, 1])
+    >>> [rl.Mode(code).name for code in last.mode]
+    ['ROLLING', 'ROLLING']
     """
 
     theta: FloatArray
@@ -82,6 +92,13 @@ class Ends(FieldsOnly):
         ------
         ImportError
             Without xarray: it comes with ``rolling_ellipse[data]``.
+
+        Examples
+        --------
+        >>> grid = {"a": 2.0, "b": 1.0, "omega": [[1.0], [4.0]], "friction": [0.1, 0.5, 1.0]}
+        >>> data = rl.ends(grid, 2.0).to_xarray()
+        >>> data.x.sel(omega0=4.0).values.round(3)
+        array([7.271, 7.269, 7.269])
         """
         scenes = self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
         names = (*STATE_UNITS, "mode", "events", "first")
@@ -89,7 +106,17 @@ class Ends(FieldsOnly):
         return dataset_of(self, self.axes, values, scenes, t=self.t)
 
     def to_dataframe(self) -> DataFrame:
-        """Return `to_xarray` as a pandas DataFrame: one row per scene."""
+        """Return `to_xarray` as a pandas DataFrame: one row per scene.
+
+        Examples
+        --------
+        >>> last = rl.ends({"a": 2.0, "b": 1.0, "omega": [1.0, 4.0], "friction": 0.5}, 2.0)
+        >>> last.to_dataframe()[["theta", "x", "events"]].round(3)
+                theta      x  events
+        omega0
+        1.0    -0.011 -0.011       0
+        4.0     4.714  7.269       0
+        """
         found = self.to_xarray()
         return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
 
@@ -121,7 +148,7 @@ def ends(
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
 ) -> Ends:
-    """Return only the ends of many motions, bit for bit those of `simulate`.
+    """Return the last states and event counts of many motions, bit for bit those of `simulate`.
 
     The states can be used as starts: in a mapping of scenes, as theta, omega, x, z, x_dot and
     z_dot, they continue the motions.
@@ -147,6 +174,15 @@ def ends(
         state.
     WorkerError
         If a worker was lost.
+
+    Examples
+    --------
+    >>> grid = {"a": 2.0, "b": 1.0, "omega": np.linspace(1.0, 6.0, 6), "friction": 0.5}
+    >>> last = rl.ends(grid, 2.0, workers=2)
+    >>> last.x.round(3)
+    array([-0.011, -0.745,  2.724,  7.269,  7.791,  9.432])
+    >>> last.events
+    array([0, 0, 0, 0, 3, 3], dtype=int32)
     """
     how = replace(DEFAULTS, max_events=max_events, rest_speed=rest_speed)
     times = array("t", t)

@@ -222,6 +222,16 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
         do not belong together; when a motion is read: if its file, which is named, is damaged.
     OSError
         If it cannot be read.
+
+    Examples
+    --------
+    >>> scenes = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0, 3.2]}
+    >>> written = rl.simulate_many(scenes, [1.0, 2.0], out="grid")
+    >>> motions = rl.load_many("grid")
+    >>> motions[2].theta.round(3)
+    array([1.494, 2.639])
+    >>> motions.arrays("x")["x"].shape
+    (3, 2)
     """
     folder = Path(file_name("path", path))
     if not (folder / _REQUEST).exists():

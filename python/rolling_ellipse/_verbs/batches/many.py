@@ -53,7 +53,7 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Simulate many scenes with any workers, each bit for bit as by `simulate`.
+    """Return the motions of many scenes by any workers, each bit for bit as by `simulate`.
 
     A scene that cannot be simulated yields its exception in the list; the others continue. No
     warnings are issued: see the status of a trajectory (VALIDITY_LOST).
@@ -103,6 +103,19 @@ def simulate_many(
         With ``out``: if workers were lost. Finished chunks are kept; the same call resumes.
     OSError
         If ``out`` cannot be written; finished chunks are kept.
+
+    Examples
+    --------
+    >>> grid = {"a": 2.0, "b": 1.0, "omega": [[1.0], [3.2]], "friction": [0.1, 0.5, 1.0]}
+    >>> many = rl.simulate_many(grid, [1.0, 2.0], returns=("theta", "x"), workers=2)
+    >>> many["x"].shape, many.axes
+    ((2, 3, 2), ('omega0', 'friction'))
+    >>> many["x"][..., -1].round(3)
+    array([[ 0.772, -0.011, -0.011],
+           [ 4.526,  4.286,  4.286]])
+    >>> motions = rl.simulate_many([rl.scenes.report, rl.scenes.jump], 2.0)
+    >>> [len(motion.events) for motion in motions]
+    [0, 3]
     """
     how = Settings(**options)
     times = sample_times(t)

@@ -83,6 +83,15 @@ class WorkPrecision:
         Source and error of the true motion, one for each end.
     machine : dict of str
         Processor, compiler and flags, versions, date, number of rounds.
+
+    Examples
+    --------
+    >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+    >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+    >>> race.names
+    ('flow', 'dop853')
+    >>> race.reference.name
+    'exact rolling'
     """
 
     scene: Scene
@@ -101,7 +110,15 @@ class WorkPrecision:
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
-        """Return the runs up to one end [s]."""
+        """Return the runs up to one end [s].
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> [run.name for run in race.of(t_end=2.0)]
+        ['flow', 'dop853', 'dop853']
+        """
         end = self.judged_by(t_end).t_end
         return tuple(run for run in self.runs if run.t_end == end)
 
@@ -111,13 +128,32 @@ class WorkPrecision:
         """Return the run of least `y` among the runs whose error `x` is at most `at`, or None.
 
         An error of the state below the reference's own error counts as the latter.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.best(at=1e-11).name
+        'flow'
+        >>> race.best(at=1e-5, y="evaluations").name
+        'flow'
         """
         return min(self._able(at, x, y, t_end), key=lambda run: run.value(y), default=None)
 
     def least(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
-        """Return, by name, the least `y` of each method that reaches an error of at most `at`."""
+        """Return, by name, the least `y` of each method that reaches an error of at most `at`.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> sorted(race.least(at=1e-5))
+        ['dop853', 'flow']
+        >>> race.least(at=1e-5, y="steps")["dop853"]
+        13.0
+        """
         able = by_name(self._able(at, x, y, t_end))
         return {name: min(run.value(y) for run in runs) for name, runs in able.items()}
 
@@ -127,6 +163,13 @@ class WorkPrecision:
         """Return the names of methods that might still reach an error of at most `at`.
 
         They have not reached it, and were not run at all settings for lack of time.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.not_run(at=1e-12)
+        ()
         """
         reached = self.least(at, x=x, y=y, t_end=t_end)
         late = by_name(run for run in self.of(t_end) if run.status == NOT_RUN)
@@ -140,6 +183,13 @@ class WorkPrecision:
 
         There no other is faster by more than a factor of `margin`, at least 1. Decades that a
         method might still reach (`not_run`) are left out.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> 1e-12 in race.unbeaten()["flow"]
+        True
         """
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
@@ -158,6 +208,13 @@ class WorkPrecision:
 
         The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> print(race.verdict().partition(" (")[0])
+        To t = 2 s, judged by exact rolling
         """
         reference, contenders = self.judged_by(t_end), by_name(self.of(t_end))
         floor, attainable = reference.limits("largest")
@@ -209,6 +266,13 @@ class WorkPrecision:
 
         Contenders whose answers all have errors above 1e-2 are included. It prints as a table, and
         has `to_dataframe`.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.gaps()
+        no gaps
         """
         rows = []
         for name, runs in by_name(self.of(t_end)).items():
@@ -262,20 +326,48 @@ class WorkPrecision:
         ValueError
             If an argument is not as above; for names that are not in the race the message lists all
             valid ones.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> ways = {"methods": ["flow", "dop853", "rk4"], "rounds": 3, "max_seconds": 2.0}
+        >>> race = rl.work_precision(rl.scenes.rolling, 50.0, **ways)
+        >>> chart = race.plot()
+        >>> plt.show()
         """
         from ..._pictures.work_precision import draw
 
         return draw(self, x, y, tags, ax, highlight, by, t_end)
 
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame (``rolling_ellipse[data]``) with one row per run."""
+        """Return a pandas DataFrame (``rolling_ellipse[data]``) with one row per run.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.to_dataframe()[["name", "setting", "status"]]
+             name       setting     status
+        0    flow           NaN  COMPLETED
+        1  dop853  1.000000e-06  COMPLETED
+        2  dop853  1.000000e-10  COMPLETED
+        """
         pandas = required("pandas", "to_dataframe")
         errors = ({name: run.value(name) for name in ERRORS} for run in self.runs)
         rows = [asdict(run) | {"tags": " ".join(run.tags)} for run in self.runs]
         return pandas.DataFrame(map(dict.__or__, rows, errors)).drop(columns="errors")
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a JSON file, one run per line, which appears whole or not at all."""
+        """Write everything to a JSON file, one run per line, which appears whole or not at all.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.save("race.json")
+        >>> rl.WorkPrecision.load("race.json").names
+        ('flow', 'dop853')
+        """
         name = file_name("path", path)
         text = in_lines(self._about(), _RUNS)
         self._restored(text.encode())
@@ -284,7 +376,16 @@ class WorkPrecision:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
-        """Read a file written by `save`; ValueError if it is damaged or another file."""
+        """Read a file written by `save`; ValueError if it is damaged or another file.
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.save("race.json")
+        >>> rl.WorkPrecision.load("race.json")
+        <WorkPrecision: ways 2, runs 3, answers 3, to t = 2 s>
+        """
         return restored(path, cls._restored, OBJECT)
 
     def __repr__(self) -> str:
@@ -314,7 +415,15 @@ class WorkPrecision:
         return [run for run in runs if max(run.value(x), floor) <= at]
 
     def judged_by(self, t_end: float | None) -> Reference:
-        """Return the reference for the runs up to one end [s]."""
+        """Return the reference for the runs up to one end [s].
+
+        Examples
+        --------
+        >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
+        >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
+        >>> race.judged_by(2.0).name
+        'exact rolling'
+        """
         ends = [reference.t_end for reference in self.references]
         if t_end is not None and t_end not in ends:
             listed = ", ".join(map(repr, ends))
