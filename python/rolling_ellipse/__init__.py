@@ -1,8 +1,40 @@
 """An ellipse on the ground, set rolling by an impulse: solved exactly, proved valid, drawn.
 
->>> import rolling_ellipse
->>> trajectory = rolling_ellipse.simulate(rolling_ellipse.scenes.report, 6.0)
->>> trajectory.plot(); trajectory.animate("roll.gif")
+SI units and radians: ``np.radians(30.0)`` goes in, ``np.degrees(motion.theta)`` comes out. theta is
+clockwise positive, x lies along the ground, z points away from it; time is the first axis. The help
+of every name ends with examples, which assume the first two lines of those below.
+
+=================  =================================================================================
+set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`
+compute a motion   `simulate`: a `Trajectory` with arrays ``motion.t``, ``.theta``, ``.x``, ...
+at other times     ``motion.at(t)``, ``motion.sol(times)``, ``motion.scene_at(t)`` to continue
+when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``
+ask, not compute   `outcome`, `classify`, `certify`, `thresholds`, `required_friction`, `blow_to`
+draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return what they drew, with
+                   ``.savefig("motion.png")`` and ``.ax``; ``.ax.twinx()`` puts a second quantity,
+                   ``.ax.secondary_xaxis(-0.3, ...)`` a second axis of time, in the picture
+film, page         `animate` writes .gif, .mp4 or .html; on the page of `explore` a hand strikes
+save               ``motion.save("motion.npz")`` and `load`
+table              ``motion.to_dataframe()``, ``motion.to_xarray()``
+grid of scenes     `simulate_many`, `ends` of motions only, `load_many` from a folder
+fit to a film      `read_track`, `fit_motion`; to measured impacts: `impacts`
+derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`
+your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_precision`: a race;
+                   ``Trajectory.from_arrays`` takes your arrays, to draw or to film them
+score a simulator  `benchmark`: ``benchmark.run(simulator)``, ``benchmark.score(results)``
+teach              `course` marks answers, `examples` writes the notebooks; `geometry`, `period`
+the report         `report` has its equations; `kinematics`, `constraints` its coordinates
+=================  =================================================================================
+
+Examples
+--------
+>>> import numpy as np
+>>> import rolling_ellipse as rl
+>>> scene = rl.Scene(a=2.0, b=1.0, mass=10.0, impulse=rl.Impulse.press(48.0, 1.5))
+>>> motion = rl.simulate(scene, 6.0)
+>>> print(f"{np.degrees(motion.theta[-1]):.1f} degrees, {motion.x[-1]:.2f} m")
+477.8 degrees, 13.05 m
+>>> drawn = motion.plot("motion.png")
 """
 
 import ast as _ast
