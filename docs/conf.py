@@ -5,6 +5,7 @@ from importlib.metadata import metadata
 from pathlib import Path
 from runpy import run_path
 from shutil import copytree, rmtree
+from tempfile import mkdtemp
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -18,17 +19,26 @@ author = copyright = "The rolling_ellipse developers"
 release = version = metadata("rolling-ellipse")["Version"]
 extensions = [
     "myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx-mathjax-offline", "sphinx_copybutton",
+    "matplotlib.sphinxext.plot_directive",
 ]  # fmt: skip
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
 myst_dmath_double_inline = True  # formulas within a paragraph, as Jupyter shows them
 myst_html_meta = {"description": metadata("rolling-ellipse")["Summary"]}
-copybutton_selector = ".highlight-python pre, .highlight-bash pre, .cell_input pre"
+copybutton_selector = (
+    ".highlight-python pre, .highlight-bash pre, .highlight-pycon pre, .highlight-default pre, "
+    ".cell_input pre"
+)
+copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True  # examples
 default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
 autodoc_default_options = {  # xp is a module, whose text is not ours
     "members": True, "member-order": "bysource", "exclude-members": "xp"
 }  # fmt: skip
 numpydoc_show_class_members = False
+numpydoc_use_plots = True  # examples with pyplot run, and their pictures follow
+plot_pre_code = "import numpy as np\nimport rolling_ellipse as rl"
+plot_include_source, plot_html_show_formats, plot_html_show_source_link = True, False, False
+plot_formats, plot_working_directory = [("png", 100)], mkdtemp()  # where examples write files
 python_maximum_signature_line_length = 90
 html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
 html_logo = html_favicon = "_static/logo.svg"
