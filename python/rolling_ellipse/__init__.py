@@ -2,7 +2,8 @@
 
 SI units and radians: ``np.radians(30.0)`` goes in, ``np.degrees(motion.theta)`` comes out. theta is
 clockwise positive, x lies along the ground, z points away from it; time is the first axis. The help
-of every name ends with examples, which assume the first two lines of those below.
+of functions, classes and methods ends with examples, which assume the first two lines of those
+below.
 
 =================  =================================================================================
 set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`
@@ -16,13 +17,14 @@ draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return wh
 film, page         `animate` writes .gif, .mp4 or .html; on the page of `explore` a hand strikes
 save               ``motion.save("motion.npz")`` and `load`
 table              ``motion.to_dataframe()``, ``motion.to_xarray()``
-grid of scenes     `simulate_many`, `ends` of motions only, `load_many` from a folder
+grid of scenes     `simulate_many`; `ends` keeps only last states, `load_many` reads a folder
 fit to a film      `read_track`, `fit_motion`; to measured impacts: `impacts`
 derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`
 your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_precision`: a race;
                    ``Trajectory.from_arrays`` takes your arrays, to draw or to film them
 score a simulator  `benchmark`: ``benchmark.run(simulator)``, ``benchmark.score(results)``
-teach              `course` marks answers, `examples` writes the notebooks; `geometry`, `period`
+teach              `course` marks answers, `examples` writes the notebooks
+shape and period   `geometry`, `period`
 the report         `report` has its equations; `kinematics`, `constraints` its coordinates
 =================  =================================================================================
 

@@ -55,6 +55,12 @@ def test_all_public_names_are_found_and_their_help_soon_says_how_to_call_them() 
         assert first.endswith(".") and (len(others) <= 8 or inspect.ismodule(of)), name
 
 
+def test_the_help_of_the_package_places_every_function_at_a_task() -> None:
+    functions = {each for each in rl.__all__ if inspect.isfunction(getattr(rl, each))}
+    placed = {*re.findall(r"`(\w+)`", rl.__doc__ or "")}
+    assert {each for each in functions - placed if not each.startswith("plot_")} == set()
+
+
 @pytest.mark.parametrize("of", NAMES, ids=NAMES.values())
 def test_an_example_runs_as_it_is_printed(
     of: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

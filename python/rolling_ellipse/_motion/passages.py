@@ -78,9 +78,9 @@ def when(
     Notes
     -----
     No time is missed where the turning points of the quantity are known: they are found, by
-    Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. The
-    warning is issued where no polynomial agrees, and for a `function`, whose values are known only
-    at single times.
+    Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. A
+    `CompletenessWarning` is issued where no polynomial agrees, and for a `function`, whose values
+    are known only at single times.
 
     A jump of omega across the value counts, at the event. A value that is only touched, as at a
     turning point, counts once, even at the start or end; a value that is held for a while counts
