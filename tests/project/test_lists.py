@@ -60,7 +60,10 @@ KINDS = {
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",
                        "tests/player/test_site.py")),
-    "a verb": Kind(of_room("_verbs"), ("tests/border/test_layout.py",)),
+    "a verb": Kind(of_room("_verbs"), (
+        "python/rolling_ellipse/__init__.py", "tests/project/test_docstrings.py",
+        "tests/border/test_layout.py",
+    )),
     "a column of a motion": Kind([each.name for each in QUANTITIES],
                                  ("tests/export/test_tables.py",)),
     "a setting": Kind([field.name for field in fields(Settings)], (
