@@ -5,7 +5,6 @@ from importlib.metadata import metadata
 from pathlib import Path
 from runpy import run_path
 from shutil import copytree, rmtree
-from tempfile import mkdtemp
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -38,7 +37,7 @@ numpydoc_show_class_members = False
 numpydoc_use_plots = True  # examples with pyplot run, and their pictures follow
 plot_pre_code = "import numpy as np\nimport rolling_ellipse as rl"
 plot_include_source, plot_html_show_formats, plot_html_show_source_link = True, False, False
-plot_formats, plot_working_directory = [("png", 100)], mkdtemp()  # where examples write files
+plot_formats = [("png", 100)]
 python_maximum_signature_line_length = 90
 html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
 html_logo = html_favicon = "_static/logo.svg"
@@ -69,6 +68,9 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-signature", name_modules, priority=400)  # before numpydoc
     app.connect("source-read", lead_to_copies)
     app.connect("builder-inited", keep_pictures_in_the_site)
+    files = Path(app.doctreedir) / "examples"  # which examples write
+    files.mkdir(parents=True, exist_ok=True)
+    app.config.plot_working_directory = str(files)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows
     live.mkdir(parents=True, exist_ok=True)
     run_path(str(HERE / "makers" / "live.py"))["write"](live / "index.html")

@@ -72,10 +72,10 @@ class Mark:
 
     Examples
     --------
-    >>> mark = rl.course.mark("3.2", 1.91)
+    >>> mark = rl.course.mark("1.1", rl.geometry.support(0.6, a=0.3, b=0.2))
     >>> mark.right, mark.mistake
-    (False, 'sign and inertia')
-    >>> print(mark.sentence)
+    (True, 'none')
+    >>> print(rl.course.mark("3.2", 1.91).sentence)
     The sign is wrong: mind which way x, z and theta (clockwise) grow. Wrong moment of
     inertia: k^2 is twice too large. (a^2 + b^2)/4 belongs to a uniform elliptic plate
     or cylinder.
