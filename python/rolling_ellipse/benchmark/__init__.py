@@ -10,8 +10,10 @@ Examples
 --------
 >>> rl.benchmark.problem("slide.stick").question
 'When does the slip end?'
->>> len(rl.benchmark.problems())
-20
+>>> def mine(problem, times, step):  # your simulator returns such states at the times
+...     return problem.exact(times) + 1e-4
+>>> rl.benchmark.run(mine, problems="slide.stick")[0].passed
+True
 """
 
 from ._equations import Dae, Ode
