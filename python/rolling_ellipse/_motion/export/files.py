@@ -91,9 +91,7 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
-    if (schema := strict.npz_schema(content)) not in (_SCHEMA, _WITHOUT_RESISTANCE):
-        known = f"{_WITHOUT_RESISTANCE} and {_SCHEMA}"
-        raise ValueError(f"it is of schema {schema!r}, and this version reads {known}")
+    strict.require_schema("it", strict.npz_schema(content), _WITHOUT_RESISTANCE, _SCHEMA)
     arrays = strict.npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
     return _restored(kind, str(arrays.pop("about")), arrays)
 

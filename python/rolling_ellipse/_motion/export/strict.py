@@ -106,6 +106,14 @@ def require_names(what: str, values: Any, names: Iterable[str]) -> None:
         raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
 
 
+def require_schema(it: str, schema: Any, old: int, new: int) -> None:
+    """Raise a ValueError for another schema; if a newer version wrote it, say what to do."""
+    if schema not in (old, new):
+        is_newer = type(schema) is int and schema > new
+        cure = ": a newer one wrote it, pip install --upgrade rolling-ellipse" if is_newer else ""
+        raise ValueError(f"{it} is of schema {schema!r}; this version reads {old} and {new}{cure}")
+
+
 def with_resistance(scene: Any) -> Any:
     """Return the values of a scene of an older schema, whose bodies roll without resistance."""
     require_names("scene", scene, {*field_names(Scene)} - {"rolling_resistance"})

@@ -128,9 +128,7 @@ class Folder:
                 )
 
     def _require_same(self, about: dict[str, Any], times: FloatArray) -> None:
-        if (schema := _schema_in(self.path)) != _SCHEMA:
-            self._refuse(_SAME, f" with the schema {schema!r}, not {_SCHEMA!r}")
-        there, request = _request_in(self.path)
+        there, request = _request_in(self.path, "out")
         for name, value in about.items():
             if there[name] != value:
                 self._refuse(_SAME, f" with the {name} {there[name]!r}, not {value!r}")
@@ -237,11 +235,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     if not (folder / _REQUEST).exists():
         os.listdir(folder)  # raises OSError if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
-    if (schema := _schema_in(folder)) not in (_SCHEMA, _WITHOUT_RESISTANCE):
-        raise ValueError(
-            f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {schema!r}"
-        )
-    about, request = _request_in(folder)
+    about, request = _request_in(folder, "path")
     if not (folder / _END).exists():
         raise ValueError(
             f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
@@ -322,12 +316,11 @@ def _of_end(content: bytes) -> dict[str, Any]:
     return end
 
 
-def _request_in(folder: Path) -> tuple[dict[str, Any], results.Request]:
+def _request_in(folder: Path, name: str) -> tuple[dict[str, Any], results.Request]:
+    it = f"{name} must be a folder that this version reads, got {str(folder)!r}: it"
+    schema = _in_request(folder, strict.npz_schema)
+    strict.require_schema(it, schema, _WITHOUT_RESISTANCE, _SCHEMA)
     return _in_request(folder, _of_request)
-
-
-def _schema_in(folder: Path) -> Any:
-    return _in_request(folder, strict.npz_schema)
 
 
 def _in_request(folder: Path, restore: Callable[[bytes], _Made]) -> _Made:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from ..._ask.check import choice, file_name, number, shown
 from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
+from ..._motion.export import strict
 from ..._motion.export.atomic import replacing
-from ..._motion.export.strict import OBJECT, in_lines, parsed, restored, with_resistance
 from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, read
 
 if TYPE_CHECKING:
@@ -369,7 +369,7 @@ class WorkPrecision:
         ('flow', 'dop853')
         """
         name = file_name("path", path)
-        text = in_lines(self._about(), _RUNS)
+        text = strict.in_lines(self._about(), _RUNS)
         self._restored(text.encode())
         with replacing(name) as new:
             new.write_text(text, encoding="utf-8")
@@ -386,7 +386,7 @@ class WorkPrecision:
         >>> rl.WorkPrecision.load("race.json")
         <WorkPrecision: ways 2, runs 3, answers 3, to t = 2 s>
         """
-        return restored(path, cls._restored, OBJECT)
+        return strict.restored(path, cls._restored, strict.OBJECT)
 
     def __repr__(self) -> str:
         answers = sum(run.completed for run in self.runs)
@@ -436,11 +436,10 @@ class WorkPrecision:
     @classmethod
     def _restored(cls, content: bytes) -> WorkPrecision:
         """Return the race stored in a text, if `save` would write the same text for it."""
-        about = parsed("the file", content.decode("utf-8"))
-        if about.get("schema") == _WITHOUT_RESISTANCE:
-            about |= {"schema": _SCHEMA, "scene": with_resistance(about["scene"])}
-        if (schema := about.get("schema")) != _SCHEMA:
-            raise ValueError(f"schema must be {_SCHEMA}, got {schema!r}")
+        about = strict.parsed("the file", content.decode("utf-8"))
+        strict.require_schema("it", about.get("schema"), _WITHOUT_RESISTANCE, _SCHEMA)
+        if about["schema"] == _WITHOUT_RESISTANCE:
+            about |= {"schema": _SCHEMA, "scene": strict.with_resistance(about["scene"])}
         race = read(cls, {name: about[name] for name in about.keys() - {"schema"}})
         ends = {each.t_end for each in race.references}
         if not ends or ends != {run.t_end for run in race.runs}:
