@@ -1,14 +1,17 @@
 """Files written before bodies had rolling resistance stay readable.
 
-They are of schema 4 and its contemporaries: a folder, a race, and pickles.
+They are of schema 4 and its contemporaries: a folder, a race, answers to a problem, and pickles.
+The tests of the player read the link.
 """
 
+import json
 import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from rolling_ellipse.benchmark._problem import FOLDER as PROBLEMS
 
 OLD = Path(__file__).with_name("old_files")
 SCENES = {
@@ -49,3 +52,13 @@ def test_old_pickles_are_read_as_scenes_without_rolling_resistance() -> None:
     motion = pickle.loads((OLD / "motion.pickle").read_bytes())
     assert motion.scene == rl.scenes.report
     assert motion.sol(0.3).theta == rl.simulate(rl.scenes.report, [0.3]).theta
+
+
+def test_old_answers_are_scored_and_an_old_problem_is_told_as_it_was() -> None:
+    """The answers are this package's, so that they are right to a few roundings."""
+    told, folder = "hit.drop_slip_e", OLD / "answers"
+    (score,) = (each for each in rl.benchmark.score(folder) if each.answer != "not supported")
+    assert score.problem == told and score.passed and score.over_condition < 1e-15
+    new = json.loads((PROBLEMS / f"{told}.json").read_text(encoding="utf-8"))
+    old = json.loads((folder / f"{told}.json").read_text(encoding="utf-8"))
+    assert new.items() >= old.items()

@@ -12,12 +12,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qsl
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.contact import random_scenes
-from oracles.paths import ROOT
+from oracles.paths import ROOT, TESTS
 from rolling_ellipse import _core
 from rolling_ellipse._ask.settings import DEFAULTS
 from rolling_ellipse._player import blows, explorer
@@ -173,6 +174,19 @@ def test_sliders_change_the_motion_and_code_and_link_reproduce_it(opened: Opened
     page.evaluate(f"{PLAYER}.change({{ b: -1 }})")
     page.wait_for_function(f"{PLAYER}.refusal")
     assert "b must be a positive" in page.locator(".refused").inner_text()
+
+
+def test_a_link_of_a_page_without_rolling_resistance_opens_its_scene(opened: Opened) -> None:
+    write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
+    page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
+    link = (TESTS / "export" / "old_files" / "link.txt").read_text(encoding="utf-8").strip()
+    page.evaluate("(link) => { location.hash = link; location.reload(); }", link)
+    page.wait_for_function(f"{PLAYER} && document.title.includes('Bewegung')")
+    linked: dict[str, Any] = {
+        name: float(text) for name, text in parse_qsl(link[1:]) if name != "lang"
+    }
+    linked |= {"rolling_resistance": 0.0, "z_dot": None}
+    assert page.evaluate(f"{PLAYER}.given") == linked and page.evaluate(f"{PLAYER}.found")
 
 
 @pytest.mark.parametrize("policy", [
