@@ -2,7 +2,8 @@
 
 The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
 `main`. Until it is known, the README has relative links, which PyPI cannot follow. A second run
-with another address replaces the first one. --site URL is the address of the built site.
+with another address replaces the first one. --site URL is the address of the built site, and
+--maintainers are the accounts that maintain the recipe, by default the owner of the repository.
 """
 
 import argparse
@@ -41,14 +42,29 @@ def with_field(text: str, field: str, value: str, before: str) -> str:
     return re.sub(rf"^( *){before}", rf"\g<1>{field}: {value}\n\g<0>", text, flags=re.MULTILINE)
 
 
-def write(root: Path, address: str, site: str) -> None:
+def with_reports(text: str, address: str) -> str:
+    """The text with the address of private reports."""
+    return re.sub(r"\([^()\s]+(/security/advisories/new\))", rf"({address}\g<1>", text)
+
+
+def with_maintainers(text: str, names: list[str]) -> str:
+    listed = "".join(f"    - {name}\n" for name in names)
+    return re.sub(r"(recipe-maintainers:\n)(?: +- .+\n)+", rf"\g<1>{listed}", text)
+
+
+def recipe(text: str, address: str, site: str, maintainers: list[str]) -> str:
+    text = with_field(text, "repository", address, "license: ")
+    return with_maintainers(with_field(text, "homepage", site, "license: "), maintainers)
+
+
+def write(root: Path, address: str, site: str, maintainers: list[str]) -> None:
     changes = {
         "README.md": lambda text: readme(text, address),
         "pyproject.toml": lambda text: with_urls(text, address, site),
         "CITATION.cff": lambda text: with_field(text, "repository-code", address, "license: "),
-        "recipe/recipe.yaml": lambda text: with_field(
-            with_field(text, "repository", address, "license: "), "homepage", site, "license: "
-        ),
+        "recipe/recipe.yaml": lambda text: recipe(text, address, site, maintainers),
+        "SECURITY.md": lambda text: with_reports(text, address),
+        "CODE_OF_CONDUCT.md": lambda text: with_reports(text, address),
     }
     for name, change in changes.items():
         path = root / name
@@ -56,14 +72,16 @@ def write(root: Path, address: str, site: str) -> None:
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(usage="%(prog)s URL [--site URL]")
+    options = argparse.ArgumentParser(usage="%(prog)s URL [--site URL] [--maintainers NAME …]")
     options.add_argument("url")
     options.add_argument("--site", help="address of the built site; without it, the repository")
+    options.add_argument("--maintainers", nargs="+", help="accounts; without it, the owner")
     chosen = options.parse_args()
     address = chosen.url.rstrip("/")
     if not re.fullmatch(r"https://[\w.-]+(/[\w.-]+)+", address):
         options.error(f"URL must be like https://host/owner/name, got {chosen.url!r}")
-    write(ROOT, address, (chosen.site or address).rstrip("/"))
+    owner = address.split("/")[3]
+    write(ROOT, address, (chosen.site or address).rstrip("/"), chosen.maintainers or [owner])
 
 
 if __name__ == "__main__":

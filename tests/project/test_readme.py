@@ -78,15 +78,18 @@ def test_the_readme_is_short_and_its_links_work() -> None:
 
 
 def test_one_command_writes_the_site_address_everywhere(tmp_path: Path) -> None:
-    """A second address replaces the first."""
-    names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml")
+    """A second address replaces the first, and nothing is left to be filled in."""
+    names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml", "SECURITY.md",
+             "CODE_OF_CONDUCT.md")  # fmt: skip
     (tmp_path / "recipe").mkdir()
     write = runpy.run_path(str(ROOT / "tools" / "address.py"))["write"]
     for name in names:
         (tmp_path / name).write_bytes((ROOT / name).read_bytes())
     for address in ("https://one.example/who/re", "https://two.example/re"):
-        write(tmp_path, address, "https://site.example")
+        write(tmp_path, address, "https://site.example", ["ada", "bea"])
         texts = [(tmp_path / name).read_text(encoding="utf-8") for name in names]
         assert all(address in text and "https://site.example" in texts[1] for text in texts)
         assert "](docs/" not in texts[0] and tomllib.loads(texts[1])["project"]["urls"]
-    assert not any("one.example" in text for text in texts)
+    left = re.compile(r"one\.example|to.be.filled|\]\(\.\./", re.IGNORECASE)
+    assert not any(left.search(text) for text in texts)
+    assert texts[3].endswith("    - ada\n    - bea\n")
