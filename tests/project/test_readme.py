@@ -1,5 +1,6 @@
 """The Python code of the README and of the guides runs, one block of a page after another."""
 
+import json
 import re
 import runpy
 import tomllib
@@ -16,6 +17,7 @@ from oracles import table
 from oracles.paths import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAPER = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8").partition("\n---\n")[2]
 PAGES = {  # with the files that their code writes
     "README.md": {"motion.png", "roll.html"},
     "docs/index.md": set(),
@@ -69,12 +71,29 @@ def test_the_reference_tables_have_the_stated_number_of_motions() -> None:
     motions = [len(level), len(slope) / 3, len(gentle)]
     motions += [len({row["name"] for row in rows}) for rows in events]
     assert [*map(int, said.values())] == motions
+    assert f"tables of {sum(motions):.0f} motions" in PAPER
 
 
 def test_the_readme_is_short_and_its_links_work() -> None:
     linked = re.findall(r"\]\((?:https://.+?/(?:raw|blob)/main/)?([^)#]+)", README)
     assert len(linked) > 20 and all((ROOT / path).exists() for path in linked)
     assert len(README.splitlines()) <= 129
+
+
+def test_the_paper_has_its_sections_a_reference_for_each_name_and_the_scores_of_the_data() -> None:
+    assert re.findall("^# (.+)", PAPER, re.MULTILINE) == [
+        "Summary", "Statement of need", "State of the field", "Software design",
+        "Research impact statement", "Limits", "AI usage disclosure", "Acknowledgements",
+        "References",
+    ]  # fmt: skip
+    assert 750 <= len(PAPER.split()) <= 1750
+    books = (ROOT / "paper" / "paper.bib").read_text(encoding="utf-8").split("\n@")
+    named = {re.findall(r"{(\w+),", book)[0] for book in books if "doi = {10." in book}
+    assert len(named) == len(books) and named == {*re.findall(r"@(\w+)", PAPER)}
+    engines = json.loads((ROOT / "docs" / "data" / "engines.json").read_text(encoding="utf-8"))
+    for name, found in engines["engines"].items():
+        passed = sum(each["passed"] for each in found["scores"] if each["setting"] == 1e-3)
+        assert f"{name} {found['version']} passes {passed} " in PAPER.replace(",", " ")
 
 
 def test_one_command_writes_the_site_address_everywhere(tmp_path: Path) -> None:
