@@ -207,6 +207,31 @@ def test_a_ladder_of_steps_gives_an_order_and_a_trend() -> None:
     assert scores.order("roll.rock")[1].startswith("plateau at")
 
 
+@pytest.mark.parametrize(
+    ("errors", "trend"),
+    [
+        ((1e-4, 1e-6, 1.05e-4), "plateau"), ((1e-4, 1e-6, 1.2e-4), "worse"),
+        ((1e-4, 1e-6, 1e-5), "plateau"), ((1e-4, 1e-5, 5e-6), "yes"),
+    ],
+)  # fmt: skip
+def test_a_trend_compares_the_last_error_with_the_first(
+    errors: tuple[float, ...], trend: str
+) -> None:
+    of = dict(zip((4e-3, 2e-3, 1e-3), errors, strict=True))
+    chosen = [benchmark.problem("roll.rock")]
+    scores = benchmark.run(lambda one, t, h: one.exact(t) + of[h], problems=chosen, ladder=of)
+    assert scores.order("roll.rock")[1].startswith(trend)
+
+
+def test_states_from_the_horizon_on_are_not_scored() -> None:
+    one = benchmark.problem("brink.over")
+    t = one.output_times
+    for wrong, is_scored in ((t >= one.horizon, False), (t >= one.horizon - 0.2, True)):
+        states = one.exact(t) + 0.01 * np.outer(wrong, [1, 0, 0, 0, 0, 0])
+        (score,) = benchmark.score({one.id: states}, problems=one)
+        assert (score.errors[0] > 1e-3) == is_scored
+
+
 def test_unsupported_problems_do_not_count_as_wrong() -> None:
     found = benchmark.run(rolls_only, ladder=[0.0])
     assert found.wrong == ["roll.rock"] and not found[IDS.index("hit.bounce")].passed

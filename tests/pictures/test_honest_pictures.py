@@ -9,7 +9,7 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from oracles.curves import Array, data, new_axes
-from oracles.pictures import figure_of
+from oracles.pictures import centre_of, figure_of
 from rolling_ellipse._pictures import sampling
 
 FULL_TURNS = 1000
@@ -122,6 +122,9 @@ def test_user_samples_are_drawn_unchanged_with_a_warning(
         assert np.array_equal(data(shown.motions[0])[0], own.theta)
     if draw is rl.plot_forces:
         assert np.array_equal(data(shown.normal[0])[0], own.t)
+    if draw is rl.plot_strobe:
+        places = [centre_of(body)[0] for body in shown.bodies]
+        assert all(np.abs(own.x - place).min() < 1e-9 for place in places) and np.ptp(places) > 5
 
 
 def test_unsorted_samples_are_drawn_in_order_of_time() -> None:

@@ -317,6 +317,13 @@ def test_paths_mark_events_where_the_body_touches_the_ground(motion: rl.Trajecto
     assert np.array_equal(touching, drawn.mode != rl.Mode.FLIGHT)
 
 
+def test_events_at_the_first_and_last_sample_are_marked(jump: rl.Trajectory) -> None:
+    times = [event.t for event in jump.events]
+    shown = rl.plot_paths(jump.sol([times[0], times[-1]]), ax=new_axes())
+    marked = [np.size(line.get_xdata()) for line in shown.events[0]]
+    assert sum(marked) == len(times) > 2
+
+
 def test_paths_of_several_motions_mark_events_in_their_own_colours(jump: rl.Trajectory) -> None:
     slip = rl.simulate(rl.scenes.slip, 3.0)
     shown = rl.plot_paths([jump, slip], ax=new_axes(), labels=["one", "other"])

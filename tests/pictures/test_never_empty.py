@@ -60,6 +60,8 @@ def test_legends_titles_and_labels_stay_in_their_boxes_without_a_layout() -> Non
         box = ax.get_position(original=True).transformed(figure.transSubfigure)
         legend = legend_in(ax).get_window_extent()
         assert box.y0 < legend.y0 and legend.y1 < box.y1 + 1 and legend.x1 < box.x1 + 1
+        indent = ax.get_window_extent().x0 - box.x0  # equal scales may narrow the axes further
+        assert indent > 1.3 * ax.yaxis.label.get_window_extent().width
     assert not overlapping(texts_of(figure))
 
 

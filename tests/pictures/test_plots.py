@@ -70,6 +70,12 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     return other
 
 
+def test_rounding_errors_are_small_on_their_axis(report: rl.Trajectory) -> None:
+    """The axis reaches ten times 1e-13, some hundred roundings."""
+    (ax,) = rl.plot_energy(report, ax=new_axes(), kind="error").axes
+    assert ax.get_ylim() == pytest.approx((1e-17, 1e-12))
+
+
 @own_samples
 def test_errors_of_constraints_are_dimensionless(report: rl.Trajectory) -> None:
     position = {"f2": -1e-3, "f3": 2e-5, "f4": -1e-7, "gap": -4e-3}

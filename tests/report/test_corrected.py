@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.numbers import EPS
 from oracles.report import Q_DOT, SHAPE, Array, Q, as_given, lifted, off_by
 from rolling_ellipse import report
 
@@ -33,6 +34,24 @@ def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) ->
         corrected(*off_by(0.5, 0.25, -0.3), 1.0, **options)
     with pytest.raises(ValueError, match=r"at t = 0, got f1 = 0.5 m/s$"):
         corrected(Q, Q_DOT + np.eye(5)[0] / 2, 1.0, **options)
+
+
+@pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
+def test_corrected_allows_a_start_the_rounding_of_its_coordinates(a: float, theta: float) -> None:
+    """For f4 = psi - psi(theta), tan psi = a^2 tan theta, that is twice 16 ulp of psi and theta and
+    8 eps of psi - theta, plus 16 eps of |theta| + |psi|; f4 itself is known to 1e-15."""
+    q, q_dot = rl.kinematics(theta, 0.0, a=a, b=1.0)
+    slope = a**2 * (1 + np.tan(theta) ** 2) / (1 + a**4 * np.tan(theta) ** 2)
+    ulp = np.spacing(np.abs(q))
+    allowed = 2 * (16 * ulp[3] + 16 * slope * ulp[2] + 8 * EPS * abs(q[3] - theta))
+    allowed += 16 * EPS * (abs(theta) + abs(q[3]))
+    for off in (allowed - 1e-15, allowed + 1e-15):
+        try:
+            corrected(q + off * np.eye(5)[3], q_dot, [0.0], a=a, b=1.0)
+            said = ""
+        except ValueError as error:
+            said = str(error)
+        assert ("f4 = " in said) == (off > allowed), (off, said)
 
 
 def test_corrected_projects_the_reports_own_start() -> None:

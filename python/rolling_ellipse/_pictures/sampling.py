@@ -174,7 +174,7 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
     """Return a motion at the given times [s], or its nearest samples if nothing else is known."""
     if is_at_hand(motion):
         return motion.sol(times)
-    nearest = np.argmin(np.abs(np.subtract.outer(times, motion.t)), axis=1)
+    nearest = np.array([np.argmin(np.abs(motion.t - time)) for time in times])
     return replace(motion, **{name: _taken(getattr(motion, name), nearest) for name in _SAMPLES})
 
 
