@@ -13,13 +13,11 @@ import webbrowser
 from contextlib import suppress
 from pathlib import Path
 
-from matplotlib import rcParams
-
-from . import StabilityWarning, Status, Trajectory, examples, simulate
+from . import StabilityWarning, Status, examples, simulate
 from . import _command_line as shell
 from ._ask.printing import printable
-from ._motion.export.atomic import replacing
 from ._pictures.animation.movies import film_suffix
+from ._pictures.axes import save_figure
 from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
@@ -53,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
             warnings.simplefilter("ignore")  # the summary states how long the model is valid
             warnings.simplefilter("always", StabilityWarning)
             code, message = action(options)
-    except (ValueError, TypeError, OSError, ImportError, RuntimeError) as error:
+    except (ValueError, TypeError, OSError, ImportError, RuntimeError, MemoryError) as error:
         _complain(error)
         return 2
     print(printable(message))
@@ -73,22 +71,13 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
     trajectory = simulate(shell.chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
     if options.plot is not None:
-        files.append(_write_figure(trajectory, options.plot))
+        files.append(save_figure(trajectory.plot().figure, options.plot))
     if options.save is not None:
         animate(trajectory, options.save)
         files.append(options.save)
     facts = shell.summary(trajectory, files)
     text = json.dumps(facts, indent=2) if options.json else shell.as_text(facts, trajectory)
     return 0 if trajectory.status in _FOLLOWED else 1, text
-
-
-def _write_figure(trajectory: Trajectory, path: str) -> str:
-    """Write the overview, and return its path."""
-    if not Path(path).suffix:
-        path += "." + rcParams["savefig.format"]  # matplotlib adds this suffix, too
-    with replacing(path) as new:
-        trajectory.plot().figure.savefig(new, format=Path(path).suffix[1:])
-    return path
 
 
 def _page(options: argparse.Namespace) -> tuple[int, str]:
@@ -113,7 +102,7 @@ def _examples(options: argparse.Namespace) -> tuple[int, str]:
 
 def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
-        argument, *said = printable(str(error)).split() or [""]
+        argument, *said = printable(str(error)).split() or [type(error).__name__]
         print(f"{shell.PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
 
 

@@ -6,9 +6,13 @@ import signal
 import stat
 import tempfile
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import matplotlib.pyplot as plt
 import pytest
+import rolling_ellipse as rl
 from oracles.limits import files_of_at_most
 from oracles.programs import run
 from rolling_ellipse._motion.export.atomic import replacing  # everything that writes files uses it
@@ -95,6 +99,42 @@ def test_a_full_disk_leaves_the_old_file(old: Path) -> None:
     with files_of_at_most(1000), pytest.raises(OSError, match="large"), replacing(old) as new:
         new.write_bytes(bytes(2000))
     assert old.read_bytes() == OLD and names(old.parent) == [old.name]
+
+
+MOTION = rl.simulate(rl.scenes.rolling, [0.0, 0.1])
+FILM: dict[str, Any] = {"fps": 10, "width": 320}
+WRITERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
+    "motion": ("npz", MOTION.save),
+    "picture": ("png", lambda path: rl.plot(MOTION, path)),
+    "savefig": ("pdf", lambda path: rl.plot_phase(MOTION).savefig(path)),
+    "frame": ("svg", lambda path: rl.animate(MOTION, **FILM).frame(0.0, path)),
+    "film": ("gif", lambda path: rl.animate(MOTION, path, **FILM)),
+    "other writer": ("gif", lambda path: rl.animate(MOTION, **FILM).save(path, writer="pillow")),
+    "player": ("html", lambda path: rl.animate(MOTION, path, **FILM)),
+    "page": ("html", rl.explore(rl.scenes.report).save),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_whatever_writes_leaves_the_old_file_if_the_disk_is_full(name: str, tmp_path: Path) -> None:
+    suffix, write = WRITERS[name]
+    path = tmp_path / f"old.{suffix}"
+    path.write_bytes(OLD)
+    with files_of_at_most(500), pytest.raises(OSError, match="large"):
+        write(path)
+    plt.close("all")
+    assert path.read_bytes() == OLD and names(tmp_path) == [path.name]
+
+
+def test_a_picture_without_a_suffix_gets_the_usual_one(tmp_path: Path) -> None:
+    """As in matplotlib, unless the format is given."""
+    shown = rl.plot_phase(MOTION)
+    shown.savefig(tmp_path / "one")
+    shown.savefig(tmp_path / "two", format="svg")
+    rl.animate(MOTION, **FILM).frame(0.0, tmp_path / "three")
+    plt.close("all")
+    assert names(tmp_path) == ["one.png", "three.png", "two"]
+    assert b"<svg" in (tmp_path / "two").read_bytes()
 
 
 def permissions(path: Path) -> int:

@@ -9,6 +9,7 @@ from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import wraps
+from io import BytesIO
 from threading import RLock
 from typing import Any, ParamSpec, TypeVar
 
@@ -21,6 +22,7 @@ from matplotlib.transforms import Bbox
 
 from .._ask.check import file_name, positive, shown
 from .._ask.habits import meant
+from .._motion.export.atomic import replacing
 from .._motion.quantities import QUANTITIES
 
 _Given = ParamSpec("_Given")
@@ -94,8 +96,11 @@ class Artists:
         return self.ax.figure  # type: ignore[return-value]
 
     def savefig(self, path: Any, **options: Any) -> None:
-        """Write the whole figure to a file, with the options of matplotlib's `Figure.savefig`."""
-        self.ax.get_figure(root=True).savefig(path, **options)  # type: ignore[union-attr]
+        """Write the whole figure to a file, with the options of matplotlib's `Figure.savefig`.
+
+        The file appears whole or not at all.
+        """
+        save_figure(self.figure, path, **options)
 
     def __repr__(self) -> str:
         names = [
@@ -221,6 +226,24 @@ def write(drawn: Artists, name: str | None) -> None:
         drawn.savefig(name)
         for figure in _opened.get():
             close(figure)
+
+
+def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
+    """Write the figure around a figure to a file or an object with `write`; return which.
+
+    A name without a suffix gets that of matplotlib's usual format.
+    """
+    whole: Any = figure.get_figure(root=True)
+    if hasattr(path, "write"):
+        whole.savefig(path, **options)
+        return path
+    name = file_name("path", path)
+    if not (suffix := os.path.splitext(name)[1]) and "format" not in options:
+        name += (suffix := f".{rcParams['savefig.format']}")
+    with replacing(name) as new:
+        whole.savefig(drawn := BytesIO(), **{"format": suffix[1:]} | options)
+        new.write_bytes(drawn.getvalue())  # matplotlib's own errors would hide a full disk
+    return name
 
 
 def close(figure: Figure) -> None:

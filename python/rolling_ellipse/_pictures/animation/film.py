@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
 from html import escape
 from io import BytesIO
 from os import PathLike
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from matplotlib import rc_context, rcParams
-from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
+from matplotlib.animation import AbstractMovieWriter, FuncAnimation, HTMLWriter, writers
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import RendererAgg
@@ -24,7 +25,7 @@ from ..._ask.progress import reporting
 from ..._motion.export.atomic import replacing
 from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
-from ..axes import Alone
+from ..axes import Alone, save_figure
 from ..errors import plot_energy
 from ..forces import plot_forces
 from ..ground import flat_angle
@@ -202,8 +203,7 @@ class RollingAnimation(FuncAnimation):
         if not 0 <= (t := number("t", t)) <= self.last:
             raise ValueError(f"t must be within [0, {self.last:g}] s, got {t!r}")
         self.draw(int(np.argmin(np.abs(self.t - t))))
-        with replacing(file_name("path", path)) as new:
-            self._root.savefig(new, dpi=self._root.dpi)
+        save_figure(self._root, path, dpi=self._root.dpi)
 
     def save(  # type: ignore[override]
         self,
@@ -233,8 +233,10 @@ class RollingAnimation(FuncAnimation):
             if writer is not None:
                 options = {"dpi": self.figure.dpi, **options}
                 options["progress_callback"] = lambda i, n: advance(i + 1, n)
-                with _with_settings():
-                    super().save(path, writer=_known(writer), **options)
+                known = _known(writer)
+                in_place = known == "html" or isinstance(known, HTMLWriter)  # names a folder by it
+                with _with_settings(), nullcontext(path) if in_place else replacing(path) as new:
+                    super().save(new, writer=known, **options)
                 return
             frames = self._pixels(range(count), advance)
             with replacing(path) as new:
