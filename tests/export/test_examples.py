@@ -1,5 +1,6 @@
 """`examples` writes what the package carries: notebooks without outputs, and tables."""
 
+import os
 from pathlib import Path
 
 import nbformat
@@ -38,7 +39,8 @@ def test_examples_overwrite_nothing(tmp_path: Path) -> None:
 
 
 def test_examples_follow_no_link(tmp_path: Path) -> None:
-    """A link to an equal file, or as a folder; benchmark/test_result_files.py has other links."""
+    """A link to an equal file, or as a folder, or a file or a pipe in place of a folder;
+    benchmark/test_result_files.py has other links."""
     away, empty = tmp_path / "away", tmp_path / "empty"
     rl.examples(away)
     empty.mkdir()
@@ -52,3 +54,11 @@ def test_examples_follow_no_link(tmp_path: Path) -> None:
         with pytest.raises(ValueError, match=rf"folder must not have another .*{name}"):
             rl.examples(place)
         assert [path.name for path in place.iterdir()] == [name] and not any(empty.iterdir())
+    for make in (Path.touch, os.mkfifo):
+        make(place / "01_first_roll.ipynb")
+        (place / "reference").unlink()
+        make(place / "reference")
+        with pytest.raises(ValueError, match=r"another 01_first_roll\.ipynb, reference/\w+\.csv,"):
+            rl.examples(place)
+        (place / "01_first_roll.ipynb").unlink()
+    assert [path.name for path in place.iterdir()] == ["reference"]

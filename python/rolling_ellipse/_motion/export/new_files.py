@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from .atomic import replacing
@@ -29,11 +30,13 @@ def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
 
 
 def _is_there(path: Path, content: bytes) -> bool:
-    return path.is_file() and not path.is_symlink() and path.read_bytes() == content
+    is_file = path.is_file() and not path.is_symlink() and path.stat().st_size == len(content)
+    return is_file and path.read_bytes() == content
 
 
 def _is_taken(folder: Path, name: str) -> bool:
-    """Return whether the path of a new file is taken, or passes through a link."""
+    """Return whether the path of a new file is taken, or passes through a link or a file."""
     path = folder / name
     between = [part for part in path.parents if part != folder and part.is_relative_to(folder)]
-    return path.is_symlink() or path.exists() or any(part.is_symlink() for part in between)
+    taken = (path, *(part for part in between if not part.is_dir() or part.is_symlink()))
+    return any(os.path.lexists(part) for part in taken)
