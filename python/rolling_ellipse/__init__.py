@@ -65,10 +65,13 @@ def __getattr__(name: str) -> _Any:
         value: _Any = version("rolling-ellipse")
     elif name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    elif _PLACES[name] == ".":
-        value = _import_module(f".{name}", __name__)
     else:
-        value = getattr(_import_module(_PLACES[name], __name__), name)
+        is_module = _PLACES[name] == "."
+        try:
+            found = _import_module(f".{name}" if is_module else _PLACES[name], __name__)
+        except AttributeError as error:  # `from rolling_ellipse import` would not show it
+            raise ImportError(f"{name} needs a module that does not load: {error}") from error
+        value = found if is_module else getattr(found, name)
     globals()[name] = value
     return value
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Trajectory
-from rolling_ellipse._motion import trajectory
+from rolling_ellipse._motion import methods, trajectory
 from rolling_ellipse._motion.methods import METHODS
 
 NAMES = [name for names in METHODS.values() for name in names]
@@ -90,3 +90,16 @@ def test_nothing_is_loaded_before_it_is_needed() -> None:
         "assert 'matplotlib' in sys.modules and rl.Trajectory.plot is rl.plot"
     )
     subprocess.run([sys.executable, "-c", script], check=True, timeout=300)
+
+
+def test_the_cause_of_a_value_that_cannot_be_had_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A broken matplotlib, or an error in a derived array, is not a missing attribute."""
+    motion = rl.simulate(rl.scenes.rolling, 1.0)
+    monkeypatch.setattr(methods, "import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]
+    monkeypatch.setattr(Trajectory, "plot", methods._Later(Trajectory, "_pictures", "plot"))
+    monkeypatch.setattr(trajectory, "details", lambda _: np.no_such_name)  # type: ignore[attr-defined]
+    for name in ("plot", "q", "psi"):
+        with pytest.raises(AttributeError, match="'numpy' has no attribute 'no_such_name'"):
+            getattr(motion, name)
+    with pytest.raises(AttributeError, match="a Trajectory has no attribute 'plott'"):
+        _ = motion.plott  # type: ignore[attr-defined]

@@ -155,7 +155,7 @@ def required(package: str, method: str, extra: str = "data") -> Any:
     """Import and return a package of an extra; an ImportError names that extra."""
     try:
         return importlib.import_module(package)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise ImportError(
             f"{method} needs {package}: pip install 'rolling_ellipse[{extra}]'"
         ) from error

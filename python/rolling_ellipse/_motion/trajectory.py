@@ -404,6 +404,8 @@ class Trajectory(FieldsOnly):
     else:  # with it a type checker would accept any attribute name
 
         def __getattr__(self, name: str) -> Any:
+            if name in dir(type(self)):  # its value has no cause but an error: raise that again
+                return object.__getattribute__(self, name)
             hint = meant(name, dir(self)) if name in MEANT else ""
             known = {} if hint else {"name": name, "obj": self}  # Python suggests a near name
             raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}", **known)
