@@ -22,6 +22,7 @@ from jupyter_client.manager import start_new_kernel
 from rolling_ellipse import (
     Impulse,
     Scene,
+    Trajectory,
     classify,
     flow,
     scenes,
@@ -76,6 +77,9 @@ WORK: dict[str, Callable[[], Any]] = {
     ),
     "classify, 2 workers": again(
         lambda: classify(a=2.0, b=1.0, theta=ANGLES, omega=3.2, friction=0.4, workers=2)
+    ),
+    "from_arrays, a million samples": lambda: Trajectory.from_arrays(
+        TIMES[::2], TIMES[::2], 2 + TIMES[::2], TIMES[::2], scene=FREE
     ),
     "Impulse.press of 20 million": again(lambda: Impulse.press(FORCES, 0.1)),
     "Impulse of a list of 10 million": again(lambda: Impulse(jx=LISTED)),

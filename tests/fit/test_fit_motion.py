@@ -194,3 +194,13 @@ def test_rates_from_sampled_arrays_converge_at_fourth_order(tmp_path: Any) -> No
     seen = Trajectory.from_arrays(TIMES, flying.x, flying.z, flying.theta, scene=DROP)
     gap = flying.z - geometry.support(flying.theta, a=0.035, b=0.025)
     assert np.array_equal(seen.mode == Mode.FLIGHT, gap > 0.01 * 0.035)
+
+
+def test_many_samples_from_arrays_do_not_depend_on_each_other() -> None:
+    """They are computed in pieces of some thousands."""
+    t = np.linspace(0.0, 1.0, 10_000)
+    mine = Trajectory.from_arrays(t, np.sin(t), 1 + t * t, np.cos(t), scene=ROLL)
+    assert np.abs(mine.x_dot - np.cos(t)).max() < 1e-6
+    force = mine.sol(t).normal_force
+    for part in (slice(3000, 5000), slice(9990, None), slice(0)):
+        assert np.array_equal(mine.sol(t[part]).normal_force, force[part])
