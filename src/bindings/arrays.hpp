@@ -79,7 +79,9 @@ void store(Array& matrix, py::ssize_t row, const double* values);
 
 template <class Number>
 py::array_t<Number> array_of(const std::vector<Number>& values) {
-    return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
+    py::array_t<Number> array(static_cast<py::ssize_t>(values.size()));
+    std::copy(values.begin(), values.end(), array.mutable_data());
+    return array;
 }
 
 // Both throw std::invalid_argument, naming the array, if its shape is wrong. require_matrix accepts

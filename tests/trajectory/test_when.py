@@ -10,6 +10,7 @@ import pytest
 import rolling_ellipse as rl
 from oracles.numbers import EPS
 from oracles.passages import NAMES, Floats, dense_times, random_motion, times_of_events
+from oracles.programs import run
 from rolling_ellipse import CompletenessWarning, Mode, Scene, Status, Trajectory, simulate
 
 # ---------------------------------------------------------------------------- against dense samples
@@ -275,3 +276,23 @@ def test_the_largest_double_is_never_passed() -> None:
     )  # fmt: skip
     with pytest.warns(CompletenessWarning):
         assert coarse.when(theta=sys.float_info.max).size == 0
+
+
+def test_too_little_memory_for_the_times_is_a_memory_error() -> None:
+    """With room for none, some and all of a hundred thousand arrays of times."""
+    program = """
+        import resource, numpy as np, rolling_ellipse as rl
+        motion = rl.simulate(rl.scenes.rolling, 1.0)
+        angles = np.full(100_000, motion.theta[-1] / 2)
+        with open("/proc/self/statm") as file:
+            used = int(file.read().split()[0]) * resource.getpagesize()
+        for more in range(10, 30, 2):
+            resource.setrlimit(resource.RLIMIT_AS, (used + more * 2**20, -1))
+            try:
+                print(len(motion.when(theta=angles)))
+                break
+            except MemoryError:
+                print("MemoryError")
+    """
+    done = run(program)
+    assert set(done.stdout.split()) == {"MemoryError", "100000"}, done.stdout + done.stderr
