@@ -61,7 +61,7 @@ REFUSALS: list[Row] = [
     *(("z", lambda _, new=new: Scene(2.0, 1.0, z=1.0).replace(**new))
       for new in ({"theta": 0.5}, {"b": 1.5})),
     ("impulse", lambda _: Scene(2.0, 1.0, impulse=Impulse.press(48.0, 1.5)).replace(a=1.4)),
-    *wrong(AIR.to_mjcf, {}, timestep=NOT_POSITIVE, contact_steps=NOT_POSITIVE),
+    *wrong(AIR.to_mjcf, {}, timestep=[*NOT_POSITIVE, 5e-324, 1e300], contact_steps=NOT_POSITIVE),
     ("restitution", lambda _: AIR.replace(restitution=0.5).to_mjcf()),
     *(("friction", lambda _, to=to: to()) for to in (AIR.to_mjcf, AIR.to_sdf)),
     # bodies with rolling resistance

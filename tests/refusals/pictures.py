@@ -184,6 +184,7 @@ REFUSALS: list[Row] = [
            t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
     *wrong(rl.explore, {"scene": scenes.report},
            language=["fr", 1, {"title": "x"}, WORDS | {"x": "x"}, WORDS | {"lang": 1},
+                     WORDS | {"title": "\ud800"},
                      WORDS | {"place": "{F}"}],
            live=[1, "yes"]),
     ("scene", lambda _: rl.explore(scenes.report.replace(x=1e30))),

@@ -28,7 +28,8 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     Raises
     ------
     ValueError
-        If a number is not positive, friction is infinite, or restitution neither 0 nor 1.
+        If a number is not positive, or the contact's time extreme; if friction is infinite, or
+        restitution neither 0 nor 1.
 
     Examples
     --------
@@ -39,6 +40,8 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     step, time, contact, cone = positive("timestep", timestep), 0.02, "", ""
     if contact_steps is not None:
         time = step * positive("contact_steps", contact_steps)
+        if not 1e-50 <= time <= 1e50:
+            raise ValueError(f"timestep must give contacts of 1e-50 to 1e50 s, got {time!r} s")
         contact, cone = 'solimp="0.9999 0.9999 0.001 0.5 2"', 'cone="elliptic"'
     if scene.restitution not in (0, 1):
         raise ValueError(f"restitution must be 0 or 1 in MJCF, got {scene.restitution!r}")

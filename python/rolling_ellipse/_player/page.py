@@ -7,6 +7,7 @@ import gzip
 import hashlib
 import html
 import json
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -119,6 +120,8 @@ def words(language: str | Mapping[str, str]) -> dict[str, str]:
     for key, text in found.items():
         if not isinstance(text, str):
             raise TypeError(f"language[{key!r}] must be a string, got {shown(text)}")
+        if re.search("[\ud800-\udfff]", text):  # cannot be written
+            raise ValueError(f"language[{key!r}] must have no lone surrogate, got {shown(text)}")
         known = BRACES.findall(english[key])
         if not set(BRACES.findall(text)) <= set(known):
             raise ValueError(
