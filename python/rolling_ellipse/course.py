@@ -27,11 +27,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core, geometry, impacts
-from ._ask.check import FloatArray, finite, number, shown
+from ._ask.check import FloatArray, array, finite, number, shown
 from ._ask.impulse import Impulse
 from ._ask.scene import SCENE_UNITS, Scene
 from ._ask.settings import Settings
 from ._verbs.fit_motion import Fit, fit_motion
+from ._verbs.read_track import table_in
 from ._verbs.simulate import simulate
 
 __all__ = ["FILM", "Mark", "Task", "mark", "measured_impacts", "tasks"]
@@ -200,12 +201,11 @@ def measured_impacts() -> tuple[FloatArray, FloatArray]:
     >>> print(f"e = {fitted.restitution:.2f}")
     e = 0.52
     """
-    path, table, names = os.environ.get(_FILE), _DATA["impacts"], tuple(_DATA["impacts"])
-    if path is not None:
-        table = np.genfromtxt(path, delimiter=",", names=True)
-        if not {*names} <= {*(table.dtype.names or ())}:
-            raise ValueError(f"{_FILE} must name a table of {', '.join(names)}, got {path!r}")
-    rows = np.stack([np.atleast_1d(table[name]) for name in names])
+    path, names = os.environ.get(_FILE), tuple(_DATA["impacts"])
+    table = _DATA["impacts"] if path is None else table_in(_FILE, path)
+    if not {*names} <= {*table}:
+        raise ValueError(f"{_FILE} must name a table of {', '.join(names)}, got {path!r}")
+    rows = np.stack([array(f"{name} in {_FILE}", table[name]) for name in names])
     if not (rows.size and np.isfinite(rows).all()):
         raise ValueError(f"{_FILE} must name a table of rows of finite numbers, got {path!r}")
     return rows[:4], rows[4:]

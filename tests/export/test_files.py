@@ -281,7 +281,7 @@ def test_a_huge_file_is_rejected_without_being_read(
     ]  # fmt: skip
     tracemalloc.start()
     for read, place in reads:
-        with pytest.raises(ValueError, match=r"^path must name a file .*: it begins with b'"):
+        with pytest.raises(ValueError, match=r"^path must name a file.*: it begins|a device$"):
             read(place)
     assert tracemalloc.get_traced_memory()[1] < 2**24
     tracemalloc.stop()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import rolling_ellipse as rl
 from oracles.files import put_together, taken_apart
 from rolling_ellipse import Scene, scenes
@@ -120,7 +121,16 @@ HEADERS = [
     pickle.dumps(Path("x")),
 ]  # fmt: skip
 
+
+def broken(_: Path) -> Any:
+    """The first use of a name whose module does not load."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rl, "_import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]
+        return rl.__getattr__("plot")
+
+
 REFUSALS: list[Row] = [
+    (ImportError, broken),
     ("path", lambda folder: MOTION.save(folder / "a.csv")),
     # members
     members(text=None), members(text=None, t=npy(np.zeros(9))), members(),
@@ -154,7 +164,7 @@ REFUSALS: list[Row] = [
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders
-    ("path", pipe(rl.load)), ("path", pipe(rl.WorkPrecision.load)),
+    ("path", pipe(rl.load)), ("path", pipe(rl.WorkPrecision.load)), ("path", pipe(rl.read_track)),
     ("folder", lambda folder: [(folder / "02_physics.ipynb").write_text(""), rl.examples(folder)]),
     ("path", lambda _: MOTION.save("")),
     (IsADirectoryError, lambda folder: MOTION.save(f"{folder}/")),

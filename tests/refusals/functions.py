@@ -60,9 +60,9 @@ def press(of: Scene, **options: Any) -> Any:
     return lambda _: rl.blow_to(of, **options)
 
 
-def emptied(path: Path) -> Path:
-    """A table of names without numbers."""
-    path.write_text("t,x\n", encoding="utf-8")
+def written(folder: Path, content: bytes) -> Path:
+    path = folder / "t.csv"
+    path.write_bytes(content)
     return path
 
 
@@ -192,12 +192,16 @@ REFUSALS: list[Row] = [
            points=["abcd", tuple("abc"), tuple("abcd")]),
     *wrong(rl.read_track, {"t": "t", "x": "x"}, path=[3.5, None, "", "\0"]),
     *wrong(rl.read_track, {"path": ROOT / "README.md"}, delimiter=[", ", 3], decimal=["x", 1]),
-    ("x", lambda folder: rl.read_track(emptied(folder / "t.csv"), t="t")),
+    ("path", lambda folder: rl.read_track(written(folder, "t,x\n0,1".encode("utf-16")), x="x")),
+    ("path", lambda folder: rl.read_track(written(folder, b"x\n" + 200_000 * b"1"), x="x")),
+    ("x, z and theta", lambda _: rl.read_track({"x": [0.0, 9e307]}, x="x", fps=9.0, scale=1e300)),
+    ("x", lambda folder: rl.read_track(written(folder, b"t,x\n"), t="t")),
     ("scene", lambda _: rl.fit_motion(**FILM | {"t": [1e20, 2e20, 3e20]})),
     ("t", lambda _: rl.fit_motion(1e18 * ROWS, z=9 - 0.05 * ROWS**2, scene=ENDLESS, free="omega")),
     *wrong(rl.Trajectory.from_arrays, SAMPLES,
            t=[np.zeros(6), -np.arange(6.0), [0.0, 1.0], np.arange(6.0) - 1, "x",
-              [0.0, 1e-320, 1.0, 2.0, 3.0, 4.0]],
+              [0.0, 1e-320, 1.0, 2.0, 3.0, 4.0], np.arange(6) * 5e-324,
+              [0.0, 1.0, 1.0 + 2e-16, 2.0, 3.0, 4.0]],
            x=[np.zeros(5), np.full(6, NAN), "x"], z=[[0.0]], theta=[[INF] * 6], scene=[None]),
     ("trajectory", lambda _: rl.Trajectory.from_arrays(**SAMPLES).when(theta=1.0)),
 ]  # fmt: skip

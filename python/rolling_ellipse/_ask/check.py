@@ -11,6 +11,7 @@ import math
 import os
 import re
 import reprlib
+import stat
 from array import array as vector
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
@@ -368,6 +369,16 @@ def file_name(name: str, value: Any) -> str:
         encoded = os.fsencode(path)
     if not encoded or 0 in encoded:
         raise ValueError(f"{name} must name a file, got {path!r}")
+    return path
+
+
+def readable(name: str, value: Any) -> str:
+    """Return the path of a file or folder as text; a pipe or a device, which may never end, has
+    none.
+    """
+    path = file_name(name, value)
+    if stat.S_IFMT(os.stat(path).st_mode) not in (stat.S_IFREG, stat.S_IFDIR):
+        raise ValueError(f"{name} must name a file, got {path!r}, which is a pipe or a device")
     return path
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .._ask.check import FloatArray, choice, file_name, flag, positive, require, shown
+from .._ask.check import FloatArray, choice, flag, positive, readable, require, shown
 from .._motion.inputs import distinct
 from .._motion.samples import vector
 
@@ -19,6 +19,7 @@ _MISSING = ("", "-", "na", "n/a", "none", "null")  # what trackers write instead
 _MARKS = ("\t", ";", "|", ",", " ")
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def read_track(
     path: Any, *, t: str | None = None, x: str | None = None, z: str | None = None,
     theta: str | None = None, points: Iterable[str] | None = None, fps: float | None = None,
@@ -76,7 +77,7 @@ def read_track(
     >>> x
     array([0.155, 0.158, 0.161])
     """
-    table = _table(path, delimiter, decimal)
+    table = table_in("path", path, delimiter, decimal)
     names, size = tuple(table), len(next(iter(table.values()), ()))
 
     def column(argument: str, name: Any) -> FloatArray:
@@ -85,7 +86,9 @@ def read_track(
 
     times = np.arange(float(size)) if t is None else column("t", t)
     times /= 1.0 if t and fps is None else positive("fps", fps)
-    require("t", "increasing numbers", times, np.diff(times, prepend=-np.inf) > 0)
+    require(
+        "t", "increasing numbers", times, (np.diff(times, prepend=-np.inf) > 0) & np.isfinite(times)
+    )
     unit = positive("scale", scale) * np.array([[1.0], [1.0 if flag("y_up", y_up) else -1.0]])
     place = unit * (column("x", x), column("z", z))
     turn = np.pi / 180 if flag("degrees", degrees) else 1.0
@@ -97,6 +100,8 @@ def read_track(
         place, (along, up) = unit * (ends[:2] + ends[2:]) / 2, unit * (ends[2:] - ends[:2])
         require("points", "apart at all times t", times, (along != 0) | (up != 0))
         angle = -np.arctan2(up, along)
+    found = np.stack([*place, angle])
+    require("x, z and theta", "finite or missing", found, ~np.isinf(found))
     seen = np.isfinite(angle)
     if not seen.any() and not np.isfinite(place).any():
         raise ValueError(f"x, z or theta must be a column with numbers, got {size} rows without")
@@ -104,16 +109,22 @@ def read_track(
     return times, place[0], place[1], angle
 
 
-def _table(path: Any, delimiter: Any, decimal: Any) -> dict[str, Any]:
-    """Return the columns of a table by their names."""
+def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -> dict[str, Any]:
+    """Return the columns of a table by their names; `name` is that of the argument `path`."""
     if hasattr(path, "keys"):
-        return {str(name): path[name] for name in path}
-    text = Path(file_name("path", path)).read_text(encoding="utf-8-sig", errors="replace")
+        return {str(key): path[key] for key in path}
+    text = Path(readable(name, path)).read_text(encoding="utf-8-sig", errors="replace")
     lines = [line.strip(" #") for line in text.splitlines() if line.strip()] or [""]
     mark = delimiter or next((each for each in _MARKS if each in lines[-1]), " ")
     point = choice("decimal", decimal or ("." if mark == "," else ","), (",", "."))
     cells = csv.reader(lines, delimiter=choice("delimiter", mark, _MARKS), skipinitialspace=True)
-    rows = [[_cell(cell, point) for cell in row] for row in cells]
+    try:
+        if "\0" in text:
+            raise csv.Error("it has bytes 0, as UTF-16 does")
+        rows = [[_cell(cell, point) for cell in row] for row in cells]
+    except csv.Error as error:
+        wanted = f"{name} must name a table of text (UTF-8), got {str(path)!r}"
+        raise ValueError(f"{wanted}: {error}") from None
     # a head has text and no numbers; NaN is an empty cell
     *_, first = 0, *(k for k, r in enumerate(rows, 1) if {type(c) for c in r if c == c} == {str})
     heads = [*map(str, rows[first - 1] if first else range(len(rows[0])))]

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._ask.check import choice, file_name
+from .._ask.check import choice, file_name, readable
 from .._motion.export.new_files import write_new
 from ._problem import COLUMNS, FOLDER, STATE, Problem, problems, scored_ones
 from ._results import KINDS, Result
@@ -146,12 +146,10 @@ def read(problem: Problem, path: Path) -> Result:
 def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
     """Return the rows of a table that are not blank; None for a file without any.
 
-    A pipe, which would block, is rejected. Of two columns with the same name, the first counts.
+    Of two columns with the same name, the first counts.
     """
-    if not path.is_file():
-        raise ValueError(f"results must be files, got {path.name!r}, which is none")
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = Path(readable("results", path)).read_bytes().decode("utf-8-sig")
         lines = csv.reader(io.StringIO(text, newline=""), strict=True)
         rows = [(lines.line_num, row) for row in lines if any(entry.strip() for entry in row)]
     except (UnicodeDecodeError, csv.Error) as error:

@@ -65,7 +65,7 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
             "to_xarray() make tables, which write other files"
         )
     text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
-    _restored(type(trajectory), text, arrays)
+    _restored(type(trajectory), strict.parsed("about", text), arrays)
     with replacing(name) as new, open(new, "wb") as file:
         np.savez(file, about=np.array(text), **arrays)
 
@@ -91,9 +91,11 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
-    strict.require_schema("it", strict.npz_schema(content), _WITHOUT_RESISTANCE, _SCHEMA)
+    about = strict.npz_about(content)
+    strict.require_schema("it", about["schema"], _WITHOUT_RESISTANCE, _SCHEMA)
     arrays = strict.npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
-    return _restored(kind, str(arrays.pop("about")), arrays)
+    del arrays["about"]
+    return _restored(kind, about, arrays)
 
 
 def _about(trajectory: Trajectory) -> dict[str, Any]:
@@ -116,12 +118,11 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
     return arrays if trajectory.contact is None else arrays | trajectory.contact._asdict()
 
 
-def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
-    """Return the trajectory of a file's JSON text and arrays, if `save` would write the same.
+def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) -> _Made:
+    """Return the trajectory of a file's JSON values and arrays, if `save` would write the same.
 
     Thus nothing is converted, filled in or left out, even where the classes would accept that.
     """
-    about = strict.parsed("about", text)
     if about["schema"] == _WITHOUT_RESISTANCE:
         about |= {"schema": _SCHEMA, "scene": strict.with_resistance(about["scene"])}
     strict.require_names("about", about, _ABOUT)

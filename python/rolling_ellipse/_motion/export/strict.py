@@ -10,7 +10,6 @@ import json
 import math
 import os
 import re
-import stat
 import zipfile
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import fields
@@ -19,7 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ..._ask.check import file_name, require
+from ..._ask.check import readable, require
 from ..._ask.scene import Impulse, Scene, reached_scene
 
 ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON objects
@@ -39,12 +38,10 @@ def restored(
     """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
     Only a file with the right first bytes (and the end of an archive) is read: another file may
-    be of any size, and a pipe would block. Whatever `restore` raises becomes a ValueError that
+    be of any size. Whatever `restore` raises becomes a ValueError that
     names the file, the problem and the cure, if any.
     """
-    name = file_name("path", path)
-    if stat.S_ISFIFO(os.stat(name).st_mode):
-        raise ValueError(f"path must name a file written by {writer}, got {name!r}: it is a pipe")
+    name = readable("path", path)
     with open(name, "rb") as file:
         content = file.read(len(begins))
         is_whole = content == begins
@@ -129,8 +126,8 @@ def scene_of(values: Any) -> Scene:
     return reached_scene({**values, "impulse": impulse})
 
 
-def npz_schema(content: bytes) -> Any:
-    """Return the schema in the JSON text "about" of a file written by `numpy.savez`.
+def npz_about(content: bytes) -> dict[str, Any]:
+    """Return the JSON text "about" of a file written by `numpy.savez`, which has a schema.
 
     It is read first, since a file of another schema may hold other names.
     """
@@ -140,7 +137,7 @@ def npz_schema(content: bytes) -> Any:
         about = parsed("about", str(_member(archive, archive.getinfo("about.npy"))))
     if not (isinstance(about, dict) and "schema" in about):
         raise ValueError("about must have 'schema'")
-    return about["schema"]
+    return about
 
 
 def npz_arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:

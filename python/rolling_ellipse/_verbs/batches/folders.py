@@ -318,7 +318,7 @@ def _of_end(content: bytes) -> dict[str, Any]:
 
 def _request_in(folder: Path, name: str) -> tuple[dict[str, Any], results.Request]:
     it = f"{name} must be a folder that this version reads, got {str(folder)!r}: it"
-    schema = _in_request(folder, strict.npz_schema)
+    schema = _in_request(folder, strict.npz_about)["schema"]
     strict.require_schema(it, schema, _WITHOUT_RESISTANCE, _SCHEMA)
     return _in_request(folder, _of_request)
 
