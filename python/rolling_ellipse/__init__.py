@@ -50,7 +50,7 @@ def _listed() -> dict[str, str]:
     with open(_os.path.splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
         lines = _ast.parse(stub.read()).body
     imports = [line for line in lines if isinstance(line, _ast.ImportFrom)]
-    return {name.name: f".{line.module or ''}" for line in imports for name in line.names}
+    return {name.name: f".{line.module or name.name}" for line in imports for name in line.names}
 
 
 _PLACES = _listed()
@@ -66,12 +66,11 @@ def __getattr__(name: str) -> _Any:
     elif name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     else:
-        is_module = _PLACES[name] == "."
         try:
-            found = _import_module(f".{name}" if is_module else _PLACES[name], __name__)
+            found = _import_module(_PLACES[name], __name__)
         except AttributeError as error:  # `from rolling_ellipse import` would not show it
             raise ImportError(f"{name} needs a module that does not load: {error}") from error
-        value = found if is_module else getattr(found, name)
+        value = found if _PLACES[name] == f".{name}" else getattr(found, name)
     globals()[name] = value
     return value
 

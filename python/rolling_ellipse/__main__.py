@@ -85,8 +85,7 @@ def _page(options: argparse.Namespace) -> tuple[int, str]:
     explorer = explore(shell.chosen_scene(options), t_end=options.time, language=options.language)
     path = options.save
     if path is None:
-        handle, path = tempfile.mkstemp(prefix="rolling_ellipse_", suffix=".html")
-        os.close(handle)
+        path = os.path.join(tempfile.mkdtemp(prefix="rolling_ellipse_"), "explore.html")
     shell.require_file("--save", path)
     explorer.save(path)
     message = f"written           {path}"

@@ -359,10 +359,6 @@ def _runs(name: str, run: Callable[[int], float]) -> float:
     return math.log2(abs((y1 - y2) / (y2 - y4)))
 
 
-def _steps(s: Scene, end: float, step: float) -> float:
-    return float(simulate(s, [end], model="rolling", method="rk4", step=step).theta[0])
-
-
 def _impact(s: Scene, d: dict[str, float], name: str) -> Any:
     (theta, *before), after = measured_impacts()
     h, lead, _ = _shape(s, theta)
@@ -408,8 +404,8 @@ _ANSWERS: dict[str, Callable[[Scene, dict[str, float], str], Any]] = {
     "after": lambda s, d, name: getattr(simulate(s, 5.0).events[0].state_after, name),
     "leave": lambda s, d, name: max(0.0, -s.gravity / _shape(s, s.theta)[2]) ** 0.5,
     "impacts": _impact,
-    "runs": lambda s, d, name: _runs(
-        name, lambda parts: _steps(s, d["T"], d["step"] / parts)),
+    "runs": lambda s, d, name: _runs(name, lambda parts: simulate(
+        s, [d["T"]], model="rolling", method="rk4", step=d["step"] / parts).theta[0].item()),
     "feedback": lambda s, d, name: _core.feedback_growth(Settings(
         method="rk4", step=d["step"], stabilization="baumgarte", baumgarte=(d["alpha"],) * 2).core),
     "film": lambda s, d, name: getattr(_fit(s).scene, name),

@@ -15,7 +15,7 @@ from typing import Any
 import rolling_ellipse as rl
 from hypothesis import strategies as st
 
-from . import scenes
+from . import damage, scenes
 from .scenes import Body
 from .values import SHAPES, Draw, call
 
@@ -242,7 +242,7 @@ def filled(draw: Draw, of: Body, line: str) -> str:
         "quantity": lambda: draw.pick(*QUANTITIES), "share": draw.share,
         "other_share": lambda: draw.pick(0.0, 1.0, draw.share()), "n": lambda: draw.whole(0, 999),
         "times": lambda: filled(draw, of, draw.pick(*TIMES)), "mask": lambda: draw.whole(1, 255),
-        "nine": lambda: draw.whole(1, 9), "hostile": draw.hostile,
+        "nine": lambda: draw.whole(1, 9), "extreme": draw.extreme, "hostile": draw.hostile,
         "value": lambda: filled(draw, of, draw.pick(*VALUES)),
         "number": lambda: draw.between(-3, 3), "sign": lambda: draw.pick(1, -1, 0, 2, "None"),
         "spoil": lambda: filled(draw, of, draw.pick(*SPOIL)),
@@ -289,6 +289,7 @@ def scene(draw: Draw, of: Body) -> list[str]:
         "trajectory = rl.simulate(scene, [0.0], model='contact', max_steps=2000, max_events=100)",
         "promises.same_mode(state, trajectory)",
         call("scene.replace", **draw.mutated(change)),
+        call("scene.to_mjcf", timestep=draw.hostile(), contact_steps=draw.odd("contact_steps")),
         f"rl.outcome(scene, {call('rl.Impulse.press', **draw.mutated(press))})",
     ]
 
@@ -319,9 +320,57 @@ def many(draw: Draw, of: Body) -> list[str]:
     return lines
 
 
+_TABLE = "t,x,z,theta,x_dot,z_dot,omega\\n" + "".join(f"{t / 2},0,1,0,0,0,0\\n" for t in range(9))
+#: What files may hold: texts in other encodings, huge fields, odd bytes, damaged tables.
+CONTENTS = (
+    *(f"'{_TABLE}'.encode('{code}')" for code in ("utf-8", "utf-8-sig", "utf-16", "utf-32")),
+    f"'{_TABLE}'.replace('omega', 'größe').encode('latin-1')", f"b'{_TABLE}' + b'1' * 200_000",
+    f"b'{_TABLE}'.replace(b'0', b'{{extreme}}')", f"b'{_TABLE}'[:{{n}} % 120]", "bytes({n})",
+    f"b'{_TABLE}'.replace(b',', b';')", f"b'{_TABLE}'.replace(b'0', b'\"')",
+    "b'{{}}'", "b'PK\x03\x04'",
+)  # fmt: skip
+#: Readers and writers, each with a path at which a hostile thing may be.
+ON_FILES = (
+    *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
+    *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,
+    *["forged = rl.read_track(path='there/a', theta='theta', fps={extreme})"] * 2,
+    *["rl.benchmark.score(results='there')"] * 2,
+    "rl.load_many(path='there')",
+    "promises.marked('8.1', ROLLING_ELLIPSE_IMPACTS='there/a')",
+    "promises.keeps(rl.examples, folder='there')",
+    "promises.keeps(rl.benchmark.export, folder='there')",
+)
+NAMES_OF = {
+    "score": ("roll.rock.csv", "roll.rock.events.csv"), "load_many": ("request.npz", "end.json"),
+    "examples": ("01_first_roll.ipynb", "reference", "reference/well_reference.csv"),
+    "export": ("README.txt", "roll.rock.csv", "roll.rock.json", "mine.txt"),
+}  # fmt: skip
+
+
+def files(draw: Draw, of: Body) -> list[str]:
+    """A file, or something else in its place, and a function that reads or writes there."""
+    line, kind = draw.pick(*ON_FILES), draw.pick(*["file"] * 8, *damage.THINGS)
+    names = next((each for part, each in NAMES_OF.items() if f".{part}" in line), ("a",))
+    content = filled(draw, of, draw.pick(*CONTENTS))
+    return [f"damage.put({kind!r}, 'there/{draw.pick(*names)}', {content})", filled(draw, of, line)]
+
+
+def arrays(draw: Draw, of: Body) -> list[str]:
+    """A motion from arrays of extreme numbers."""
+    size = draw.pick(1.0, 1.0, draw.power(-320, 307))
+    tracks = {
+        name: draw.array([draw.between(-3, 3) * scale for _ in range(6)])
+        for name, scale in (("x", size), ("z", 1.0), ("theta", draw.pick(1.0, size)))
+    }
+    times = f"np.arange(6) ** 1.5 * {draw.pick(1.0, draw.power(-323, 307))}"
+    asked = draw.mutated({"t": times, **tracks, "scene": scenes.scene(draw, of)})
+    lines = [f"forged = {call('rl.Trajectory.from_arrays', **asked)}"]
+    return [*lines, *(filled(draw, of, line) for line in FORGED), "forged.sol(forged.t_end)"]
+
+
 #: Kinds of cases with their weights, the simplest first.
 CASES: dict[Callable[[Draw, Body], list[str]], int] = {
-    motion: 90, any_function: 70, scene: 16, many: 4,
+    motion: 90, any_function: 70, scene: 16, files: 10, many: 4, arrays: 4,
 }  # fmt: skip
 _KINDS = tuple(kind for kind, weight in CASES.items() for _ in range(weight))
 

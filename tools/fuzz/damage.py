@@ -5,11 +5,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from oracles.files import put_together, taken_apart
+
+#: Things that can be in the place of a file.
+THINGS: dict[str, Callable[[Path], Any]] = {
+    "pipe": os.mkfifo,
+    "folder": os.mkdir,
+    "link": lambda path: path.symlink_to(Path("mine").absolute()),
+    "dangling": lambda path: path.symlink_to(Path("nowhere").absolute()),
+    "loop": lambda path: path.symlink_to(path.name),
+    "device": lambda path: path.symlink_to("/dev/zero"),
+}
+
+
+def put(kind: str, path: str, content: bytes = b"") -> str:
+    """Put a file or another thing alone into the folder of a path; return the path."""
+    place = Path(path)
+    shutil.rmtree(place.parts[0], ignore_errors=True)
+    place.parent.mkdir(parents=True)
+    Path("mine").write_bytes(b"mine")
+    if kind == "file":
+        place.write_bytes(content)
+    else:
+        THINGS[kind](place)
+    return path
 
 
 def flip(path: str, share: float, mask: int) -> None:

@@ -37,7 +37,7 @@ OWN_WARNINGS = (
 _FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
 # Words of messages about several arguments at once.
 _TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
-             "cannot pickle")  # fmt: skip
+             "cannot pickle", "of roll.rock must")  # fmt: skip
 _NOT_FINITE = re.compile(
     r"\bnan\b|\binf\b|NaN|longdouble|\bma\b|1e400|10\*\*400|NaT|e\+?30\d\b|e\+?29\d\b"
 )

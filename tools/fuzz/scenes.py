@@ -95,7 +95,7 @@ def impulse(draw: Draw, of: Body) -> str:
     values = [repr(size * draw.between(-1, 1)) for size in (strength, strength, reach, reach)]
     if draw.chance(0.4):
         return call("rl.Impulse.press", values[0].lstrip("-"), values[2])
-    return call("rl.Impulse", *values[:2], **dict(zip(("dx", "dz"), values[2:], strict=True)))
+    return call("rl.Impulse", **dict(zip(("jx", "jz", "dx", "dz"), values, strict=True)))
 
 
 def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from .._ask.check import FloatArray, finite, shown
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made", bound="Trajectory")
 _NEAR = 5  # number of samples of a local polynomial
-_PIECE = 2**12  # times sampled at once, within 20 ms: Ctrl-C acts between pieces
+_PIECE = 2**12  # times solved for at once, within 20 ms: Ctrl-C acts between pieces
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
 
 
@@ -103,29 +102,27 @@ class _Samples:
     t: FloatArray
     tracks: FloatArray
 
+    @np.errstate(over="ignore", invalid="ignore", divide="ignore")
     def samples(self, t: FloatArray) -> tuple[FloatArray, ...]:
         """Return the samples at the given times as arrays, as the core's Solution does."""
-        times, size = np.maximum(t, self.t[0]), max(t.size, 1)
-        nearest = np.searchsorted(self.t[:-1] / 2 + self.t[1:] / 2, times)
-        pieces = [slice(k, k + _PIECE) for k in range(0, size, _PIECE)]
-        parts = [self._columns(times[piece], nearest[piece]) for piece in pieces]
-        return t, *(np.concatenate(each) for each in zip(*parts, strict=True))
-
-    @np.errstate(over="ignore", invalid="ignore", divide="ignore")
-    def _columns(self, times: FloatArray, nearest: npt.NDArray[np.intp]) -> tuple[Any, ...]:
-        scene, near = self.scene, min(_NEAR, self.t.size)
+        scene, times, near = self.scene, np.maximum(t, self.t[0]), min(_NEAR, self.t.size)
+        nearest = np.searchsorted(self.t[1:] / 2 + self.t[:-1] / 2, times)
         first = np.clip(nearest - near // 2, 0, self.t.size - near)
         places = first[:, None] + np.arange(near)
         span = np.ptp(self.t[places], axis=1)[:, None] + (near == 1)
         s = (self.t[places] - times[:, None]) / span
         powers = np.zeros((times.size, _NEAR, 3))
+        powers[:, :near] = math.nan
         with suppress(np.linalg.LinAlgError):
-            powers[:, :near] = np.nan
-            powers[:, :near] = np.linalg.solve(s[..., None] ** np.arange(near), self.tracks[places])
+            for k in range(0, times.size, _PIECE):
+                piece = slice(k, k + _PIECE)
+                matrices = s[piece, :, None] ** np.arange(near)
+                powers[piece, :near] = np.linalg.solve(matrices, self.tracks[places[piece]])
         rates = powers[:, 0], powers[:, 1] / span, 2 * powers[:, 2] / span**2
         if not np.isfinite(rates).all():
-            least = float(np.diff(self.t).min())
-            raise ValueError(f"t must give finite rates, got times {least:g} s apart")
+            raise ValueError(
+                f"t must give finite rates, got times {np.diff(self.t).min():g} s apart"
+            )
         (x, z, theta), (x_dot, z_dot, omega), (x_ddot, z_ddot, _) = (each.T for each in rates)
         length, g, h = max(scene.a, scene.b), scene.gravity, support(theta, a=scene.a, b=scene.b)
         slides = np.abs(x_dot - h * omega) > _SMALL * math.sqrt(g * length)
@@ -133,7 +130,8 @@ class _Samples:
         mode[z - h > _SMALL * length] = Mode.FLIGHT
         normal_force = scene.mass * (z_ddot + g * math.cos(scene.slope))
         friction_force = scene.mass * (x_ddot - g * math.sin(scene.slope))
-        return theta, omega, x, z, x_dot, z_dot, normal_force, friction_force, mode
+        columns = theta, omega, x, z, x_dot, z_dot, normal_force, friction_force
+        return t, *(values.copy() for values in columns), mode
 
     def passages(self, *_: Any) -> Any:
         raise ValueError("trajectory must be computed to know passages, got one from arrays")

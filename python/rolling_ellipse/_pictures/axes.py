@@ -229,14 +229,13 @@ def write(drawn: Artists, name: str | None) -> None:
 
 
 def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
-    """Write the figure around a figure to a file or an object with `write`; return which.
+    """Write the figure around a figure to an object with `write`, or to a file; return its name.
 
     A name without a suffix gets that of matplotlib's usual format.
     """
     whole: Any = figure.get_figure(root=True)
     if hasattr(path, "write"):
-        whole.savefig(path, **options)
-        return path
+        return whole.savefig(path, **options)
     name = file_name("path", path)
     if not (suffix := os.path.splitext(name)[1]) and "format" not in options:
         name += (suffix := f".{rcParams['savefig.format']}")

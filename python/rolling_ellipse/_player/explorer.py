@@ -17,7 +17,7 @@ from .._ask.records import FieldsOnly, cached_property
 from .._ask.scene import Scene, require_scene
 from .._ask.words import filled, joined
 from .._core import Outcome
-from .._motion.export.atomic import replacing
+from .._motion.export.atomic import write
 from .._motion.trajectory import Trajectory
 from .._pictures.phase_map import COLOURS
 from . import blows
@@ -176,9 +176,7 @@ class Explorer(FieldsOnly):
         name = file_name("path", path)
         if not name.lower().endswith((".html", ".htm")):
             raise ValueError(f"path must end in .html, got {name!r}")
-        page = self.to_html()
-        with replacing(name) as new:
-            new.write_text(page, encoding="utf-8")
+        write(name, self.to_html().encode())
 
     def _repr_html_(self) -> str:
         return self._html

@@ -118,15 +118,13 @@ def words(language: str | Mapping[str, str]) -> dict[str, str]:
             f"{shown(odd[0])} is {'missing' if odd[0] in english else 'unknown'}"
         )
     for key, text in found.items():
+        where, known = f"language[{key!r}] must", BRACES.findall(english[key])
         if not isinstance(text, str):
-            raise TypeError(f"language[{key!r}] must be a string, got {shown(text)}")
+            raise TypeError(f"{where} be a string, got {shown(text)}")
         if re.search("[\ud800-\udfff]", text):  # cannot be written
-            raise ValueError(f"language[{key!r}] must have no lone surrogate, got {shown(text)}")
-        known = BRACES.findall(english[key])
+            raise ValueError(f"{where} have no lone surrogate, got {shown(text)}")
         if not set(BRACES.findall(text)) <= set(known):
-            raise ValueError(
-                f"language[{key!r}] must have no braces but {known}, got {shown(text)}"
-            )
+            raise ValueError(f"{where} have no braces but {known}, got {shown(text)}")
     return found
 
 

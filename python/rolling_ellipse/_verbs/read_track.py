@@ -100,8 +100,8 @@ def read_track(
         place, (along, up) = unit * (ends[:2] + ends[2:]) / 2, unit * (ends[2:] - ends[:2])
         require("points", "apart at all times t", times, (along != 0) | (up != 0))
         angle = -np.arctan2(up, along)
-    found = np.stack([*place, angle])
-    require("x, z and theta", "finite or missing", found, ~np.isinf(found))
+    found = np.stack([times, *place, angle])
+    require("t, x, z and theta", "finite or missing", found, ~np.isinf(found))
     seen = np.isfinite(angle)
     if not seen.any() and not np.isfinite(place).any():
         raise ValueError(f"x, z or theta must be a column with numbers, got {size} rows without")
@@ -123,8 +123,7 @@ def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -
             raise csv.Error("it has bytes 0, as UTF-16 does")
         rows = [[_cell(cell, point) for cell in row] for row in cells]
     except csv.Error as error:
-        wanted = f"{name} must name a table of text (UTF-8), got {str(path)!r}"
-        raise ValueError(f"{wanted}: {error}") from None
+        raise ValueError(f"{name} must name a text table, got {str(path)!r}: {error}") from None
     # a head has text and no numbers; NaN is an empty cell
     *_, first = 0, *(k for k, r in enumerate(rows, 1) if {type(c) for c in r if c == c} == {str})
     heads = [*map(str, rows[first - 1] if first else range(len(rows[0])))]

@@ -38,7 +38,9 @@ class Lost:
 
 def threads_of(workers: Any) -> int | None:
     """Return a number of threads in its range, or None for an executor; TypeError for neither."""
-    if not isinstance(workers, type) and (_can(workers, "submit") or _is_pool(workers)):
+    # a pool has `map`, as some sequences do, and it can be closed
+    is_pool = _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
+    if not isinstance(workers, type) and (_can(workers, "submit") or is_pool):
         return None
     try:
         return worker_count(workers)
@@ -112,11 +114,6 @@ def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns
 
 def _can(executor: Any, what: str) -> bool:
     return callable(getattr(executor, what, None))
-
-
-def _is_pool(workers: Any) -> bool:
-    """Whether `workers` is a pool: it has `map`, as some sequences do, and it can be closed."""
-    return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
 
 
 def _next(

@@ -40,7 +40,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         with _locked(new):
             yield new
-            _store(new)
+            with open(new, "r+b") as written:  # only what is on the disk may replace an old file
+                os.fsync(written.fileno())
             if old is not None:
                 with suppress(PermissionError):  # only root can change the owner of a file
                     os.chown(new, old.st_uid, old.st_gid)
@@ -57,6 +58,12 @@ def remove_unfinished(folder: Path) -> None:
         with suppress(OSError), _locked(path) as is_free:
             if is_free:
                 path.unlink()
+
+
+def write(path: str | os.PathLike[str], content: bytes) -> None:
+    """Write a whole file by `replacing`."""
+    with replacing(path) as new:
+        new.write_bytes(content)
 
 
 @contextmanager
@@ -104,12 +111,3 @@ def _beside(target: Path) -> Path:
     new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     return new
-
-
-def _store(new: Path) -> None:
-    """Wait until the bytes of a new file are on the disk; only then may it replace an old one."""
-    descriptor = os.open(new, os.O_RDWR)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
-from .atomic import replacing
+from .atomic import write
 
 
 def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
@@ -24,8 +23,7 @@ def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
     missing = [folder / name for name in sorted(files) if name not in kept]
     for path in missing:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as new:
-            new.write_bytes(files[path.relative_to(folder).as_posix()])
+        write(path, files[path.relative_to(folder).as_posix()])
     return missing
 
 
@@ -38,5 +36,5 @@ def _is_taken(folder: Path, name: str) -> bool:
     """Return whether the path of a new file is taken, or passes through a link or a file."""
     path = folder / name
     between = [part for part in path.parents if part != folder and part.is_relative_to(folder)]
-    taken = (path, *(part for part in between if not part.is_dir() or part.is_symlink()))
-    return any(os.path.lexists(part) for part in taken)
+    blocked = [part.is_symlink() or (part.exists() and not part.is_dir()) for part in between]
+    return path.is_symlink() or path.exists() or any(blocked)

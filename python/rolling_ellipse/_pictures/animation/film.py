@@ -22,7 +22,7 @@ from matplotlib.lines import Line2D
 
 from ..._ask.check import choice, file_name, flag, number, shown, whole
 from ..._ask.progress import reporting
-from ..._motion.export.atomic import replacing
+from ..._motion.export.atomic import replacing, write
 from ..._motion.samples import even_times
 from ..._motion.trajectory import Trajectory
 from ..axes import Alone, save_figure
@@ -225,10 +225,7 @@ class RollingAnimation(FuncAnimation):
             raise TypeError(f"options must be none without a writer, got {', '.join(options)}")
         suffix = "" if writer is not None else film_suffix(path, self.fps, "filename")
         if suffix == ".html":
-            page = self._page()
-            with replacing(path) as new:
-                new.write_text(page, encoding="utf-8")
-            return
+            return write(path, self._page().encode(errors="xmlcharrefreplace"))
         with reporting(flag("progress", progress), "frames", path) as advance:
             if writer is not None:
                 options = {"dpi": self.figure.dpi, **options}

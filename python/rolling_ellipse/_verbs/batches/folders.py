@@ -296,8 +296,7 @@ def _about(request: results.Request) -> dict[str, Any]:
 
 
 def _of_request(content: bytes) -> tuple[dict[str, Any], results.Request]:
-    arrays = strict.npz_arrays(content, {"about", "t"})
-    about = strict.parsed("about", str(arrays["about"]))
+    about, arrays = strict.npz_about(content), strict.npz_arrays(content, {"about", "t"})
     strict.require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
     strict.require_names("settings", about["settings"], strict.field_names(Settings))
     t = arrays["t"]

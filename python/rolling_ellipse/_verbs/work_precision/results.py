@@ -15,7 +15,7 @@ from ..._ask.check import choice, file_name, number, shown
 from ..._ask.printing import Row, html_table, printable, required, text_table
 from ..._ask.scene import Scene
 from ..._motion.export import strict
-from ..._motion.export.atomic import replacing
+from ..._motion.export.atomic import write
 from .run import COMPLETED, EQUAL, ERRORS, NOT_RUN, QUANTITIES, Reference, Run, by_name, plain, read
 
 if TYPE_CHECKING:
@@ -371,8 +371,7 @@ class WorkPrecision:
         name = file_name("path", path)
         text = strict.in_lines(self._about(), _RUNS)
         self._restored(text.encode())
-        with replacing(name) as new:
-            new.write_text(text, encoding="utf-8")
+        write(name, text.encode())
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
