@@ -11,12 +11,8 @@ Method. The series follow the angle and its rate, without the energy, so that no
 the tip. Every value was computed twice, in 64 digits and in 76, with series of order 54 and 62, and
 must agree to `AGREEMENT`, relative to itself or to its unit; the worst difference was 1.4e-40.
 
-Units. The effect of a relative change of 2.2e-16 of each input, and of 2.2e-16 rad of theta0,
-
-    unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
-
-by one-sided differences of 1e-20 in 44 digits. Scenes whose inputs do not determine theta to
-`UNIT_LIMIT` are left out.
+Units are those of make_slope_reference.py, by differences of 1e-20 in 44 digits. Scenes whose
+inputs do not determine theta to `UNIT_LIMIT` are left out.
 
 Speeds. A body at phi passes the upright equilibrium at psi slowly, in the coordinates of
 `make_slope_reference.py`, if J omega^2 / 2 is about the difference of the potentials
