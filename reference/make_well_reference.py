@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import gmpy2
+from contact_motion import bisected
 from gmpy2 import mpfr
 from make_slope_reference import Rolling, Scene, Series, State
 from runs import ROUNDING, log_uniform, write_table
@@ -80,7 +81,8 @@ class Swing(Rolling):
             stage = self.go_on()
             rate = stage.series.rate
             if rate[0] * value(rate, stage.lasts) < 0:
-                turnings.append(stage.begin + root(rate, stage.lasts))
+                falling = [-each for each in rate] if rate[0] < 0 else rate
+                turnings.append(stage.begin + bisected(falling, mpfr(0), stage.lasts))
             if len(self.stages) > MOST_STAGES or self.half_turns > 1:
                 raise NoSwing
         self.period = 2 * (turnings[1] - turnings[0])
@@ -107,23 +109,6 @@ class Swing(Rolling):
 
 class NoSwing(Exception):
     """The motion does not rock, or takes too many steps."""
-
-
-def root(coefficients: list[Any], last: Any) -> Any:
-    """The one sign change of a series between 0 and `last`: bisection, then Newton's method."""
-    low, high, rises = mpfr(0), last, coefficients[0] < 0
-    for _ in range(12):
-        middle = (low + high) / 2
-        if (value(coefficients, middle) > 0) == rises:
-            high = middle
-        else:
-            low = middle
-    slopes = [n * c for n, c in enumerate(coefficients)][1:]
-    at = (low + high) / 2
-    for _ in range(7):
-        at -= value(coefficients, at) / value(slopes, at)
-    assert low <= at <= high
-    return at
 
 
 def answers(scene: Scene, t: float, road: Road) -> Answer:
