@@ -112,6 +112,7 @@ FORKED_BY_A_THREAD = """
 import os, signal, threading, warnings
 import rolling_ellipse as rl
 warnings.simplefilter("ignore")
+rl.simulate(rl.scenes.rolling, 1.0)  # loads NumPy, which turns a Ctrl-C meanwhile into ImportError
 
 def fork():
     global code
