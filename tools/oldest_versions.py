@@ -11,11 +11,11 @@ import re
 import subprocess
 import sys
 import tomllib
-import venv
 from itertools import chain
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+from check_packaging import ROOT, environment, install
+
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
 
@@ -35,12 +35,21 @@ def oldest(requirement: str) -> str:
     return f"{found[1]}=={found[2]}"
 
 
+def requirements(extra: str) -> list[str]:
+    """Requirements of an extra, and of the extras that it names."""
+    own = rf"{PROJECT['name']}\[(.+)\]"
+    found = []
+    for needed in PROJECT["optional-dependencies"][extra]:
+        extras = re.fullmatch(own, needed)
+        inner = [requirements(each) for each in extras[1].split(",")] if extras else [[needed]]
+        found += chain.from_iterable(inner)
+    return found
+
+
 def oldest_versions() -> list[str]:
     """Requirements to build, run and test the package, with their oldest versions."""
-    extras = PROJECT["optional-dependencies"].values()
-    groups = [SETTINGS["build-system"]["requires"], PROJECT["dependencies"], *extras]
-    own = f"{PROJECT['name']}["  # the extra names another extra of the package
-    return [oldest(needed) for needed in chain(*groups) if not needed.startswith(own)]
+    groups = SETTINGS["build-system"]["requires"], PROJECT["dependencies"], requirements("test")
+    return [oldest(needed) for needed in chain(*groups)]
 
 
 def require_oldest_python() -> None:
@@ -62,11 +71,9 @@ def main() -> None:
     if options.folder is None or options.folder.exists():
         parser.error(f"FOLDER must be a new one, got {options.folder}")
     require_oldest_python()
-    venv.create(options.folder, with_pip=True)
-    python = options.folder.absolute() / "bin" / "python"
-    install = (python, "-m", "pip", "install", "--quiet")
-    subprocess.run([*install, *versions, "cmake", "ninja"], check=True)
-    subprocess.run([*install, "--no-build-isolation", "--no-deps", ROOT], check=True)
+    python = environment(options.folder.absolute(), sys.executable)
+    install(python, *versions)
+    install(python, "--no-build-isolation", "--no-deps", ROOT)
     tests = subprocess.run(
         [python, "-m", "pytest", *NO_DEPRECATIONS, *NO_TYPES, *arguments], cwd=ROOT
     )

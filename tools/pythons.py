@@ -1,0 +1,142 @@
+"""Run the suite with every Python that the package declares.
+
+    python tools/pythons.py FOLDER [--quick] [PYTHON ...]
+
+makes FOLDER, which must not exist. PYTHON is a version (3.14, or 3.14t without the GIL) or the path
+of an interpreter; by default it is every version in the classifiers of pyproject.toml, and those
+that can be had without the GIL. Versions come from the PATH or else, if the script runs as root,
+from Debian: mmdebstrap makes a system in FOLDER (nothing of the host is mounted in it) with g++ and
+that Python, which is built from Debian's source if it has no GIL (ten minutes). All that has a
+wheel is installed in a new environment. Each Python gets a line: versions, requirements without a
+wheel, counts of pytest, and reasons for skipped tests. FOLDER/VERSION.log has the output.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+from check_packaging import ROOT, run
+from oldest_versions import PROJECT, requirements
+
+PREFIX = "Programming Language :: Python :: 3."
+DECLARED = [f"3.{each.removeprefix(PREFIX)}" for each in PROJECT["classifiers"] if PREFIX in each]
+FREE_THREADED = [f"{each}t" for each in DECLARED if each >= "3.13"]
+LIBRARIES = "zlib1g-dev,libbz2-dev,liblzma-dev,libffi-dev,libssl-dev,libsqlite3-dev"
+CERTIFICATES = Path("etc/ssl/certs/ca-certificates.crt")
+SUITES = ("trixie", "sid")
+WHOLE, QUICK = ["-n", "logical", "--dist", "loadfile"], ["-m", "quick"]
+INSTALL = ("-m", "pip", "install", "--quiet")
+VERSIONS = """\
+import platform, sysconfig, matplotlib, numpy
+numbers = numpy.__version__, matplotlib.__version__
+print(platform.python_version(), "NumPy {}, matplotlib {}".format(*numbers), sep=", ")
+print(sysconfig.get_config_var("Py_GIL_DISABLED") or 0)
+"""
+BUILD = """\
+apt-get source --quiet --download-only python{version}
+mkdir python && tar -xf python{version}_*.orig.tar.xz -C python --strip-components=1
+cd python && ./configure --quiet --disable-gil
+make --silent -j "$(nproc)" && make --silent install
+"""
+
+
+def chroot(version: str, folder: Path) -> list[str]:
+    """The words that run a command in a new Debian system with a Python of this version."""
+    number = version.rstrip("t")
+    if os.geteuid() != 0 or shutil.which("mmdebstrap") is None:
+        sys.exit(f"no python{version} on the PATH: install it, or run this as root with mmdebstrap")
+    packages = f"python{number}-venv,python{number}-dev,g++,ca-certificates"
+    more = f",make,xz-utils,{LIBRARIES}" if version != number else ""
+    for suite in SUITES:
+        lines = [f"{kind} http://deb.debian.org/debian {suite} main" for kind in ("deb", "deb-src")]
+        system = folder / f"{version}-{suite}"
+        try:
+            run("mmdebstrap", "--variant=apt", '--aptopt=Acquire::Check-Valid-Until "false"',
+                f"--include={packages}{more}", suite, system, *lines, cwd=folder)  # fmt: skip
+            break
+        except SystemExit as failed:
+            said = re.findall(r"^E: .*", str(failed), re.MULTILINE)
+    else:
+        sys.exit(f"not in Debian's {' and '.join(SUITES)} ({said[0]}): give the path of one")
+    shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # pip trusts whom the host trusts
+    for name in run("git", "ls-files", cwd=ROOT).splitlines():
+        (system / "project" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, system / "project" / name)
+    words = ["unshare", "--mount", "--pid", "--fork", "--mount-proc", f"--root={system}"]
+    inside = [*words, "--wd=/project", "env", "PATH=/usr/local/bin:/usr/bin:/usr/sbin:/bin:/sbin"]
+    if more:
+        run(*inside, "sh", "-ec", "apt-get update --quiet", cwd=folder)
+        run(*inside, "sh", "-ec", "cd /tmp\n" + BUILD.format(version=number), cwd=folder)
+    return [*inside, f"PIP_CERT=/{CERTIFICATES}"]
+
+
+def start(python: str, folder: Path) -> tuple[list[str], str]:
+    """The words before each command of an interpreter, and its name."""
+    name = f"python{python}" if re.fullmatch(r"3\.\d+t?", python) else python
+    try:
+        run(name, "-c", "import ensurepip", cwd=folder)  # a shim on the PATH may lead nowhere
+    except (SystemExit, OSError):
+        if name == python:
+            sys.exit("no Python with venv that starts: give a version or the path of another")
+        return chroot(python, folder), name
+    return [], name
+
+
+def outcome(python: str, folder: Path, arguments: list[str]) -> tuple[str, bool]:
+    """The line of an interpreter, and whether the suite passed."""
+    before, interpreter = start(python, folder)
+    place = Path("/project") if before else ROOT
+    name = Path(python).name
+    environment = Path("/environment") if before else folder / f"{name}-environment"
+    words = [*before, environment / "bin" / "python"]
+    run(*before, interpreter, "-m", "venv", environment, cwd=folder)
+    run(*words, *INSTALL, "--prefer-binary", place, cwd=folder)
+    missing = []
+    for needed in requirements("test"):
+        try:
+            run(*words, *INSTALL, "--only-binary", ":all:", needed, cwd=folder)
+        except SystemExit:
+            missing.append(re.split("[>=]", needed)[0])
+    versions, gil = run(*words, "-c", VERSIONS, cwd=folder).splitlines()
+    variables = {"PYTHON_GIL": "0"} if int(gil) else {}  # other modules would turn it on
+    passed = True
+    try:
+        said = run(*words, "-m", "pytest", "-p", "no:cacheprovider", *arguments, cwd=ROOT,
+                   **variables)  # fmt: skip
+    except SystemExit as failed:
+        said, passed = str(failed), False
+    (folder / f"{name}.log").write_text(said, encoding="utf-8")
+    skipped = re.findall(r"^SKIPPED \[(\d+)\] \S+ (.*)", said, re.MULTILINE)
+    reasons = "; ".join(f"{count} {reason}" for count, reason in skipped) or "none"
+    without = f", without {', '.join(missing)}" if missing else ""
+    counts = said.splitlines()[-1].strip("= ")
+    return f"{versions}{without}: {counts}; skipped: {reasons}", passed
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(usage="%(prog)s FOLDER [--quick] [PYTHON ...]")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("pythons", nargs="*", default=[*DECLARED, *FREE_THREADED])
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_intermixed_args()
+    folder = options.folder.absolute()
+    if folder.exists():
+        parser.error(f"FOLDER must be a new one, got {folder}")
+    folder.mkdir(parents=True)
+    all_passed = True
+    for python in options.pythons:
+        try:
+            line, passed = outcome(python, folder, QUICK if options.quick else WHOLE)
+        except SystemExit as failed:
+            line, passed = str(failed.code).splitlines()[-1], False
+            (folder / f"{Path(python).name}.log").write_text(str(failed.code), encoding="utf-8")
+        print(f"{python}: {line}", flush=True)
+        all_passed &= passed
+    sys.exit(0 if all_passed else 1)
+
+
+if __name__ == "__main__":
+    main()
