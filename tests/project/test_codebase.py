@@ -149,6 +149,30 @@ def test_the_conda_recipe_requires_what_the_package_requires() -> None:
     assert there == ["python", *needed]
 
 
+def test_every_list_of_pythons_is_that_of_the_classifiers() -> None:
+    """CPython works without the GIL since 3.13; wheels of 3.13t are left out by name."""
+    workflow = ROOT / ".github" / "workflows" / "test.yml"
+    if not workflow.exists():
+        pytest.skip("no checkout: the source distribution has no workflows")
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    words = "\n".join(settings["project"]["classifiers"])
+    minors = re.findall(r"^Programming Language :: Python :: 3\.(\d+)$", words, re.MULTILINE)
+    free = [each for each in minors if int(each) >= 13] if ":: Free Threading" in words else []
+    known = [*minors, *(f"{each}t" for each in free)]
+    wheels = settings["tool"]["cibuildwheel"]
+    assert wheels["build"].split() == [f"cp3{each}-*" for each in known if each != "13t"]
+    assert "cp313t-*" in wheels["skip"].split()
+    matrix = re.findall(r"python: \[(.+)\]", workflow.read_text(encoding="utf-8"))
+    assert sorted(re.findall(r"3\.(\w+)", " ".join(matrix))) == sorted(known)
+    span = f"CPython 3.{minors[0]} to 3.{minors[-1]}"
+    for page in ("README.md", "CONTRIBUTING.md", "docs/promises.md", "docs/release.md"):
+        assert span in " ".join((ROOT / page).read_text(encoding="utf-8").split()), page
+    release = (ROOT / "docs" / "release.md").read_text(encoding="utf-8")
+    assert " ".join(f"python3.{each}" for each in minors) in release
+    floor = settings["project"]["requires-python"].removeprefix(">=")
+    assert floor == f"3.{minors[0]}"
+
+
 def test_every_requirement_states_its_oldest_version() -> None:
     """tools/oldest_versions.py runs the suite with these versions."""
     versions = run(sys.executable, ROOT / "tools" / "oldest_versions.py", "--list").split()
