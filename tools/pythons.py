@@ -15,10 +15,11 @@ import argparse
 import os
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
-from check_packaging import ROOT, run
+from check_packaging import ROOT, new_folder, run
 from oldest_versions import PROJECT, requirements
 
 PREFIX = "Programming Language :: Python :: 3."
@@ -36,6 +37,7 @@ print(platform.python_version(), "NumPy {}, matplotlib {}".format(*numbers), sep
 print(sysconfig.get_config_var("Py_GIL_DISABLED") or 0)
 """
 BUILD = """\
+cd /tmp && apt-get update --quiet
 apt-get source --quiet --download-only python{version}
 mkdir python && tar -xf python{version}_*.orig.tar.xz -C python --strip-components=1
 cd python && ./configure --quiet --disable-gil
@@ -49,27 +51,27 @@ def chroot(version: str, folder: Path) -> list[str]:
     if os.geteuid() != 0 or shutil.which("mmdebstrap") is None:
         sys.exit(f"no python{version} on the PATH: install it, or run this as root with mmdebstrap")
     packages = f"python{number}-venv,python{number}-dev,g++,ca-certificates"
-    more = f",make,xz-utils,{LIBRARIES}" if version != number else ""
+    packages += f",make,xz-utils,{LIBRARIES}" if version != number else ""
     for suite in SUITES:
         lines = [f"{kind} http://deb.debian.org/debian {suite} main" for kind in ("deb", "deb-src")]
         system = folder / f"{version}-{suite}"
         try:
             run("mmdebstrap", "--variant=apt", '--aptopt=Acquire::Check-Valid-Until "false"',
-                f"--include={packages}{more}", suite, system, *lines, cwd=folder)  # fmt: skip
+                f"--include={packages}", suite, system, *lines, cwd=folder)  # fmt: skip
             break
         except SystemExit as failed:
-            said = re.findall(r"^E: .*", str(failed), re.MULTILINE)
+            said = str(failed)
     else:
-        sys.exit(f"not in Debian's {' and '.join(SUITES)} ({said[0]}): give the path of one")
+        why = re.search(r"^E: .*", said, re.MULTILINE) or [said[-60:]]
+        sys.exit(f"not in Debian's {' and '.join(SUITES)} ({why[0]}): give the path of one")
     shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # pip trusts whom the host trusts
     for name in run("git", "ls-files", cwd=ROOT).splitlines():
         (system / "project" / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, system / "project" / name)
     words = ["unshare", "--mount", "--pid", "--fork", "--mount-proc", f"--root={system}"]
     inside = [*words, "--wd=/project", "env", "PATH=/usr/local/bin:/usr/bin:/usr/sbin:/bin:/sbin"]
-    if more:
-        run(*inside, "sh", "-ec", "apt-get update --quiet", cwd=folder)
-        run(*inside, "sh", "-ec", "cd /tmp\n" + BUILD.format(version=number), cwd=folder)
+    if version != number:
+        run(*inside, "sh", "-ec", BUILD.format(version=number), cwd=folder)
     return [*inside, f"PIP_CERT=/{CERTIFICATES}"]
 
 
@@ -85,15 +87,14 @@ def start(python: str, folder: Path) -> tuple[list[str], str]:
     return [], name
 
 
-def outcome(python: str, folder: Path, arguments: list[str]) -> tuple[str, bool]:
-    """The line of an interpreter, and whether the suite passed."""
+def outcome(python: str, log: Path, arguments: list[str]) -> str:
+    """The line of an interpreter; SystemExit with it if the suite fails."""
+    folder = log.parent
     before, interpreter = start(python, folder)
-    place = Path("/project") if before else ROOT
-    name = Path(python).name
-    environment = Path("/environment") if before else folder / f"{name}-environment"
+    environment = Path("/environment") if before else log.with_suffix("")
     words = [*before, environment / "bin" / "python"]
     run(*before, interpreter, "-m", "venv", environment, cwd=folder)
-    run(*words, *INSTALL, "--prefer-binary", place, cwd=folder)
+    run(*words, *INSTALL, "--prefer-binary", "/project" if before else ROOT, cwd=folder)
     missing = []
     for needed in requirements("test"):
         try:
@@ -102,40 +103,36 @@ def outcome(python: str, folder: Path, arguments: list[str]) -> tuple[str, bool]
             missing.append(re.split("[>=]", needed)[0])
     versions, gil = run(*words, "-c", VERSIONS, cwd=folder).splitlines()
     variables = {"PYTHON_GIL": "0"} if int(gil) else {}  # other modules would turn it on
-    passed = True
-    try:
-        said = run(*words, "-m", "pytest", "-p", "no:cacheprovider", *arguments, cwd=ROOT,
-                   **variables)  # fmt: skip
-    except SystemExit as failed:
-        said, passed = str(failed), False
-    (folder / f"{name}.log").write_text(said, encoding="utf-8")
+    command = [*words, "-m", "pytest", "-p", "no:cacheprovider", *arguments]
+    with log.open("w") as to:
+        done = subprocess.run(command, cwd=ROOT, env=os.environ | variables, stdout=to, stderr=to)
+    said = log.read_text(encoding="utf-8")
     skipped = re.findall(r"^SKIPPED \[(\d+)\] \S+ (.*)", said, re.MULTILINE)
     reasons = "; ".join(f"{count} {reason}" for count, reason in skipped) or "none"
     without = f", without {', '.join(missing)}" if missing else ""
-    counts = said.splitlines()[-1].strip("= ")
-    return f"{versions}{without}: {counts}; skipped: {reasons}", passed
+    line = f"{versions}{without}: {said.splitlines()[-1].strip('= ')}; skipped: {reasons}"
+    if done.returncode:
+        sys.exit(line)
+    return line
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(usage="%(prog)s FOLDER [--quick] [PYTHON ...]")
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", metavar="FOLDER", type=new_folder)
     parser.add_argument("pythons", nargs="*", default=[*DECLARED, *FREE_THREADED])
     parser.add_argument("--quick", action="store_true")
     options = parser.parse_intermixed_args()
-    folder = options.folder.absolute()
-    if folder.exists():
-        parser.error(f"FOLDER must be a new one, got {folder}")
-    folder.mkdir(parents=True)
-    all_passed = True
+    code = 0
     for python in options.pythons:
+        log = options.folder / f"{Path(python).name}.log"
         try:
-            line, passed = outcome(python, folder, QUICK if options.quick else WHOLE)
+            line = outcome(python, log, QUICK if options.quick else WHOLE)
         except SystemExit as failed:
-            line, passed = str(failed.code).splitlines()[-1], False
-            (folder / f"{Path(python).name}.log").write_text(str(failed.code), encoding="utf-8")
-        print(f"{python}: {line}", flush=True)
-        all_passed &= passed
-    sys.exit(0 if all_passed else 1)
+            code, line = 1, str(failed)
+            if not log.exists():
+                log.write_text(line, encoding="utf-8")
+        print(f"{python}: {line.splitlines()[-1]}", flush=True)
+    sys.exit(code)
 
 
 if __name__ == "__main__":
