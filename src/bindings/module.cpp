@@ -49,11 +49,10 @@ py::dict tableaus() {
 }  // namespace
 }  // namespace rolling_ellipse::bindings
 
-// The module does not declare py::mod_gil_not_used(), so a free-threaded Python turns the GIL on.
-// It could declare it: the core shares only two constants made on first use
+// The module runs without the GIL: the core shares only constants that are made on first use
 // (tests/core/threads_test.cpp, under ThreadSanitizer), bound objects never change, and every array
-// is filled before it is returned. But the module has never been run without the GIL.
-PYBIND11_MODULE(_core, m) {
+// is filled before it is returned.
+PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
     using namespace rolling_ellipse::bindings;
     m.doc() = "C++ core of rolling_ellipse; see the Python package for the documented interface.";
     watch_main_thread();
