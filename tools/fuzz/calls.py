@@ -334,7 +334,7 @@ ON_FILES = (
     *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
     *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,
     *["forged = rl.read_track(path='there/a', theta='theta', fps={extreme})"] * 2,
-    *["rl.benchmark.score(results='there')"] * 2,
+    *["forged = rl.benchmark.score(results='there')"] * 2,
     "rl.load_many(path='there')",
     "promises.marked('8.1', ROLLING_ELLIPSE_IMPACTS='there/a')",
     "promises.keeps(rl.examples, folder='there')",
