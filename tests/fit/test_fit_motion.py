@@ -2,12 +2,14 @@
 
 import math
 import sys
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib import pyplot
 from rolling_ellipse import Fit, Impulse, Mode, Scene, Trajectory, fit_motion, geometry, simulate
+from rolling_ellipse._verbs.films.errors import standard_errors
 
 SIGMA = {"x": 5e-4, "z": 5e-4, "theta": 0.01}
 DISC = (0.035**2 + 0.025**2) / 4
@@ -206,3 +208,26 @@ def test_many_samples_from_arrays_do_not_depend_on_each_other() -> None:
     force = mine.sol(t).normal_force
     for part in (slice(3000, 5000), slice(9990, None), slice(0)):
         assert np.array_equal(mine.sol(t[part]).normal_force, force[part])
+
+
+@pytest.mark.parametrize(("rise", "away", "error"), [
+    (26.0, 5.0, 0.1), (16.0, 5.0, 1.25), (16.0, 200.0, 0.1), (4.0, 5.0, 2.5), (4.0, 90.0, math.inf),
+])  # fmt: skip
+def test_a_rival_widens_errors_by_its_distance_over_the_root_of_its_rise_of_chi2(
+    rise: float, away: float, error: float
+) -> None:
+    """Where chi2 rises by more than 9, a rival beyond 30 sizes is let go; beyond 25, any is.
+
+    No film has a rival at a chosen place: the search is a parabola of chi2 with the error 0.1.
+    """
+    best = SimpleNamespace(x=np.zeros(1), cost=50.0, jac=np.array([[10.0]]))
+
+    def solve(u: Any, **_: Any) -> Any:
+        return SimpleNamespace(x=u, cost=best.cost + (10 * u[0]) ** 2 / 2)
+
+    wide = np.array([1e9])
+    unknowns = SimpleNamespace(low=-wide, high=wide, turned=lambda change: change)
+    search: Any = SimpleNamespace(unknowns=unknowns, solve=solve)
+    rival = SimpleNamespace(x=np.array([away]), cost=best.cost + rise / 2)
+    (found,), _, _ = standard_errors(search, best, [rival])
+    assert found == pytest.approx(error)

@@ -116,8 +116,7 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
         alike = float(np.sum(one * other)) / squares
         likeness = max(likeness, alike)
         bad = bad or math.sqrt(one.size) * alike > _ALARM
-    dof = search.track.size - len(search.unknowns.names)
-    residuals = off[film.known]
+    residuals, dof = off[film.known], search.dof
     spread = _spread(search.loss, residuals, np.full(residuals.size, 1 - dof / residuals.size))
     bad = bad or (not np.isnan(given).any() and spread**2 > 1 + 5 * math.sqrt(2 / dof))
     words += ["the scene does not fit the film, or the track was smoothed"] if bad else []
@@ -146,18 +145,17 @@ def counted(search: Search, best: Any, given: FloatArray) -> str:
     """Return the number of data in words, with chi2 for given deviations or the estimated ones."""
     film, residuals = search.film, search.residuals(best.x)
     chi2, sigma = float(np.sum(residuals**2)), search.sigma / search.unknowns.lens(best.x)[0]
-    dof = residuals.size - len(search.unknowns.names)
     words = [f"{residuals.size} data"]
     names = [n for k, n in enumerate(TRACKS) if np.isnan(given[k]) and film.known[:, k].any()]
     if names:
         each = ", ".join(f"{n} {_printed(n, sigma[TRACKS.index(n)])}" for n in names)
         words.append(f"sigma estimated: {each}")
     else:
-        words.append(f"chi2 / {dof} = {chi2 / dof:.3g}")
+        words.append(f"chi2 / {search.dof} = {chi2 / search.dof:.3g}")
     tame = np.abs(residuals) <= _WILD
     wild = int(np.sum(~tame))
     if wild and search.loss != "linear":
         words.append(f"{wild} of them beyond {_WILD:g} sigma")
-        rest = float(np.sum(residuals[tame] ** 2)) / max(dof - wild, 1)
+        rest = float(np.sum(residuals[tame] ** 2)) / max(search.dof - wild, 1)
         words += [] if names else [f"without which it is {rest:.3g}"]
     return ", ".join(words)

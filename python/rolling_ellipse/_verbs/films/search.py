@@ -39,6 +39,7 @@ class Search:
         self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
         self.film, self.unknowns, self.sigma, self.loss = film, unknowns, sigma, loss
         self.track = np.nonzero(film.known)[1]  # track of each datum
+        self.dof = self.track.size - len(unknowns.names)  # degrees of freedom
         far = np.abs(film.data) + max(unknowns.scene.a, unknowns.scene.b)
         self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
 
