@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from distributed import Client, LocalCluster
 from oracles.batches import ENDLESS, NAMED, TIMES, chunks, states
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
@@ -75,9 +74,10 @@ def processes() -> ProcessPoolExecutor:
 
 
 @contextmanager
-def dask() -> Iterator[Client]:
+def dask() -> Iterator[Any]:
     how = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
-    with LocalCluster(**how) as cluster, Client(cluster) as client:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(**how) as cluster, distributed.Client(cluster) as client:
         yield client
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 import nbformat
 import pytest
 import rolling_ellipse as rl
-from nbclient import NotebookClient
 from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
@@ -52,7 +51,8 @@ def test_a_notebook_runs_without_an_error(path: Path, tmp_path: Path) -> None:
     notebook = nbformat.read(tmp_path / path.name, 4)
     resources = {"metadata": {"path": str(tmp_path)}}
     # execute raises CellExecutionError with the cell and its traceback
-    NotebookClient(notebook, timeout=600, kernel_name="python3", resources=resources).execute()
+    client = pytest.importorskip("nbclient").NotebookClient
+    client(notebook, timeout=600, kernel_name="python3", resources=resources).execute()
     for cell in notebook.cells:  # a film is shown once, without pyplot's own picture of it
         shown = [output.data for output in cell.get("outputs", ()) if "data" in output]
         assert len(shown) == 1 or not any('"rolling-ellipse"' in str(data) for data in shown)
