@@ -12,9 +12,9 @@ at other times     ``motion.at(t)``, ``motion.sol(times)``, ``motion.scene_at(t)
 when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``
 ask, not compute   `outcome`, `classify`, `certify`, `thresholds`, `required_friction`, `blow_to`
 draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return what they drew, with
-                   ``.savefig("motion.png")`` and ``.ax``; ``.ax.twinx()`` puts a second quantity,
-                   ``.ax.secondary_xaxis(-0.3, ...)`` a second axis of time, in the picture
-film, page         `animate` writes .gif, .mp4 or .html; on the page of `explore` a hand strikes
+                   ``.axes`` and ``.savefig("motion.png")``; ``rl.plot(motion).theta.axes`` has the
+                   angle over time; a second axis of time is in the help of `plot_energy`
+film, page         `animate` writes .gif, .mp4, .webm or .html; in `explore` a hand strikes
 save               ``motion.save("motion.npz")`` and `load`
 table              ``motion.to_dataframe()``, ``motion.to_xarray()``
 grid of scenes     `simulate_many`; `ends` keeps only last states, `load_many` reads a folder

@@ -35,6 +35,8 @@ _SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
 class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
+    The first of `axes`, `ax`, has the positions; those of a curve are ``theta.axes``.
+
     `phase` is None for angles that `plot_phase` rejects, `lost_energy` without rolling resistance.
     """
 
@@ -72,7 +74,8 @@ def plot(
     Behind the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
     From 100 rad on, a line shows the rounding error of the angle, which limits exact motions, too.
     Where the model is not valid, the whole background is grey. Curves are sampled as finely as they
-    are drawn, or show ranges, as in `plot_forces`; the title then says so.
+    are drawn, or show ranges, as in `plot_forces`; the title then says so. The lines of the result
+    are `theta`, `omega`, `height`, ...; each has its Axes: ``plot(motion).theta.axes``.
 
     Parameters
     ----------

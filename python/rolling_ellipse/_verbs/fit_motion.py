@@ -146,7 +146,8 @@ def fit_motion(
     scene : Scene
         What is known; its values of the free parameters are first guesses.
     free : iterable of str
-        The unknown parameters, named as for `Trajectory.sensitivity`, and of the camera "scale",
+        The unknown parameters: of the scene "friction", "restitution", "theta", "omega", "inertia",
+        ..., finite in `scene`; of its impulse "jx", "jz", "dx", "dz"; of the camera "scale",
         "ground" and "clock". The scale needs x or z and one of gravity, a, b known; the ground a
         track of z and a touch; the clock x or z and one of theta, omega, x known (in the air: of x,
         z, theta, z_dot). Where a motion passes a state again, the start nearest to the guess

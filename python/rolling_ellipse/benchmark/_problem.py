@@ -73,8 +73,9 @@ class Problem(FieldsOnly):
     ----------
     id, title, question : str
     tags : tuple of str
-        Abilities that a simulator needs: "flight", "non-round", "restitution",
-        "rolling-resistance", "slope", "spin", "stiction".
+        Abilities that a simulator needs beside sliding: "flight", "non-round", "restitution",
+        "rolling-resistance", "slope", "spin" (a start whose spin is not that of rolling),
+        "stiction" (a contact that does not slip).
     scored : bool
         False for a problem for display only.
     scene : Scene

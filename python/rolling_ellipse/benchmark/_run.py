@@ -35,8 +35,8 @@ def run(
     problems : id, Problem or iterable of them, optional
         Default: all scored ones.
     tags : str or iterable of str, optional
-        Abilities of the simulator, or one text with commas; problems that need others are "not
-        supported".
+        Abilities of the simulator, as in `Problem`: "non-round,stiction"; problems that need others
+        are "not supported".
     ladder : iterable of float
         Settings, such as steps [s], from coarse to fine. Default: only None.
     tolerance : float
@@ -57,7 +57,7 @@ def run(
     --------
     >>> from scipy.integrate import solve_ivp
     >>> def mine(problem, times, rtol):
-    ...     arc = problem.ode()
+    ...     arc = problem.ode()  # up to the first event; ValueError with rolling resistance
     ...     return solve_ivp(arc.rhs, (0.0, times[-1]), arc.y0, t_eval=times, rtol=rtol).y.T
     >>> rl.benchmark.run(mine, problems="roll.rock", ladder=[1e-4, 1e-8])
     problem    setting  answer  error    digits  over condition  passed  why

@@ -55,9 +55,10 @@ def animate(
     trajectories : Trajectory or sequence of Trajectory
         One motion, or several to compare.
     path : path, optional
-        File to write: .gif, .mp4 or .webm (need ffmpeg: the extra rolling_ellipse[video]) or .html,
-        a page with a player that needs no network. Without a path nothing is written: a notebook
-        displays that player, and where matplotlib has windows, `plt.show()` shows the film.
+        File to write: .gif; .html, a page with a player that needs no network; or .mp4 or .webm,
+        which need ffmpeg (the extra rolling_ellipse[video]). Without a path nothing is written: a
+        notebook displays that player, and where matplotlib has windows, `plt.show()` shows the
+        film.
     labels : sequence of str, optional
         Names of the motions; by default, several are named by what differs among them: method,
         model, fields of the scene, else 1, 2, 3.
