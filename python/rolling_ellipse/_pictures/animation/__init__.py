@@ -115,11 +115,11 @@ def animate(
 
     Notes
     -----
-    A film that would last
-    more than a minute (30 s for a GIF, whose frames are all held in memory) shows up to five parts
-    of the motion in real time: start, end and middle, and the first and last event between them;
-    captions then count turns ("turn 500 of 1000"). A body that would turn by more than a quarter
-    turn per frame, and seem to roll backwards, is shown in slow motion, as the clock then states.
+    A film that would last more than a minute (30 s for a GIF, whose frames are all held in memory)
+    shows up to five parts of the motion in real time: start, end and middle, and the first and last
+    event between them; captions then count turns ("turn 500 of 1000"). A body that would turn by
+    more than a quarter turn per frame, and seem to roll backwards, is shown in slow motion, as the
+    clock then states.
 
     Several motions are shown in strips, stacked or side by side, with one clock, one scale and the
     same stretch of ground, so that it is clear which is ahead. The camera stands still if all

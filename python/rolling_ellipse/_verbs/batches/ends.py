@@ -53,7 +53,8 @@ class Ends(FieldsOnly):
     errors : dict
         The exceptions that `simulate` would raise, by the scene's index, a tuple.
     axes : tuple of str
-        Names of the axes, as in `MotionArrays`; "t" where only the times vary.
+        Names of the axes, as in `MotionArrays`: "omega0" for a given omega, since omega is also a
+        result; "t" where only the times vary.
     t : ndarray
         Requested times [s].
 

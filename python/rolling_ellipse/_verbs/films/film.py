@@ -104,7 +104,8 @@ class Unknowns:
         try:
             own = [camera[n] if n in camera else value_of(scene, n) for n in names]
         except ValueError as error:  # the scene has no such number
-            raise ValueError(f"free{str(error).removeprefix('wrt')}") from None
+            wrong = str(error).removeprefix("wrt")
+            raise ValueError(f"free{wrong}: scene must give its first guess") from None
         self.sizes = np.array([sizes.get(n) or size_of(scene, n) for n in names])
         bounds = [_bounds(scene, *pair) for pair in zip(names, own, strict=True)]
         self.own, (self.low, self.high) = own / self.sizes, np.array(bounds).T / self.sizes
