@@ -157,7 +157,7 @@ def _tips(motion: Trajectory) -> FloatArray:
     last = math.floor((theta.max() - tip) / math.pi)
     if last - first > _MOST:
         raise ValueError(f"event must happen at most {_MOST} times, got {last - first}")
-    return tip + math.pi * np.arange(first, last + 1)
+    return tip + math.pi * np.arange(first, last + 1, dtype=float)
 
 
 def _measured(

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ..._ask.check import readable, require
+from ..._ask.check import readable, require, shown
 from ..._ask.scene import Impulse, Scene, reached_scene
 
 ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON objects
@@ -108,7 +108,8 @@ def require_schema(it: str, schema: Any, old: int, new: int) -> None:
     if schema not in (old, new):
         is_newer = type(schema) is int and schema > new
         cure = ": a newer one wrote it, pip install --upgrade rolling-ellipse" if is_newer else ""
-        raise ValueError(f"{it} is of schema {schema!r}; this version reads {old} and {new}{cure}")
+        wrong = f"{it} is of schema {shown(schema)}"
+        raise ValueError(f"{wrong}; this version reads {old} and {new}{cure}")
 
 
 def with_resistance(scene: Any) -> Any:
