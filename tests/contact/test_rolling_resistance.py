@@ -71,11 +71,12 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
         lever = min(a, b) / 2 * random.choice([random.uniform(), 10 ** random.uniform(-4, 0)])
         scene = Scene(
             a, b, theta=random.uniform(-2, 2), friction=10 ** random.uniform(-2, 0.3),
-            omega=random.choice([0, random.normal()]), slope=random.choice([0, 0.1, -0.3]),
+            omega=float(random.choice([0, random.normal()])),
+            slope=float(random.choice([0, 0.1, -0.3])),
             inertia=(a * a + b * b) * random.uniform(0.02, 0.3), rolling_resistance=lever,
         )  # fmt: skip
         h, _, ddh = (float(each) for each in support(scene.theta, a, b))
-        slip = random.choice([0, random.normal()])
+        slip = float(random.choice([0, random.normal()]))
         if slip:
             scene = scene.replace(x_dot=h * scene.omega + slip)
         c = G * math.cos(scene.slope) + ddh * scene.omega**2

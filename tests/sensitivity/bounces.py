@@ -100,5 +100,6 @@ def scene_of(rng: np.random.Generator) -> Scene:
     a, b = rng.uniform(0.5, 2, 2)
     return Scene(
         a, b, theta=rng.uniform(-1.5, 1.5), omega=rng.uniform(-3, 3), friction=0.0,
-        z=max(a, b) * rng.uniform(1.1, 2.5), restitution=rng.choice([1.0, rng.uniform(0.7, 1)]),
+        z=max(a, b) * rng.uniform(1.1, 2.5),
+        restitution=float(rng.choice([1.0, rng.uniform(0.7, 1)])),
     )  # fmt: skip
