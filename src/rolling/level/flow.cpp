@@ -29,7 +29,7 @@ bool is_complete(const Series& series) {
 }
 
 // The state after a short move, by one power series, which keeps small changes accurate; empty if
-// the move is too long for it.
+// the move is too long for it, or needs none: at rest, of a circle, and after no time.
 std::optional<FlowSample> short_move(const RollingStart& from, double x, double t) {
     const auto [unit, short_axis, c2, sin, cos] = from.view;
     if (from.rests || c2 == 0 || t == 0 || !may_be_short(from, t)) return std::nullopt;
@@ -40,6 +40,19 @@ std::optional<FlowSample> short_move(const RollingStart& from, double x, double 
     gain[0] = 0.0;
     return FlowSample{from.theta + value(series.angle, 1.0), from.omega + value(gain, 1.0) / t,
                       x + unit * value(series.path, 1.0)};
+}
+
+// The state after a move for which `short_move` is empty.
+FlowSample long_move(const RollingFlow& flow, double t) {
+    const auto& [body, theta, omega, view, height, rests] = flow.from;
+    if (flow.kind == MotionKind::rest || t == 0) return {theta, omega, flow.x};
+    if (flow.kind == MotionKind::uniform) {
+        const double turn = omega * t;
+        return {theta + turn, omega, flow.x + view.long_axis * turn};
+    }
+    FlowSample moved = sample_at<double>(flow, phase_start(flow.from), t);
+    moved.x += flow.x;
+    return moved;
 }
 
 }  // namespace
@@ -70,23 +83,15 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
 }
 
 FlowSample sample(const RollingFlow& flow, double t) {
-    const auto& [body, theta, omega, view, height, rests] = flow.from;
-    if (flow.kind == MotionKind::rest || t == 0) return {theta, omega, flow.x};
-    if (flow.kind == MotionKind::uniform) {
-        const double turn = omega * t;
-        return {theta + turn, omega, flow.x + view.long_axis * turn};
-    }
     if (const auto moved = short_move(flow.from, flow.x, t)) return *moved;
-    FlowSample moved = sample_at<double>(flow, phase_start(flow.from), t);
-    moved.x += flow.x;
-    return moved;
+    return long_move(flow, t);
 }
 
 FlowSample sample_alone(const RollingStart& from, double t) {
     if (const auto moved = short_move(from, 0.0, t)) return *moved;  // before a quarter is set up
     const RollingFlow flow = rolling_flow(from);
     validate_time(t, longest_time(flow));
-    return sample(flow, t);
+    return long_move(flow, t);
 }
 
 double longest_time(const RollingFlow& flow) { return 1e15 * (0.5 * period(flow)); }
