@@ -22,7 +22,7 @@ from matplotlib.transforms import Bbox
 
 from .._ask.check import file_name, positive, shown
 from .._ask.habits import meant
-from .._motion.export.atomic import replacing
+from .._motion.export import atomic
 from .._motion.quantities import QUANTITIES
 
 _Given = ParamSpec("_Given")
@@ -239,9 +239,8 @@ def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
     name = file_name("path", path)
     if not (suffix := os.path.splitext(name)[1]) and "format" not in options:
         name += (suffix := f".{rcParams['savefig.format']}")
-    with replacing(name) as new:
-        whole.savefig(drawn := BytesIO(), **{"format": suffix[1:]} | options)
-        new.write_bytes(drawn.getvalue())  # matplotlib's own errors would hide a full disk
+    whole.savefig(drawn := BytesIO(), **{"format": suffix[1:]} | options)
+    atomic.write(name, drawn.getvalue())  # matplotlib's own errors would hide a full disk
     return name
 
 
