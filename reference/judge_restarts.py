@@ -137,9 +137,9 @@ def scene_of(v: Values, i: int) -> rl.Scene | None:
 
 def ends(v: Values, t: Any) -> tuple[Any, Any]:
     """States and codes (mode, events, first, ending) of `rl.ends`; nan, -1 for refused starts."""
-    left_out = {"rolling_resistance": 0.0}
-    columns = [
-        v.get(name, np.full(len(t), left_out.get(name, np.nan))) for name in _core.FIELDS["Scene"]
+    columns = [  # what is not drawn has the default of a scene; NumPy makes None a NaN
+        v[name] if name in v else np.full(len(t), getattr(rl.Scene, name), float)
+        for name in _core.FIELDS["Scene"]
     ]
     table = np.column_stack(columns + [np.full(len(t), np.nan)] * 4)  # no impulse
     found = _core.ends_table(table, DEFAULTS.core, t, 1)
