@@ -5,11 +5,12 @@ The package computes the right answers, and those of usual mistakes by making th
 
 Examples
 --------
->>> height = rl.geometry.support(0.6, a=0.3, b=0.2)
->>> rl.course.mark("1.1", height).right
+>>> task = rl.course.tasks()[0]
+>>> print(task.question)
+How high is the centre above the ground, $h$?
+>>> height = rl.geometry.support(**task.data)
+>>> rl.course.mark(task.number, height).right
 True
->>> rl.course.mark("3.2", 1.91).mistake
-'sign and inertia'
 """
 
 from __future__ import annotations

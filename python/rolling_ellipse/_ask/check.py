@@ -373,9 +373,7 @@ def file_name(name: str, value: Any) -> str:
 
 
 def readable(name: str, value: Any) -> str:
-    """Return the path of a file or folder as text; a pipe or a device, which may never end, has
-    none.
-    """
+    """Return the path of a file or folder as text; refuse pipes and devices, which may not end."""
     path = file_name(name, value)
     if stat.S_IFMT(os.stat(path).st_mode) not in (stat.S_IFREG, stat.S_IFDIR):
         raise ValueError(f"{name} must name a file, got {path!r}, which is a pipe or a device")

@@ -37,9 +37,9 @@ def restored(
 ) -> _Made:
     """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
-    Only a file with the right first bytes (and the end of an archive) is read: another file may
-    be of any size. Whatever `restore` raises becomes a ValueError that
-    names the file, the problem and the cure, if any.
+    Only a file with the right first bytes (and the end of an archive) is read: another file may be
+    of any size. Whatever `restore` raises becomes a ValueError that names the file, the problem and
+    the cure, if any.
     """
     name = readable("path", path)
     with open(name, "rb") as file:
