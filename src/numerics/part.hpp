@@ -18,6 +18,7 @@ struct PartRule {
     PartArray places;
     PartArray weights;
     PartMatrix integrals;  // integrals from -1 to the nodes
+    PartMatrix moments;    // those of (1 + x) times a function, over (1 + x)^2
     PartMatrix legendre;   // coefficients of the Legendre polynomials
     PartMatrix powers;     // power coefficients from Legendre coefficients
 };
@@ -51,6 +52,16 @@ inline const PartRule& part_rule() {
                     sum += rule.legendre[j][k] * (p[k + 1] - p[k - 1]) / (2 * k + 1);
                 }
                 rule.integrals[j][i] = sum;
+                rule.moments[j][i] = 0.0;
+                for (int q = 0; q < part_order; ++q) {
+                    const auto [at, part] = node_of(gauss, q);
+                    const double share = 0.5 * (1 + at);
+                    const auto inside =
+                        legendre_polynomials(share * (1 + node_of(gauss, i).place) - 1);
+                    for (int k = 0; k < part_order; ++k) {
+                        rule.moments[j][i] += 0.5 * part * share * rule.legendre[j][k] * inside[k];
+                    }
+                }
             }
         }
         auto& powers = rule.powers;  // powers of P_0 = 1, P_1 = x and, by recurrence, the others

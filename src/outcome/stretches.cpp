@@ -67,8 +67,8 @@ struct CourseOf {
     Course operator()(const SlopeFlow& flow) const {
         const double unit = flow.body.time;  // unit of time; a power of two: products are exact
         Course course{flow.rests ? resting : rolling};
-        if (const Repeat* const swing = rocking(flow)) {
-            course.period = swing->lasts() * 2.0 * unit;
+        if (const auto half = half_period(flow)) {
+            course.period = *half * 2.0 * unit;
             course.swung = 4.0;
             return course;
         }

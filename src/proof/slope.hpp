@@ -33,6 +33,7 @@ class LawWatch {
     bool examine(const Even&);
     bool examine(const SlopePiece& piece);
     bool examine(Sum& sum);
+    bool examine(const Swing& swing);
     // These stretches only repeat the forces of earlier ones.
     bool examine(const Mirror&) { return false; }
     bool examine(const Repeat&) { return false; }

@@ -17,6 +17,20 @@ const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
+// The swing of a body that rocks; null if it is followed by series.
+const Swing* swing_of(const SlopeFlow& flow) {
+    return std::get_if<Swing>(&flow.stretches.back().law);
+}
+
+// Whether the body turns by less than an angle in a time from the start. Near the start only series
+// keep the path accurate.
+bool is_near(const SlopeFlow& flow, double time, double angle) {
+    const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
+    return time * speed < angle;
+}
+constexpr double near_in_sum = 0.1;    // [rad]
+constexpr double near_in_swing = 0.2;  // series are faster up to here
+
 // --------------------------------------------------------------------------------- points
 
 // Computes points of the motion of a body, each from its stretch.
@@ -28,15 +42,25 @@ class SlopeReader {
     // at no extra cost. Returns the number of points computed.
     std::size_t operator()(const double* times, std::size_t n, SlopePlace* places) {
         const auto time = [&](std::size_t i) { return times[i] / flow_.body.time; };
+        const Swing* const swing = swing_of(flow_);
         const SlopeStretch* const first = flow_.stretches.data();
-        const SlopeStretch& here = stretch_at(first, first + flow_.stretches.size(), time(0));
+        const SlopeStretch& here = swing
+                                       ? flow_.stretches.back()
+                                       : stretch_at(first, first + flow_.stretches.size(), time(0));
         const Sum* const sum = std::get_if<Sum>(&here.law);
-        if (!sum || is_near(time(0))) {
+        const auto is_by_series = [&](double at) {
+            return swing ? is_near(flow_, at, near_in_swing) : is_near_start(at);
+        };
+        if (!(sum || swing) || is_by_series(time(0))) {
             places[0] = place(here, {time(0), 0.0});
             return 1;
         }
         std::size_t count = 1;
-        while (count < std::min(n, RunReader::most) && !is_near(time(count))) ++count;
+        while (count < std::min(n, RunReader::most) && !is_by_series(time(count))) ++count;
+        if (swing) {
+            if (!swing_) swing_.emplace(flow_.body, *swing);
+            return (*swing_)(times, count, places);
+        }
         if (of_ != sum) run_.emplace(sum->run);
         of_ = sum;
         return (*run_)(times, count, places);
@@ -51,20 +75,20 @@ class SlopeReader {
         return later == first ? *first : later[-1];
     }
 
-    SlopePlace place(const SlopeStretch& here, DoubleDouble time) const {
+    SlopePlace place(const SlopeStretch& here, DoubleDouble time) {
         return std::visit([&](const auto& law) { return place(law, here, time); }, here.law);
     }
 
     // The point at a time in the series before a stretch; side is -1 for motion in the other
     // direction.
-    SlopePlace place_before(const SlopeStretch& here, DoubleDouble time, double side) const {
+    SlopePlace place_before(const SlopeStretch& here, DoubleDouble time, double side) {
         const SlopeStretch* const first = flow_.stretches.data() + (first_sum(flow_) ? 1 : 0);
         SlopePlace found = place(stretch_at(first, &here, double(time)), time);
         found.omega *= side;
         return found;
     }
 
-    SlopePlace place(const Even&, const SlopeStretch&, DoubleDouble time) const {
+    SlopePlace place(const Even&, const SlopeStretch&, DoubleDouble time) {
         const double t = double(time);
         SlopePlace place = flow_.start;
         const double turned = t * (place.omega + 0.5 * flow_.acceleration * t);
@@ -75,20 +99,31 @@ class SlopeReader {
         return place;
     }
 
-    SlopePlace place(const SlopePiece& piece, const SlopeStretch&, DoubleDouble time) const {
+    SlopePlace place(const SlopePiece& piece, const SlopeStretch&, DoubleDouble time) {
         return place_in(piece, double(time - piece.from.time));
     }
 
     // Used for times near the start; all other points of sums are computed side by side.
-    SlopePlace place(const Sum&, const SlopeStretch&, DoubleDouble time) const {
+    SlopePlace place(const Sum&, const SlopeStretch&, DoubleDouble time) {
         return place_in(*near_, double(time));
     }
 
-    SlopePlace place(const Mirror& mirror, const SlopeStretch& here, DoubleDouble time) const {
+    // Used for times near the start; series are faster there.
+    SlopePlace place(const Swing&, const SlopeStretch&, DoubleDouble time) {
+        if (!followed_) followed_ = by_series(flow_);
+        const double t = double(time) * flow_.body.time;
+        prepare(*followed_, t);
+        SlopeReader read(*followed_);
+        SlopePlace place;
+        read(&t, 1, &place);
+        return place;
+    }
+
+    SlopePlace place(const Mirror& mirror, const SlopeStretch& here, DoubleDouble time) {
         return place_before(here, mirror.turning * 2.0 - time, -1.0);
     }
 
-    SlopePlace place(const Repeat& swing, const SlopeStretch& here, DoubleDouble time) const {
+    SlopePlace place(const Repeat& swing, const SlopeStretch& here, DoubleDouble time) {
         const DoubleDouble since = time - swing.last;
         const double swings = std::floor(double(since) / double(swing.lasts()));
         const DoubleDouble rest = since - swing.lasts() * swings;
@@ -96,13 +131,9 @@ class SlopeReader {
                                            : place_before(here, swing.first + rest, 1.0);
     }
 
-    // Whether to evaluate a time by a series about the start although the motion starts with a sum:
-    // near the start only a series keeps the path accurate.
-    bool is_near(double time) {
-        constexpr double short_way = 0.1;  // [rad]
-        const double speed =
-            std::abs(flow_.start.omega) + 0.5 * std::abs(flow_.acceleration) * time;
-        if (!(time * speed < short_way && first_sum(flow_))) return false;
+    // Whether to evaluate a time by a series about the start although the motion starts with a sum.
+    bool is_near_start(double time) {
+        if (!first_sum(flow_) || !is_near(flow_, time, near_in_sum)) return false;
         if (!near_) near_ = piece_from(flow_.body, flow_.start);
         return time < near_->lasts;
     }
@@ -111,6 +142,8 @@ class SlopeReader {
     std::optional<SlopePiece> near_;
     const Sum* of_ = nullptr;  // the sum that was read last
     std::optional<RunReader> run_;
+    std::optional<SwingReader> swing_;
+    std::optional<SlopeFlow> followed_;
 };
 
 // --------------------------------------------------------------------------------- growth
@@ -151,6 +184,12 @@ void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, doub
     flow.stretches.emplace_back(double(from.time), end, std::move(sum));
 }
 
+// Whether a motion that is to be known up to a time may be a swing but has not been tried as one.
+bool may_swing(const SlopeFlow& flow, double until) {
+    return !flow.by_series && !(!flow.stretches.empty() && swing_of(flow)) &&
+           !is_near(flow, until, near_in_swing);
+}
+
 // The point at the end of the last stretch.
 SlopePlace next_place(const SlopeFlow& flow) {
     if (flow.stretches.empty()) return flow.start;
@@ -183,11 +222,19 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     flow.rests = omega == 0 && balanced;
     if (flow.rests) flow.acceleration = 0.0;
     if (omega == 0) flow.turning = flow.start.time;
-    if (flow.rests || is_circle) flow.stretches.emplace_back(0.0, infinity, Even{});
+    flow.by_series = flow.rests || is_circle;
+    if (flow.by_series) flow.stretches.emplace_back(0.0, infinity, Even{});
     return flow;
 }
 
-bool grow(SlopeFlow& flow) {
+bool grow(SlopeFlow& flow, double until) {
+    if (may_swing(flow, until)) {
+        if (auto swing = swing_from(flow.body, flow.start)) {
+            flow.stretches.emplace_back(0.0, infinity, *std::move(swing));
+            return true;
+        }
+        flow.by_series = true;
+    }
     if (!flow.stretches.empty() && flow.stretches.back().end == infinity) return false;
     const SlopePlace from = next_place(flow);
     const Geometry here = geometry(flow.body, from);
@@ -204,12 +251,21 @@ bool grow(SlopeFlow& flow) {
     return true;
 }
 
+SlopeFlow by_series(const SlopeFlow& flow) {
+    SlopeFlow followed = flow;
+    followed.stretches.clear();
+    if (followed.start.omega != 0) followed.turning.reset();
+    followed.by_series = true;
+    return followed;
+}
+
 void prepare(SlopeFlow& flow, double t) {
     const double until = t / flow.body.time;
     const auto is_short = [&] {
-        return flow.stretches.empty() || flow.stretches.back().end <= until;
+        return flow.stretches.empty() || flow.stretches.back().end <= until ||
+               may_swing(flow, until);
     };
-    while (is_short() && grow(flow)) continue;
+    while (is_short() && grow(flow, until)) continue;
     auto* const sum = std::get_if<Sum>(&flow.stretches.back().law);
     if (sum) extend(sum->run, double(-sum->run.from.time + until));
 }
@@ -251,9 +307,7 @@ double longest_time(const SlopeFlow& prepared, double t) {
         const double last = std::sqrt(square(speed) + 2 * prepared.acceleration * turned);
         return unit * (2 * turned / (speed + last));
     }
-    if (const Repeat* const swing = rocking(prepared)) {
-        return unit * most * double(swing->lasts());
-    }
+    if (const auto half = half_period(prepared)) return unit * most * double(*half);
     const Sum* const sum = std::get_if<Sum>(&law);
     if (!sum || sum->run.half_turns < most || !sum->run.is_complete()) return infinity;
     if (sum->run.heading < 0) return unit * double(sum->end.time);
@@ -262,15 +316,18 @@ double longest_time(const SlopeFlow& prepared, double t) {
     return unit * double(sum->run.from.time + RunTimes(sum->run)(most));
 }
 
-const Repeat* rocking(const SlopeFlow& prepared) {
-    return std::get_if<Repeat>(&prepared.stretches.back().law);
+std::optional<DoubleDouble> half_period(const SlopeFlow& prepared) {
+    const auto& law = prepared.stretches.back().law;
+    if (const Swing* const swing = swing_of(prepared)) return swing->lasts();
+    if (const auto* const swing = std::get_if<Repeat>(&law)) return swing->lasts();
+    return std::nullopt;
 }
 
 std::optional<double> period(const SlopeFlow& prepared) {
     if (prepared.rests) return infinity;
-    const Repeat* const swing = rocking(prepared);
-    if (!swing) return std::nullopt;
-    return prepared.body.time * double(swing->lasts() * 2.0);
+    const auto half = half_period(prepared);
+    if (!half) return std::nullopt;
+    return prepared.body.time * double(*half * 2.0);
 }
 
 }  // namespace rolling_ellipse

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rolling/level/flow.hpp"
-#include "rolling/slope/run.hpp"
+#include "rolling/slope/swing.hpp"
 
 namespace rolling_ellipse {
 
@@ -42,7 +42,7 @@ struct Repeat {
 struct SlopeStretch {
     double begin;
     double end;  // end of the law's validity
-    std::variant<Even, SlopePiece, Sum, Mirror, Repeat> law;
+    std::variant<Even, SlopePiece, Sum, Swing, Mirror, Repeat> law;
 
     template <class Law>
     SlopeStretch(double begin, double end, Law&& law)
@@ -61,16 +61,21 @@ struct SlopeFlow {
     Datum datum;  // the start
     std::vector<SlopeStretch> stretches;
     std::optional<DoubleDouble> turning;  // time of the first turning point, once known
+    bool by_series = false;               // whether the motion is no swing, or not treated as one
 };
 
 // The flow of a body that rolls on a nonzero slope.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
+// The start of a flow whose swings are followed by series.
+SlopeFlow by_series(const SlopeFlow& flow);
+
 // Extends the stretches until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Appends at least one stretch; false if the last one never ends.
-bool grow(SlopeFlow& flow);
+// Appends at least one stretch; false if the last one never ends. Up to a time `until` in units of
+// the body near the start, a swing is followed by series.
+bool grow(SlopeFlow& flow, double until = infinity);
 
 // The state at a time in [0, longest_time] up to which the flow is prepared; or at n such times,
 // fastest if they are ascending.
@@ -82,8 +87,8 @@ FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 // given time t is far below it, which is quicker to find out.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
-// The law of a body that rocks; null for all others.
-const Repeat* rocking(const SlopeFlow& prepared);
+// Time between two turning points of a body that rocks; empty for all others.
+std::optional<DoubleDouble> half_period(const SlopeFlow& prepared);
 
 // Time of a full swing [s]; empty if the motion does not repeat, infinite at rest.
 std::optional<double> period(const SlopeFlow& prepared);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "rolling/slope/panel.hpp"
-#include "scene/centre_of_rolling.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -14,7 +13,6 @@ constexpr double asymptotic_from = 14;  // W/w from which R(W) is accurate to 2e
 constexpr double few = 4;               // fewer half turns than this are cheaper to add one by one
 constexpr std::size_t most_begins = 1 + std::size_t(asymptotic_from + few);
 constexpr std::size_t usual_panels = 12;
-constexpr std::size_t usual_parts = 16;
 
 // The remainder sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
 [[gnu::always_inline]] inline Pack remainder(Pack ratio, Pack over_root) {
@@ -124,7 +122,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
         part.level[i] = run.datum.energy + (along * (run.path_ahead - run.datum.path + path[i]) +
                                             body.gravity.into * falls[i]);
     }
-    part.lasts = integral(node_times(run, part, 0.0));
+    part.lasts = integral(node_times(part, 0.0));
     run.path_ahead += integral(part.advance);
     run.mass += integral(part.mass);
     run.known += part.lasts;
@@ -205,9 +203,7 @@ void extend(SlopeRun& run, double since) {
     while (!run.is_complete() && !(run.known > since)) add_part(run);
 }
 
-ROLLING_ELLIPSE_WIDE PartArray node_times(const SlopeRun& run, const RunPart& part,
-                                          double half_turns) {
-    const double gained = run.heading * half_turns * run.body.gain;
+ROLLING_ELLIPSE_WIDE PartArray node_times(const RunPart& part, double gained) {
     PartArray times;
     for (int i = 0; i < part_order; i += lanes) {
         store(load(&part.mass[i]) / sqrt(load(&part.level[i]) + gained), &times[i]);
@@ -243,7 +239,7 @@ DoubleDouble RunTimes::operator()(double half_turns) {
         DoubleDouble sum = begins_.back();
         for (const RunPart& part : run_.parts) {
             const double after = run_.heading < 0 ? fallen - j : j;
-            sum = sum + (after == 0 ? part.lasts : integral(node_times(run_, part, after)));
+            sum = sum + (after == 0 ? part.lasts : integral(node_times(part, run_.gained(after))));
         }
         begins_.push_back(sum);
     }
@@ -269,28 +265,10 @@ DoubleDouble RunTimes::operator()(double half_turns) {
 // N and F as in `contact_force`.
 ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& part,
                                             double half_turns) {
-    const SlopeBody& body = run.body;
-    const double gained = run.heading * half_turns * body.gain;
-    const double into = body.gravity.into;
-    const double along = run.heading * body.gravity.along;
-    const double a = body.long_axis;
-    const double b = body.short_axis;
-    PartForces forces;
-    for (int i = 0; i < part_order; i += lanes) {
-        const PanelPlaces at = places_at(run, part, load(&part_rule().places[i]));
-        const Pack over_h3 = 1 / (at.h * at.h2);
-        const Pack dh = body.c2 * at.sin * at.cos * at.over / at.h;
-        const Pack ddh =
-            body.c2 * (b * at.cos2 - a * at.sin2) * (b * at.cos2 + a * at.sin2) * over_h3;
-        const Pack w = body.c2 * (b * b * at.cos2 - a * a * at.sin2) * over_h3 * at.h;
-        const Pack omega2 =
-            2 * (load(&part.level[i]) + gained) / (body.gyration2 + at.h2 + dh * dh);
-        const auto force =
-            centre_of_rolling(body.gyration2, into, along, at.h, dh, ddh, w, omega2).force_per_mass;
-        store(force.normal, &forces.normal[i]);
-        store(force.along, &forces.friction[i]);
-    }
-    return forces;
+    const auto positions_at = [&](Pack x) __attribute__((always_inline)) {
+        return places_at(run, part, x);
+    };
+    return forces_at(run.body, part, run.heading, run.gained(half_turns), positions_at);
 }
 
 ROLLING_ELLIPSE_WIDE PartArray legendre_coefficients(const PartArray& at_nodes) {

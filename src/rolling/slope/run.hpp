@@ -42,6 +42,8 @@ struct RunPart {
     PartArray mass;     // d/ds of the integral of sqrt(D/2),
     PartArray level;    // and W in the first half turn
     double lasts;       // time of the part in the first half turn
+
+    bool turns() const { return middle == half; }  // of a swing: starts at a turning point
 };
 
 struct SlopeRun {
@@ -61,6 +63,7 @@ struct SlopeRun {
     int next_part;
 
     bool is_complete() const { return next_panel == panels.size(); }
+    double gained(double half_turns) const { return heading * half_turns * body.gain; }
 };
 
 // The run from a point of a motion: uphill for as many half turns as `may_run` allows, downhill for
@@ -78,8 +81,8 @@ inline constexpr double most_half_turns = 1e15;
 // relative to w for the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from);
 
-// d(time)/ds at the nodes of a part, after n half turns; s in [-1, 1] is the position in the part.
-PartArray node_times(const SlopeRun& run, const RunPart& part, double half_turns);
+// d(time)/ds at the nodes of a part after W has grown; s in [-1, 1] is the position in the part.
+PartArray node_times(const RunPart& part, double gained);
 
 // The approximate number of half turns in a time after `from`, as if W grew linearly with it.
 double about(const SlopeRun& run, double since);

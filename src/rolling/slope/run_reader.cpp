@@ -7,61 +7,13 @@
 namespace rolling_ellipse {
 namespace {
 
-// The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by a factor of 6.4 per degree, and those of P_k itself rise by 2.4, so that there is hardly any
-// cancellation between the powers.
-ROLLING_ELLIPSE_WIDE PartPolynomial polynomial_through(const PartArray& values) {
-    const PartRule& rule = part_rule();
-    const PartArray powers = product(rule.powers, product(rule.legendre, values));
-    PartPolynomial polynomial{};
-    for (int k = 0; k < part_order; ++k) {
-        polynomial.value[k] = powers[k];
-        polynomial.integral[k + 1] = powers[k] * (1.0 / (k + 1));
-        polynomial.integral[0] +=
-            k % 2 == 0 ? polynomial.integral[k + 1] : -polynomial.integral[k + 1];
-    }
-    return polynomial;
-}
-
-// The position in a part from the fraction of its time: the cubic with the values and slopes of the
-// inverse function at both ends.
-std::array<double, 5> inverse_about(const PartPolynomial& time) {
-    const double lasts = value(time.integral, 1.0);
-    const double first = lasts / value(time.value, -1.0);
-    const double last = lasts / value(time.value, 1.0);
-    return {-1.0, first, 6 - 2 * first - last, -4 + first + last, 0.0};
-}
-
-// The positions in a part, -1 ... 1, at times from its start, by Newton's method.
-[[gnu::always_inline]] inline Pack places_in_part(const PartPolynomial& of_time, Pack guess,
-                                                  Pack times) {
-    constexpr int most_steps = 8;       // four suffice from the worst guess, 0.2 away
-    constexpr double converged = 1e-8;  // the next step would be its square
-    Pack x = max(min(guess, pack(1.0)), pack(-1.0));
-    Mask<Pack> moving = x == x;
-    for (int i = 0; i < most_steps && any(moving); ++i) {
-        const Pack step = (times - value(of_time.integral, x)) / value(of_time.value, x);
-        x = moving ? x + step : x;
-        moving = moving & (abs(step) >= converged);
-    }
-    return x;
-}
-
-// Points on a part: tangent of the angle from the panel's centre, path ahead, magnitude of omega.
-struct PlacesOnPart {
-    std::array<double, lanes> tan;
-    std::array<double, lanes> ahead;
-    std::array<double, lanes> speed;
-};
-
 // The points at times from the start of the part.
 ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of,
                                       const std::array<double, lanes>& times,
                                       PlacesOnPart& places) {
     const RunPart& part = *of.part;
     const SlopeBody& body = run.body;
-    const Pack time = load(times.data());
-    const Pack x = places_in_part(of.time, value(of.about_place, time / of.lasts), time);
+    const Pack x = places_in_part(of, load(times.data()));
     const PanelPlaces at = places_at(run, part, x);
     const Pack ahead = run.heading * (part.path + value(of.path.integral, x));
     const Pack energy =
@@ -154,7 +106,7 @@ void RunReader::set_half_turn(double half_turns) {
     for (std::size_t i = 0; i < run_.parts.size(); ++i) {
         const RunPart& part = run_.parts[i];
         part_times_[i] =
-            half_turns == 0 ? part.lasts : integral(node_times(run_, part, half_turns));
+            half_turns == 0 ? part.lasts : integral(node_times(part, run_.gained(half_turns)));
         lasts_ += part_times_[i];
     }
 }
@@ -162,13 +114,8 @@ void RunReader::set_half_turn(double half_turns) {
 void RunReader::read_part(std::size_t i) {
     const RunPart& part = run_.parts[i];
     if (reading_.part == &part) return;
-    reading_ = {&part,
-                half_turns_,
-                part_times_[i],
-                polynomial_through(node_times(run_, part, half_turns_)),
-                polynomial_through(part.advance),
-                {}};
-    reading_.about_place = inverse_about(reading_.time);
+    reading_ =
+        reading_of(part, half_turns_, part_times_[i], node_times(part, run_.gained(half_turns_)));
 }
 
 }  // namespace rolling_ellipse
