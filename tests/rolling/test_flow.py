@@ -14,7 +14,7 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR, MOTIONS, PARAMETERS, Motion
+from oracles.flow import LARGEST_ERROR, MOTIONS, PARAMETERS, Motion, arguments
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
@@ -84,6 +84,25 @@ def test_the_period_is_infinite_at_rest_and_one_full_turn_for_a_circle() -> None
     assert period(Scene(2.0, 1.0)) == math.inf
     assert period(Scene(2.0, 1.0, theta=math.pi / 2)) == math.inf
     assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
+
+
+# ---------------------------------------------------------------------------------- short moves
+
+
+@each_motion
+def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: Motion) -> None:
+    """By a power series, by a move that needs no quarter turn, and by one that needs it."""
+    scene, half = reference.Scene(*motion), float(exact_period(motion, 12)) / 2
+    exact, changes = reference.motion(scene, rule(28)), reference.sensitivities(scene, rule(12))
+    worst = 0.0
+    for span in (1e-3, 0.01, 0.02, 0.05, 0.1, 0.3):
+        t = span * half
+        state = exact.state(mp.mpf(t))
+        units = reference.units(changes(mp.mpf(t)), state)
+        found = zip(flow(t, **arguments(motion)), state, units, strict=True)
+        worst = max(worst, *(float(abs(value - known)) / unit for value, known, unit in found))
+    told(f"{worst:.3g} units")
+    assert worst <= LARGEST_ERROR
 
 
 # ------------------------------------------------------------------------- circle and nearly so

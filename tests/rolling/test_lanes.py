@@ -53,8 +53,8 @@ def same(found: np.ndarray, expected: np.ndarray) -> bool:
 @each_level
 @pytest.mark.parametrize(
     ("ratio", "half_turns"),
-    [(10.0, 10.0), (1e3, 10.0), (10.0, 1e6), (1.0001, 100.0)],
-    ids=["few", "thin", "long", "round"],
+    [(10.0, 10.0), (1e3, 10.0), (10.0, 1e6), (1.0001, 100.0), (1e3, 0.3)],
+    ids=["few", "thin", "long", "round", "short"],
 )
 def test_a_scene_gives_the_same_bits_in_a_batch_as_alone(
     level: str, ratio: float, half_turns: float

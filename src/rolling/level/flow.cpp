@@ -55,6 +55,29 @@ FlowSample long_move(const RollingFlow& flow, double t) {
     return moved;
 }
 
+// A motion, all but its quarter.
+RollingFlow flow_of(const RollingStart& from, double x) {
+    RollingFlow flow;
+    flow.kind = from.rests ? MotionKind::rest : MotionKind::uniform;
+    flow.from = from;
+    flow.x = x;
+    flow.start_slope = 0.0;
+    if (from.rests || from.view.c2 == 0) return flow;
+    set_motion(flow, phase_start(from));
+    flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
+    return flow;
+}
+
+void set_quarter(RollingFlow& flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
+    set_quarter(flow.phase);
+    // With a tail the steps end 1e-9 of the path too early, so the path of the quarter is
+    // recomputed.
+    if (flow.phase.map.has_tail) {
+        flow.phase.quarter_path = path_from_flat(flow.from.view.lying(), 1.0, 0.0);
+    }
+}
+
 }  // namespace
 
 RollingStart rolling_start(const Body& body, double theta, double omega) {
@@ -67,18 +90,8 @@ RollingStart rolling_start(const Body& body, double theta, double omega) {
 }
 
 RollingFlow rolling_flow(const RollingStart& from, double x) {
-    RollingFlow flow;
-    flow.kind = from.rests ? MotionKind::rest : MotionKind::uniform;
-    flow.from = from;
-    flow.x = x;
-    if (from.rests || from.view.c2 == 0) return flow;
-    set_motion(flow, phase_start(from));
-    flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
-    // With a tail the steps end 1e-9 of the path too early, so the path of the quarter is
-    // recomputed.
-    if (flow.phase.map.has_tail) {
-        flow.phase.quarter_path = path_from_flat(from.view.lying(), 1.0, 0.0);
-    }
+    RollingFlow flow = flow_of(from, x);
+    set_quarter(flow);
     return flow;
 }
 
@@ -88,9 +101,12 @@ FlowSample sample(const RollingFlow& flow, double t) {
 }
 
 FlowSample sample_alone(const RollingStart& from, double t) {
-    if (const auto moved = short_move(from, 0.0, t)) return *moved;  // before a quarter is set up
-    const RollingFlow flow = rolling_flow(from);
-    validate_time(t, longest_time(flow));
+    if (const auto moved = short_move(from, 0.0, t)) return *moved;
+    RollingFlow flow = flow_of(from, 0.0);
+    if (!is_short(flow, t)) {
+        set_quarter(flow);
+        validate_time(t, longest_time(flow));
+    }
     return long_move(flow, t);
 }
 

@@ -151,6 +151,7 @@ struct PhaseMotion {
     Mask<T> on_way_back;        // whether a libration starts with a phase beyond +-pi/2
     PhasePoint<T> start_phase;  // initial phase, minus half a turn on the way back
     PhasePlace<T> start_place;
+    T start_slope;  // dt/dy at the start; 0 without a phase
 };
 
 // The state of a motion: angle [rad], angular velocity [rad/s], position of the centre [m].

@@ -35,7 +35,9 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
             t[lane] = times[places[at]];
         }
         set_motion(motion, start);
-        const Mask<Pack> is_late = abs(t) > 1e15 * motion.phase.half_turn.high;
+        const Mask<Pack> is_long = negated(is_short(motion, t));
+        if (any(is_long)) set_quarter(motion.phase);
+        const Mask<Pack> is_late = is_long & (abs(t) > 1e15 * motion.phase.half_turn.high);
         const MotionSample<Pack> now = sample_at(motion, start, is_late ? Pack{} : t);
         for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
             samples[places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};

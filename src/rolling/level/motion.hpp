@@ -72,22 +72,39 @@ inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
                 (integrand.energy_height + sqrt(h2)) / h2);
 }
 
-// Sets the motion of a given start.
+// Sets the motion of a given start, all but its quarter.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
-    set_phase_time(motion.phase, phase_integrand(at));
-    const auto rotates = motion.phase.integrand.rotates;
+    PhaseIntegrand<T>& integrand = motion.phase.integrand;
+    PhaseMap<T>& map = motion.phase.map;
+    integrand = phase_integrand(at);
+    set_phase_map<T>(map, integrand.kappa,
+                     sqrt(integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0)));
+    const auto rotates = integrand.rotates;
+    const T factor = shape_factor(integrand, at.sin);
     const T one = filled<T>(1.0);
     motion.direction = rotates ? copysign(one, at.omega) : one;
     // The initial phase times the amplitude; the cosine is negative on the way back.
     const T sin = motion.direction * at.sin;
-    const T cos = rotates ? at.cos : at.omega * shape_factor(motion.phase.integrand, at.sin);
+    const T cos = rotates ? at.cos : at.omega * factor;
     motion.amplitude = sqrt(sin * sin + cos * cos);
     // A body at rest on the upper side is at its turning point and counts as being on the way back.
     const auto rests_beyond = (cos == 0) & (sin > 0) & negated(rotates);
     motion.on_way_back = (cos < 0) | rests_beyond;
     motion.start_phase = {motion.on_way_back ? -sin : sin, abs(cos)};
-    motion.start_place = place_of(motion.phase.map, motion.start_phase);
+    motion.start_place = place_of(map, motion.start_phase);
+    const T graded = map.grade * cos;
+    motion.start_slope = factor * map.speed * sqrt(graded * graded + sin * sin) / motion.amplitude;
+    motion.phase.half_turn = {T{}, T{}};
+    motion.phase.quarter_path = T{};
+}
+
+// Whether a move is so short that it needs no quarter. As dt/dy falls at most like e^(-2y), it then
+// ends within 0.81, and half a quarter is 0.87 or more.
+template <class T>
+inline Mask<T> is_short(const PhaseMotion<T>& motion, T t) {
+    constexpr double at_first_speed = 0.4;  // its distance in y if dt/dy did not change
+    return abs(t) < at_first_speed * motion.start_slope;
 }
 
 // Angle from the flat position and angular velocity at a point of a motion.
@@ -117,7 +134,8 @@ inline T heading_of(const PhaseMotion<T>& motion) {
     return motion.phase.integrand.rotates ? motion.direction : libration;
 }
 
-// The state at a time; x is the path from the start.
+// The state at a time; x is the path from the start. The quarter must be set unless the move is
+// short.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
@@ -125,11 +143,16 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
     // Whole turns (in a libration, whole swings) are subtracted from the time.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
-    const T turns = nearest<T>(t / turn.high);
+    const auto near = is_short(motion, t);
+    const T turns = near ? T{} : nearest<T>(t / turn.high);
     const TwoParts<T> in_turns = two_product(turns, turn.high);
     const T rest = ((t - in_turns.high) - in_turns.low) - turns * turn.low;
     const T time = turns != 0 ? rest : t;
-    const auto [to, gain] = move(phase, motion.start_place, time);
+    const PhasePlace<T>& start = motion.start_place;
+    T guess{};
+    if (any(near)) guess = short_distance(phase, start, motion.start_slope, time);
+    if (any(negated(near))) guess = near ? guess : rough_distance(phase, start, time);
+    const auto [to, gain] = move(phase, start, guess, time);
     const T heading = heading_of(motion);
     const MotionPoint<T> now =
         motion_point(phase.integrand, motion.amplitude, phase_point(phase.map, to));
@@ -141,10 +164,10 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> whole_turns =
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
-    const auto is_endless = rotates & (phase.half_turn.high == infinity);
+    const auto is_endless = rotates & negated(near) & (phase.half_turn.high == infinity);
     if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body creeping to the tip
-        const PhasePoint<T>& start = motion.start_phase;
-        const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(start.sin, start.cos);
+        const PhasePoint<T>& first = motion.start_phase;
+        const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(first.sin, first.cos);
         turned = two_sum(filled<T>(half_pi_exact.high), -rest);
         turned.low = turned.low + half_pi_exact.low;
     }
@@ -156,7 +179,6 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {
-        const PhasePlace<T>& start = motion.start_place;
         const T side = copysign(filled<T>(1.0), to.quarters != 0 ? to.quarters : to.offset);
         const T distance = (2 * side - to.quarters - start.quarters) * phase.map.quarter -
                            (to.offset + start.offset);
