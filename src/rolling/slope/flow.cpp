@@ -212,14 +212,14 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     flow.datum = datum_of(flow.body, flow.start);
     flow.acceleration = acceleration_at(flow.body, flow.datum.at, flow.start.omega);
     const bool is_circle = flow.body.c2 == 0;
-    bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
     if (is_circle) {
         const double radius = flow.body.long_axis;
         flow.acceleration =
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
-        balanced = !(flow.acceleration > 0);  // it underflows to 0
     }
-    flow.rests = omega == 0 && balanced;
+    flow.rests =
+        omega == 0 && (is_circle ? !(flow.acceleration > 0)  // it underflows to 0
+                                 : is_equilibrium(geometry(body.axes(), theta), std::tan(slope)));
     if (flow.rests) flow.acceleration = 0.0;
     if (omega == 0) flow.turning = flow.start.time;
     flow.by_series = flow.rests || is_circle;

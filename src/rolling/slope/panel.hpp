@@ -92,10 +92,11 @@ template <class PositionsAt>
 ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));
-    PartPolynomial polynomial{};
+    PartPolynomial polynomial;
+    polynomial.value[part_order] = polynomial.integral[0] = 0.0;
     for (int k = 0; k < part_order; ++k) {
         polynomial.value[k] = powers[k];
-        polynomial.integral[k + 1] = powers[k] * (1.0 / (k + 1));
+        polynomial.integral[k + 1] = powers[k] * over_next[k];
         polynomial.integral[0] +=
             k % 2 == 0 ? polynomial.integral[k + 1] : -polynomial.integral[k + 1];
     }

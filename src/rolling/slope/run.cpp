@@ -53,20 +53,24 @@ void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     const double angle = run.heading * double(run.from.angle);
     const double here = run.heading * quarters * half_pi + angle;
     if (!(std::max(low, here) < std::min(high, here + pi))) return;
-    const auto coordinate = [&](double from_centre) {
-        return std::asinh(std::tan(from_centre) / centre.grade);
-    };
     const auto end_of_half_turn = [&](double after) {
         return (run.heading * quarters + after - centre.quarters) * half_pi +
                (angle - centre.angle);
     };
-    const double s = std::sin(centre.angle);
-    const double c = std::cos(centre.angle);
-    const bool tip = is_odd(centre.quarters);
-    run.panels.push_back(
-        {centre.quarters, centre.angle, tip ? c : s, tip ? -s : c, centre.grade,
-         coordinate(low > here ? low - centre.at() : end_of_half_turn(0.0)),
-         coordinate(high < here + pi ? high - centre.at() : end_of_half_turn(2.0))});
+    run.panels.push_back({centre.quarters, centre.angle, 0.0, 0.0, centre.grade,
+                          low > here ? low - centre.at() : end_of_half_turn(0.0),
+                          high < here + pi ? high - centre.at() : end_of_half_turn(2.0)});
+}
+
+// Completes a panel that has the angles of its ends from the centre.
+void open(RunPanel& panel) {
+    const double s = std::sin(panel.angle);
+    const double c = std::cos(panel.angle);
+    const bool tip = is_odd(panel.quarters);
+    panel.sin = tip ? c : s;
+    panel.cos = tip ? -s : c;
+    panel.first = std::asinh(std::tan(panel.first) / panel.grade);
+    panel.last = std::asinh(std::tan(panel.last) / panel.grade);
 }
 
 // W at the tip, from W at `at`, without the gain along the slope. The height of the tip above the
@@ -200,7 +204,10 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
 }
 
 void extend(SlopeRun& run, double since) {
-    while (!run.is_complete() && !(run.known > since)) add_part(run);
+    while (!run.is_complete() && !(run.known > since)) {
+        if (run.next_part == 0) open(run.panels[run.next_panel]);
+        add_part(run);
+    }
 }
 
 ROLLING_ELLIPSE_WIDE PartArray node_times(const RunPart& part, double gained) {
@@ -217,10 +224,10 @@ double about(const SlopeRun& run, double since) {
     return std::max(std::floor(since / run.mass * (speed + change)), 0.0);
 }
 
-RunTimes::RunTimes(const SlopeRun& run) : run_(run) {
+void RunTimes::start() {
     begins_.reserve(most_begins);
     begins_.push_back({});
-    for (const RunPart& part : run.parts) {
+    for (const RunPart& part : run_.parts) {
         lowest_ = std::min(lowest_, *std::min_element(part.level.begin(), part.level.end()));
     }
 }
@@ -228,6 +235,8 @@ RunTimes::RunTimes(const SlopeRun& run) : run_(run) {
 // The terms with the least W (the first half turns downhill, the last ones uphill) are added one by
 // one until the formula is accurate.
 DoubleDouble RunTimes::operator()(double half_turns) {
+    if (half_turns == 0) return {};
+    if (begins_.empty()) start();
     const double gain = run_.body.gain;
     const double fallen = run_.heading < 0 ? half_turns - 1 : 0.0;
     const double missing = asymptotic_from - (lowest_ / gain - fallen);

@@ -28,7 +28,7 @@ struct RunPanel {
     double sin;       // sine and cosine of the centre's angle from a flat position, both
     double cos;       // possibly negated
     double grade;
-    double first;
+    double first;  // v at the ends; their angles from the centre until the first part is added
     double last;
 };
 
@@ -90,10 +90,12 @@ double about(const SlopeRun& run, double since);
 // Durations of n half turns of a complete run. The first terms of a sum are kept for later sums.
 class RunTimes {
   public:
-    explicit RunTimes(const SlopeRun& run);
+    explicit RunTimes(const SlopeRun& run) : run_(run) {}
     DoubleDouble operator()(double half_turns);
 
   private:
+    void start();
+
     const SlopeRun& run_;
     double lowest_ = infinity;          // least W of the first half turn
     std::vector<DoubleDouble> begins_;  // starts of the first half turns (uphill: the last)
