@@ -87,7 +87,7 @@ template <class PositionsAt>
 }
 
 // The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by a factor of 6.4 per degree, and those of P_k itself rise by 2.4, so that there is hardly any
+// by a factor of 5.4 per degree, and those of P_k itself rise by 2.4, so that there is hardly any
 // cancellation between the powers.
 ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();

@@ -35,8 +35,8 @@ constexpr std::size_t usual_panels = 12;
 }
 
 // Widest part of a panel in v. Singularities are at least pi/2 away, so that the terms of the
-// polynomial of a part fall by a factor of 6.4.
-constexpr double widest_part = 1.0;
+// polynomial of a part fall by a factor of 5.4.
+constexpr double widest_part = 1.2;
 
 // Centre of two panels: a flat position, or the point near a tip where W is least.
 struct Centre {
