@@ -2,7 +2,7 @@
 
 import enum
 from collections.abc import Callable, Sequence
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ from ._ask import settings as _settings
 from ._ask.check import FloatArray
 from ._ask.words import Sentence as _Sentence
 
+_Flow = TypeVar("_Flow", bound=Callable[..., Any])
 _Two = tuple[FloatArray, FloatArray]
 _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
@@ -170,6 +171,7 @@ def flow_scalar(
     t: float, a: float, b: float, theta: float, omega: float, gravity: float,
     gyration2: float | None, slope: float,
 ) -> tuple[float, float, float]: ...  # fmt: skip
+def takes_floats(flow: _Flow) -> _Flow: ...
 def flow_times(
     t: FloatArray, a: float, b: float, theta: float, omega: float, gravity: float,
     gyration2: float | None, workers: int,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
+#include "bindings/shortened.hpp"
 #include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
 
@@ -134,6 +135,25 @@ py::tuple flow_scalar(double t, double a, double b, double theta, double omega, 
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
+// The short way of Python's `flow`: plain floats within range, by one worker.
+PyObject* flow_of_floats(PyObject* const* values, PyObject* const* defaults) {
+    constexpr std::size_t gyration2 = 6, workers = 8;
+    FlowArguments of;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+        if (k == gyration2 && values[k] == Py_None) continue;
+        if (!PyFloat_CheckExact(values[k])) return nullptr;
+        of[k] = PyFloat_AS_DOUBLE(values[k]);
+    }
+    if (values[workers] != defaults[workers]) return nullptr;
+    try {
+        if (values[gyration2] == Py_None) of[gyration2] = uniform_disc_gyration2(of[1], of[2]);
+        const FlowSample now = flow_sample(of);
+        return py::make_tuple(now.theta, now.omega, now.x).release().ptr();
+    } catch (const std::exception&) {
+        return nullptr;
+    }
+}
+
 // Takes t, a, b, theta, omega, gravity, gyration2, slope, each with n elements or one.
 py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments, int workers) {
     const Arguments<8> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2", "slope"},
@@ -175,6 +195,9 @@ void bind_flow(py::module_& m) {
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a, "slope"_a);
+    m.def(
+        "takes_floats", [](const py::function& flow) { return shortened(flow, flow_of_floats); },
+        "flow"_a);
     m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a, "workers"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a, "level"_a = "best");

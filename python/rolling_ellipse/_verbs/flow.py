@@ -20,6 +20,7 @@ from .workers import Columns, shared, threads_of
 _SCALARS = (float, int, np.float64)
 
 
+@_core.takes_floats
 def flow(
     t: ArrayLike,
     *,
@@ -90,15 +91,6 @@ def flow(
     >>> np.degrees(bodies).round(2)
     array([-24.48, -27.82,  25.68])
     """
-    # Plain floats, as in most calls, need no conversion.
-    if (
-        type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
-        and type(slope) is float
-        and (gyration2 is None or type(gyration2) is float)
-        and type(workers) is int
-        and workers == 1
-    ):
-        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2, slope)
     threads_of(workers)  # rejects what is neither a number nor an executor
     on_slope = {} if type(slope) is float and slope == 0 else {"slope": slope}
     one = (a, b, theta, omega, gravity)
