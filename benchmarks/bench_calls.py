@@ -99,6 +99,8 @@ def batches() -> dict[str, Case]:
     theta, omega = np.random.default_rng(0).uniform([[0], [-5]], [[3], [5]], (2, MANY))
     throws = LEVEL | {"theta": theta, "omega": omega}
     return {
+        "simulate_many, rolls": Case(partial(simulate_many, rolls, [3.0]), MANY // 2),
+        "a loop of simulate, rolls": Case(lambda: [simulate(s, [3.0]) for s in rolls], MANY // 2),
         "ends, mixed": Case(partial(ends, mixed, 3.0), MANY),
         "simulate_many, mixed": Case(partial(simulate_many, mixed, [3.0]), MANY),
         "simulate_many, its theta": Case(

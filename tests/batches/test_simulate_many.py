@@ -1,11 +1,15 @@
 """`simulate_many` equals `simulate` bit for bit; exceptions stay in place; arrays give scenes."""
 
+import copy
 import inspect
 import itertools
 import json
 import math
+import pickle
+import threading
 import weakref
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +20,7 @@ from oracles.batches import ENDLESS, NAMED, TIMES, singly
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
+from rolling_ellipse._ask.records import UNREAD, trusted
 from rolling_ellipse._ask.settings import Options
 from rolling_ellipse._verbs.batches.asked import sizes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # for an older folder
@@ -101,6 +106,40 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
     digest = _digest_of_all(names[0][0].split("-")[1], 12, names, {})
     end.write_text(json.dumps({"scenes": 12, "digest": digest}))
     assert about["axes"] == ["b", "omega0"] and rl.load_many(end.parent).arrays().axes == ("scene",)
+
+
+@pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
+def test_motions_are_read_when_they_are_first_used(way: str) -> None:
+    """In any order, each by itself; then nothing holds the tables of their chunk any more."""
+    motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
+    assert type(motions) is list and len(motions) == len(expected)
+    unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}
+    assert len(unread) > 10
+    copied = [copy.copy(motions[i]) for i in unread]
+    for i in unread:
+        assert pickle.loads(pickle.dumps(motions[i])) == expected[i]
+    assert copied == [expected[i] for i in unread]
+    again = simulate_many(NAMED * 2, TIMES, **WAYS[way])
+    parts = {weakref.ref(vars(again[i])[UNREAD].func.__self__) for i in unread}
+    assert len(parts) > 1
+    for i in np.random.default_rng(0).permutation(list(unread)):
+        assert any(part() for part in parts)
+        assert again[i] == expected[i] and UNREAD not in vars(again[i])
+    assert not any(part() for part in parts)
+
+
+def test_threads_that_read_a_motion_at_once_get_the_same_arrays() -> None:
+    threads = 4
+    both_there = threading.Barrier(threads)
+
+    def read() -> dict[str, Any]:
+        both_there.wait()
+        return {"theta": np.zeros(1), "omega": np.zeros(1)}
+
+    motion = trusted(rl.Trajectory, {UNREAD: read})
+    with ThreadPoolExecutor(threads) as pool:
+        found = list(pool.map(lambda _: motion.theta, range(threads)))
+    assert all(each is motion.theta for each in found) and {*vars(motion)} == {"theta", "omega"}
 
 
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)

@@ -8,6 +8,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
+UNREAD = "_unread"  # what `trusted` takes for late fields: a function that returns them all
 _new, _set = object.__new__, object.__setattr__  # bound once: this speeds up each use
 
 
@@ -33,6 +34,18 @@ class cached_property(Generic[_Value]):
         if instance is None:
             return self
         return instance.__dict__.setdefault(self._name, self._compute(instance))
+
+
+class _late_field(cached_property[Any]):
+    """A field that is found on first access: by the object's own reader of fields, or computed."""
+
+    def __get__(self, instance: object | None, owner: type) -> Any:
+        known = {} if instance is None else instance.__dict__
+        if read := known.get(UNREAD):
+            for name, value in read().items():
+                known.setdefault(name, value)  # the value of the first of several threads
+            known.pop(UNREAD, None)
+        return known[self._name] if self._name in known else super().__get__(instance, owner)
 
 
 class FieldsOnly:
@@ -65,6 +78,6 @@ def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
     Call it once the class exists: inside the class, a dataclass would take them for defaults.
     """
     for name, find in finds.items():
-        found: cached_property[Any] = cached_property(find)
+        found = _late_field(find)
         found.__set_name__(of, name)
         setattr(of, name, found)

@@ -478,8 +478,22 @@ def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajecto
     return read
 
 
+_HELD = {  # fields of every motion once it is read, with None for those that it does not have
+    "t": "Times [s].",
+    "theta": "",
+    "omega": "",
+    "x": "",
+    "scene": "Scene that moves, in its state at t = 0.",
+    "span": "Last time requested [s].",
+    "settings": "Arguments of `simulate`: model, method and their options.",
+    "coordinates": 'Stored q and q_dot at the samples [m, rad], of "multipliers".',
+    "start": "Stored q and q_dot at the start [m, rad], if it is not the scene's.",
+    "contact": 'Stored samples besides theta, omega and x [m, m/s, N], of "contact".',
+    "kept_events": "Events from a file, for `events`.",
+}
 find_late(
     Trajectory,
+    **{name: _fact(meaning, lambda _: None) for name, meaning in _HELD.items()},
     reason=_reason,
     stats=_fact(
         f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from io import BytesIO
-from itertools import islice
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ import numpy.typing as npt
 from ... import _core
 from ..._ask.check import COORDINATES, FloatArray, choice, shown
 from ..._ask.printing import required
-from ..._ask.records import trusted
+from ..._ask.records import UNREAD, cached_property, trusted
 from ..._ask.scene import SCENE_UNITS, Scene
 from ..._ask.settings import Settings
 from ..._motion.events import events as made_events
@@ -30,7 +30,7 @@ from ..._motion.samples import fields_of, frozen
 from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
 from ..workers import Task
-from .asked import BLOW, NAMES, WIDTH, Chunk, name_of, scenes_of
+from .asked import BLOW, NAMES, WIDTH, Chunk, name_of, scene_of, scenes_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -99,42 +99,73 @@ def _of_model(name: str, code: Mapping[str, npt.NDArray[Any]]) -> npt.NDArray[np
 
 
 def answers(
-    request: Request, scenes: Sequence[Scene], tables: Tables, *, keep_events: bool = False
-) -> list[Answer]:
-    """Return a trajectory or an exception for each scene.
+    request: Request, scenes: Sequence[Scene] | FloatArray, tables: Tables, *,
+    keep_events: bool = False,
+) -> list[Answer]:  # fmt: skip
+    """Return a trajectory or an exception for each scene, given as it is or as its row of a table.
 
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
     again when its events are first accessed, as after pickling.
     """
-    times, text = frozen(np.array(request.times)), BytesIO(tables["text"].tobytes())
-    span, taken = float(times[-1]), dict.fromkeys(MODELS, 0)
-    event_rows = map(np.ndarray.tolist, tables["events"])
-    known = columns("codes", tables) | columns("numbers", tables)
-    names = ("ending", "model", "method", "samples", "events", "letters", "t_end", "valid_until")
-    rows = zip(*(known[name].tolist() for name in (*names, *_STATS)), strict=True)
-    results: list[Answer] = []
-    for scene, row in zip(scenes, rows, strict=True):
-        ending, model_code, method, samples, events, letters, t_end, valid_until, *counts = row
-        message = text.read(letters).decode()
+    part = _Part(request, scenes, tables, keep_events)
+    endings = columns("codes", tables)["ending"].tolist()
+    found: list[Answer] = [
+        trusted(Trajectory, {UNREAD: partial(part.facts, place)}) for place in range(len(endings))
+    ]
+    fine = HELD if request.raise_on_failure else STATUSES
+    for place, ending in enumerate(endings):
         if ending == REFUSED:
-            results.append(ValueError(message))
-            continue
-        status, model = STATUSES[ending], MODELS[model_code]
-        here = slice(taken[model], taken[model] + samples)
-        taken[model] = here.stop
-        facts = _samples(model, tables, here, times)
-        facts |= {
-            "scene": scene, "model": model, "method": METHODS[method], "status": status,
-            "message": message or status.value, "valid_until": valid_until, "t_end": t_end,
-            "span": span, "settings": request.settings, "start": None,
-            "stats": dict(zip(_STATS, counts, strict=True)), "kept_events": None,
+            found[place] = ValueError(part.places[place][0])
+        elif ending not in fine:
+            found[place] = IntegrationError(cast(Trajectory, found[place]))
+    return found
+
+
+class _Part:
+    """The motions in tables, each of which is read when it is first used."""
+
+    def __init__(self, request: Request, scenes: Any, tables: Tables, keep_events: bool) -> None:
+        self._request, self._scenes, self._tables = request, scenes, tables
+        self._times, self._keep_events = frozen(np.array(request.times)), keep_events
+        self._text = tables["text"].tobytes()
+        self._text.decode()  # rejects damage in a file at once
+
+    @cached_property
+    def places(self) -> list[tuple[str, slice, slice]]:
+        """Message of each motion, and where its samples and its events are in their tables."""
+        code, text = columns("codes", self._tables), BytesIO(self._text)
+        taken = dict.fromkeys((*MODELS, "events"), 0)
+
+        def next_of(what: str, count: int) -> slice:
+            taken[what] += count
+            return slice(taken[what] - count, taken[what])
+
+        counts = (code[name].tolist() for name in ("letters", "model", "samples", "events"))
+        return [
+            (
+                text.read(letters).decode(),
+                next_of(MODELS[model], samples),
+                next_of("events", events),
+            )
+            for letters, model, samples, events in zip(*counts, strict=True)
+        ]
+
+    def facts(self, place: int) -> dict[str, Any]:
+        """Return the fields of a motion."""
+        tables, (message, samples, events) = self._tables, self.places[place]
+        code, numbers = (
+            dict(zip(_COLUMNS[name], tables[name][place].tolist(), strict=True))
+            for name in ("codes", "numbers")
+        )
+        scene = scene_of(self._scenes[place])
+        status, model = STATUSES[code["ending"]], MODELS[code["model"]]
+        kept = made_events(scene, tables["events"][events].tolist()) if self._keep_events else None
+        return _samples(model, tables, samples, self._times) | numbers | {
+            "scene": scene, "model": model, "method": METHODS[code["method"]], "status": status,
+            "message": message or status.value, "span": float(self._times[-1]), "start": None,
+            "settings": self._request.settings, "kept_events": kept,
+            "stats": {name: code[name] for name in _STATS},
         }  # fmt: skip
-        if keep_events:
-            facts["kept_events"] = made_events(scene, list(islice(event_rows, events)))
-        motion = trusted(Trajectory, facts)
-        failed = request.raise_on_failure and status not in AT_AN_END
-        results.append(IntegrationError(motion) if failed else motion)
-    return results
 
 
 def _samples(model: str, tables: Tables, here: slice, times: FloatArray) -> dict[str, Any]:
@@ -373,7 +404,7 @@ def _fill(
         others -= _TOUCH
     failed = request.raise_on_failure and not set(code["ending"]) <= set(HELD)
     if others or failed or REFUSED in code["ending"]:
-        for place, answer in enumerate(answers(request, scenes_of(table), tables)):
+        for place, answer in enumerate(answers(request, table, tables)):
             motion = answer.trajectory if isinstance(answer, IntegrationError) else answer
             if isinstance(motion, Trajectory):
                 for name in others:

@@ -52,8 +52,9 @@ class Chunk:
         return self.begin + len(self.table)
 
     @property
-    def scenes(self) -> list[Scene]:
-        return scenes_of(self.table) if self.given is None else self.given
+    def scenes(self) -> list[Scene] | FloatArray:
+        """The scenes as they were given, or the table."""
+        return self.table if self.given is None else self.given
 
 
 def sizes(samples: int) -> Iterator[tuple[int, int]]:
@@ -223,6 +224,11 @@ def table_of(scenes: Sequence[Scene]) -> FloatArray:
 def scenes_of(table: FloatArray) -> list[Scene]:
     """Return the scenes in the rows of a table that the core has validated."""
     return [_scene(row) for row in table.tolist()]
+
+
+def scene_of(given: Scene | FloatArray) -> Scene:
+    """Return a scene that is given as it is, or as the row of such a table."""
+    return given if isinstance(given, Scene) else _scene(given.tolist())
 
 
 def _scene(row: list[float]) -> Scene:

@@ -21,7 +21,7 @@ from ..._motion.status import IntegrationError, WorkerError
 from ..._motion.trajectory import Trajectory
 from ..workers import Task
 from .answers import HELD, counts_of, dataset_of, endings_of, solve
-from .asked import WIDTH, Chunk, SceneGrid, asked
+from .asked import WIDTH, Chunk, SceneGrid, asked, scene_of
 from .many import parts
 
 if TYPE_CHECKING:
@@ -205,7 +205,7 @@ def ends(
             tables.append(part)
             for k in (k for k, code in enumerate(part["codes"][-1].tolist()) if code not in HELD):
                 place = chunk.begin + k
-                failed[place] = _error(chunk.scenes[k], request, place)
+                failed[place] = _error(scene_of(chunk.scenes[k]), request, place)
             rows += [chunk.table] if shape is None else []
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (codes.shape[1],) if shape is None else shape

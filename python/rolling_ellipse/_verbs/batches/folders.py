@@ -30,7 +30,7 @@ from ..._ask.settings import Settings
 from ..._motion.export import strict
 from ..._motion.export.atomic import remove_unfinished, replacing
 from . import answers as results
-from .asked import Chunk, scenes_of, sizes
+from .asked import Chunk, sizes
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -175,7 +175,7 @@ class StoredMotions(Sequence[results.Answer]):
 
     def _answers(self, index: int) -> list[results.Answer]:
         tables = self._tables(index)
-        return results.answers(self._request, scenes_of(tables["scenes"]), tables, keep_events=True)
+        return results.answers(self._request, tables["scenes"], tables, keep_events=True)
 
     def _tables(self, index: int) -> results.Tables:
         begin, end = self._begins[index : index + 2]

@@ -88,10 +88,11 @@ def simulate_many(
     -------
     list of Trajectory or exception, or str, or MotionArrays
         One for each scene, in order; with ``out`` the path of the folder; or what ``returns``
-        names. A scene that `simulate` would reject has a ValueError; an integration that stops
-        early has an IntegrationError with the trajectory (with ``raise_on_failure=False`` the
-        trajectory itself); a scene whose worker died or was missing has a WorkerError, whose cause
-        is the executor's exception.
+        names. The arrays of a trajectory are made when it is first used; until then its chunk of
+        up to 2048 motions stays in memory. A scene that `simulate` would reject has a ValueError;
+        an integration that stops early has an IntegrationError with the trajectory (with
+        ``raise_on_failure=False`` the trajectory itself); a scene whose worker died or was missing
+        has a WorkerError, whose cause is the executor's exception.
 
     Raises
     ------
