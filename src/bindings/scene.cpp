@@ -85,6 +85,12 @@ void take(py::handle given, Value& value) {
     }
 }
 
+// Whether two tuples hold the same objects; one comparison in Python for each would cost more.
+bool hold_the_same(const py::tuple& x, const py::tuple& y) {
+    const auto is = [](const py::handle one, const py::handle other) { return one.is(other); };
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), is);
+}
+
 Settings settings_of(const py::dict& fields) {
     Settings settings{};
     std::apply([&](const auto&... each) { (take(fields[each.first], settings.*each.second), ...); },
@@ -116,6 +122,7 @@ void bind_scene(py::module_& m) {
     m.attr("METHODS") = py::tuple(py::cast(names<Method>));
     m.attr("STABILIZATIONS") = py::tuple(py::cast(names<Stabilization>));
     bind_class<Settings>(m, "Settings").def(py::init(&settings_of), "fields"_a);
+    m.def("hold_the_same", hold_the_same, "x"_a, "y"_a);
     m.def("require_no_resistance", require_no_resistance, "scene"_a, "who"_a, "instead"_a);
     m.def("feedback_growth", feedback_growth, "settings"_a);
     m.def("initial_state", start_of, "scene"_a);

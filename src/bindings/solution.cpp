@@ -31,6 +31,26 @@ bool are_sample_times(const Array& t) {
     return times[0] >= 0 && times[t.size() - 1] < infinity;
 }
 
+// Sample times as an array, if they are valid and given as an array of doubles or a list of plain
+// floats; None for others, which may still be convertible.
+py::object sample_times(const py::object& t) {
+    Array times;
+    if (Py_TYPE(t.ptr()) == py::detail::npy_api::get().PyArray_Type_) {
+        const auto array = py::reinterpret_borrow<py::array>(t);
+        if (!array.dtype().is(py::dtype::of<double>())) return py::none();
+        times = Array(array);  // itself, if it is contiguous and aligned
+    } else if (PyList_CheckExact(t.ptr())) {
+        const py::tuple given(t);  // another thread may change the list
+        times = vector(given.size());
+        double* to = times.mutable_data();
+        for (const py::handle each : given) {
+            if (!PyFloat_CheckExact(each.ptr())) return py::none();
+            *to++ = PyFloat_AS_DOUBLE(each.ptr());
+        }
+    }
+    return are_sample_times(times) ? times : py::object(py::none());
+}
+
 // Calls take(samples, begin, end) with the samples at all times, one batch after another.
 template <class Sample, class Take>
 void take_samples(const Solution& solution, const Array& t, const Take& take) {
@@ -292,7 +312,7 @@ void bind_solution(py::module_& m) {
             "t"_a);
     m.attr("STATS") = names_of(stats_of(0, {}));
     m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
-    m.def("are_sample_times", are_sample_times, "t"_a);
+    m.def("sample_times", sample_times, "t"_a);
     m.def("simulate", solved, "scene"_a, "settings"_a, "t"_a, "start"_a);
 }
 

@@ -14,8 +14,10 @@ from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import EPS, PI
 from oracles.trajectory import MATRICES, SCENES, VECTORS
-from rolling_ellipse import Mode, Scene, Trajectory, simulate
+from rolling_ellipse import Mode, Scene, Trajectory, _core, simulate
+from rolling_ellipse._verbs.simulate import sample_times
 
+NAN, INF = float("nan"), float("inf")
 Long = Any  # arrays of np.longdouble
 
 
@@ -51,6 +53,51 @@ def test_close_detects_a_difference_of_ten_ulp() -> None:
     close(values, values, values, 0)
     with pytest.raises(AssertionError, match="ulp"):
         close(values * (1 + 10 * EPS), values, values, 8)
+
+
+# -------------------------------------------------------------------------------------------- times
+
+
+class Own(list[float]):
+    """A list that may answer otherwise than one."""
+
+
+@pytest.mark.parametrize(
+    "t",
+    [
+        [0.5, 1.0], [-0.0], np.array([0.5, 1.0]), np.array([0.5, 1.0])[::1],
+        [1, 2.0], [True], [np.float64(0.5)], (0.5, 1.0), Own([0.5]), range(3), 2.0, 2,
+        np.float64(2.0), np.array([1, 2]), np.array([0.5, 1.0], "f4"), np.array([0.5, 1.0], ">f8"),
+        np.arange(6.0)[::2], np.array(2.0), np.ma.array([0.5, 1.0]),
+    ],
+    ids=repr,
+)  # fmt: skip
+def test_times_of_every_kind_become_the_same_doubles(t: Any) -> None:
+    """A list of floats and an array of doubles by a short way, which returns such an array."""
+    expected = np.asarray(t, float)
+    if expected.ndim == 0:
+        expected = np.linspace(0.0, 2.0, 1001)
+    times = sample_times(t)
+    assert type(times) is np.ndarray and times.dtype is np.dtype(float)
+    assert times.tobytes() == expected.tobytes() and times.flags.c_contiguous
+    known = _core.sample_times(t)
+    plain = (type(t) is list and {*map(type, t)} == {float}) or (
+        type(t) is np.ndarray and t.dtype is np.dtype(float) and t.ndim == 1
+    )
+    assert (known is not None) == plain
+
+
+@pytest.mark.parametrize(
+    "t",
+    [[], [1.0, 1.0], [2.0, 1.0], [-1.0], [NAN], [0.0, NAN], [INF], ["1"], [1j], [[0.5]], [None]]
+    + [np.array(each) for each in ([], [1.0, 1.0], [-1.0], [NAN], [0.0, INF], [[0.5]])]
+    + [None, "1.0", (0.0, 1.0), 2**2000, [2**2000], np.ma.masked, np.datetime64("2020-01-01")],
+    ids=repr,
+)  # fmt: skip
+def test_the_short_way_takes_no_wrong_times(t: Any) -> None:
+    assert _core.sample_times(t) is None
+    with pytest.raises((ValueError, TypeError), match=r"^t must"):
+        sample_times(t)
 
 
 # ------------------------------------------------------------------------------------------- arrays

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import lru_cache, partial
-from operator import is_
 from typing import Any, Literal, TypedDict, get_args
 
 from .. import _core
@@ -67,7 +66,7 @@ class Settings(FieldsOnly):
 def settings(*given: Any) -> Settings:
     """Return the Settings for values in field order; equal values are checked only once."""
     for known, made in (_last[0], _BY_DEFAULT):
-        if all(map(is_, given, known)):
+        if _core.hold_the_same(given, known):
             return made
     plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
     if not plain:

@@ -56,7 +56,7 @@ def even_times(begin: float, end: float, count: int) -> FloatArray:
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return a solution's samples at times, in any order, as fields of a Trajectory."""
-    if _core.are_sample_times(times):
+    if _core.sample_times(times) is not None:
         return fields_of(solution.samples(times))
     order = np.argsort(times, kind="stable")
     places = np.argsort(order)
@@ -73,9 +73,11 @@ def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
         t, q, q_dot = samples
         theta, omega, x = (frozen(each.copy()) for each in (q[:, 2], q_dot[:, 2], q[:, 0]))
         return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
-    t, theta, omega, x, *contact = samples
+    t, theta, omega, x = samples[:4]
     direct = {"t": t, "theta": theta, "omega": omega, "x": x}
-    return direct | {"contact": ContactSamples(*contact)} if contact else direct
+    if len(samples) > len(direct):
+        direct["contact"] = ContactSamples(*samples[4:])
+    return direct
 
 
 def details(of: Trajectory) -> dict[str, FloatArray]:

@@ -214,7 +214,8 @@ class Trajectory(FieldsOnly):
         solution, samples = _core.simulate(scene.core, settings.core, times, start)
         values = fields_of(samples)
         values["scene"], values["settings"], values["span"] = scene, settings, float(times[-1])
-        values["start"] = start and coordinate_pair("start", start, (COORDINATES,))
+        if start is not None:
+            values["start"] = coordinate_pair("start", start, (COORDINATES,))
         values["_solution"], values["status"] = solution, STATUSES[solution.ending]
         return trusted(cls, values)
 

@@ -183,6 +183,8 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 
 def sample_times(t: Any) -> FloatArray:
     """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones."""
+    if (known := _core.sample_times(t)) is not None:
+        return known
     times = array("t", t)
     if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
         end = shown(t[1])
@@ -190,7 +192,7 @@ def sample_times(t: Any) -> FloatArray:
             f"t must be an end time, {end}, or an array of times, np.linspace(0, {end}, n) or, for "
             f"just two samples, a list; got {shown(t)}"
         )
-    if _core.are_sample_times(times):
+    if _core.sample_times(times) is not None:
         return times
     if not np.all(np.isfinite(times)):
         raise ValueError(f"t must be finite [s], got {shown(t)}")
