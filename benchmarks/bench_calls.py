@@ -10,7 +10,9 @@ package and of NumPy are timed in new interpreters. bench_peers.py measures the 
 
 import subprocess
 import sys
+import tempfile
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -86,6 +88,11 @@ MANY = 2000  # motions of a batch
 LEVEL = {"a": 2.0, "b": 1.0, "friction": 0.3, "restitution": 0.5, "z": 3.0}
 
 
+def to_a_folder(scenes: Any, t: float) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        simulate_many(scenes, [t], out=Path(folder) / "out")
+
+
 def batches() -> dict[str, Case]:
     """Motions that roll, motions that slip and jump, and throws with three events each."""
     rolls, slips = (
@@ -107,6 +114,7 @@ def batches() -> dict[str, Case]:
             partial(simulate_many, mixed, [3.0], returns="theta"), MANY
         ),
         "ends, throws of three hops": Case(partial(ends, throws, 1.0), MANY),
+        "simulate_many(out=), these throws": Case(partial(to_a_folder, throws, 1.0), MANY),
     }
 
 
@@ -114,6 +122,7 @@ def batches() -> dict[str, Case]:
 
 STATES = 2000  # motions in one timing of a set-up through arrays
 SAMPLES = 1_000_000
+COLUMNS = ("theta", "omega", "x")
 HALF_TURNS = 1.37
 
 
@@ -168,9 +177,20 @@ def flows() -> dict[str, dict[str, Case]]:
         "of 1001 times of R to 8 s": Case(partial(flow, grid, **R, slope=0.1), grid.size),
     }
     source, target = np.ones((3, SAMPLES)), np.zeros((3, SAMPLES))
+    kept: dict[str, Any] = {}
+
+    def into_known_memory(case: Case) -> Case:
+        """The same call while its last answer is kept, whose memory the next but one takes."""
+        return Case(lambda: kept.update(answer=case.call()), case.count)
+
     of_many = {
-        "R: 1e6 samples of 100 half turns": samples(100),
-        "R: 1e6 samples of 1 half turn": samples(1),
+        "R: 1e6 samples of 100 half turns": into_known_memory(samples(100)),
+        "R: 1e6 samples of 1 half turn": into_known_memory(samples(1)),
+        "R: as the first, into fresh memory": samples(100),
+        # what the system takes to give and clear the memory of an answer
+        "filling as much fresh memory": Case(
+            lambda: [np.full(SAMPLES, 1.0) for _ in COLUMNS], SAMPLES
+        ),
         # lower bound for every method
         "np.copyto of 3 doubles": Case(partial(np.copyto, target, source), SAMPLES),
     }
