@@ -84,7 +84,11 @@ def test_the_verdict_states_no_value_that_was_not_computed() -> None:
 
 
 def test_the_verdict_agrees_with_the_table() -> None:
-    lines = FOUND.verdict().splitlines()
+    first, behind, *others = FOUND.verdict().splitlines()
+    lines = [first, *others]
+    assert behind == (
+        "fast is ahead of sure, 2.5 × at 1e-02 (10 steps), 2.5 × at 1e-03 (10 steps);"
+    )
     assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")
     assert lines[1] == "fast is unbeaten from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
     assert lines[2] == "    sure takes 2.5 × at 1e-02, 2.5 × at 1e-03"
@@ -100,6 +104,32 @@ def test_the_verdict_agrees_with_the_table() -> None:
     assert lines[7] == "lost reached nothing: MAX_STEPS, too many steps"
     assert lines[8] == "poor came no nearer than 3.0e+00"
     assert len(lines) == 9
+
+
+def test_the_verdict_begins_with_peers_that_are_ahead() -> None:
+    """Only of the best of the package's methods, and at the errors that both have reached."""
+    exact = [replace(each, steps=0) if each.name == "sure" else each for each in RUNS]
+    few = run("few", 1e-2, 2e-6, tags=("peer",), steps=3)
+    near = run("near", 1e-14, 1e-6, tags=("peer",), steps=0)
+    reason = ": so few steps cost less than what sure sets up;"
+
+    def second(*runs: Run) -> list[str]:
+        said = replace(FOUND, runs=(*exact, *runs)).verdict().splitlines()
+        return [line for line in said[1:] if "ahead" in line]
+
+    at_three = "fast is ahead of sure, 2.5 × at 1e-03 (10 steps)" + reason
+    assert second(few) == ["few is ahead of sure, 5 × at 1e-02 (3 steps)" + reason, at_three]
+    every = ", ".join(f"10 × at 1e-{k:02d}" for k in range(2, 13))
+    assert second(few, near) == [f"near is ahead of sure, {every};"]
+    even = run("even", 1e-13, 9.5e-6, tags=("peer",))
+    (_, equal) = second(even)
+    assert equal.startswith("even is ahead of sure, 1.05 × at 1e-04 (10 steps), ")
+    assert equal.endswith("1.05 × at 1e-12 (10 steps) (as good as equal);")
+    own = run("quick", 1e-3, 3e-6)
+    assert second(few, own) == ["few is ahead of quick, 1.5 × at 1e-02 (3 steps);"]
+    assert second(own) == []
+    alone = replace(FOUND, runs=tuple(each for each in RUNS if "peer" not in each.tags))
+    assert "ahead" not in alone.verdict()
 
 
 LATE: dict[str, Any] = {"status": "NOT_RUN", "reason": "max_seconds", "errors": Errors()}
@@ -126,7 +156,7 @@ def test_a_method_that_was_not_run_is_not_beaten() -> None:
     assert CUT.not_run(1e-10) == ("late", "fast", "rough", "lost", "never")
     assert CUT.unbeaten() == {} and FOUND.not_run(1e-10) == ()
     lines = CUT.verdict().splitlines()
-    assert lines[1] == "fast is the fastest that was run from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
+    assert lines[2] == "fast is the fastest that was run from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
     assert "sure is the fastest that was run from 1e-04 to 1e-12 (10 µs, set-up 10 µs);" in lines
     assert "    no other was seen there from 1e-10 to 1e-12" in lines
     assert lines[-7:] == [

@@ -206,7 +206,8 @@ class WorkPrecision:
     def verdict(self, *, t_end: float | None = None) -> str:
         """Summarise which method is fastest at each error level, by what factor, and which fail.
 
-        The error is the largest of the state, at the samples and at the end. A method is called
+        Where a peer is ahead of all methods of the package, that comes first, with the reason. The
+        error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
 
         Examples
@@ -228,6 +229,7 @@ class WorkPrecision:
             f"To t = {reference.t_end:.6g} s, judged by {reference.name}{known}, at the sample "
             f"times and the end{but}:"
         ]
+        lines += self._behind(t_end)
         method = {name: (runs[0].model, runs[0].method) for name, runs in contenders.items()}
         ranked, none = [], []
         for decade in _DECADES:
@@ -260,6 +262,29 @@ class WorkPrecision:
             why = ", which the reference could not tell" if none[0] < floor else ""
             lines.append(f"nobody has reached an error {_span(none)}{why}")
         return printable("\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))]))
+
+    def _behind(self, t_end: float | None) -> Iterator[str]:
+        """Yield a line for each peer that is ahead of all methods of the package at some errors."""
+        found = []
+        for decade in _DECADES:
+            able = sorted(self._able(decade, "largest", "time", t_end), key=lambda run: run.time)
+            peer = next((run for run in able if "peer" in run.tags), None)
+            own = next((run for run in able if "peer" not in run.tags), None)
+            if peer and own and peer.time < own.time:
+                found.append((decade, peer, own))
+        for (ahead, behind), rows in groupby(found, lambda row: (row[1].name, row[2].name)):
+            held = [(each, own.time / peer.time, peer, own) for each, peer, own in rows]
+            cells = ", ".join(
+                f"{factor:.3g} × at {each:.0e}{_steps(peer.steps)}"
+                for each, factor, peer, _ in held
+            )
+            _, _, peer, own = held[-1]
+            why = f": so few steps cost less than what {behind} sets up"
+            if max(factor for _, factor, *_ in held) <= EQUAL:
+                why = " (as good as equal)"
+            elif own.steps or not peer.steps:
+                why = ""
+            yield f"{ahead} is ahead of {behind}, {cells}{why};"
 
     def gaps(self, *, t_end: float | None = None) -> Gaps:
         """Return the table of the runs that failed, were refused or were not run, with reasons.
@@ -460,6 +485,10 @@ def _without_answer(gaps: Gaps) -> Iterator[str]:
             yield f"{name} was not run {settings}: {why}"
         elif not gap.answers:
             yield f"{name} reached nothing{' so far' if name in late else ''}: {why}"
+
+
+def _steps(number: int) -> str:
+    return f" ({number} step{'s' * (number > 1)})" if number else ""
 
 
 def _span(decades: Sequence[float]) -> str:
