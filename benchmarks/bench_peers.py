@@ -4,23 +4,29 @@ Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its
 ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
 tolerances or steps, in turn (`rolling_ellipse.work_precision`). The largest error at samples and at
 the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is timed
-separately. Machines and their load differ: compare ratios within one run.
+separately; and so are, in a table before the races of a scene, the empty call of each contender (a
+millionth of the span), a call of a known scene, and one of a new scene with its preparation.
+Machines and their load differ: compare ratios within one run.
 """
 
 import argparse
+import itertools
+import json
 import math
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import peers
-from common import machine
+from common import interleaved, machine
 from rolling_ellipse import Scene, WorkPrecision, flow, period, work_precision
 from rolling_ellipse._verbs.flow import arguments_of
+from rolling_ellipse._verbs.work_precision.race import of_peer, own_contenders
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
@@ -34,13 +40,18 @@ SCENES = {
     "R": Scene(2.0, 1.0, theta=0.2, omega=3.2),
     "L": Scene(2.0, 1.0, theta=0.2, omega=1.0),
     "S": Scene(2.0, 1.0, theta=0.2, omega=3.2, slope=0.1, friction=10.0),  # downhill
+    "W": Scene(2.0, 1.0, theta=0.2, omega=1.0, slope=0.1, friction=10.0),  # rocking in a well
 }
-HALF_TURNS = (1.37, 10.37, 100.37)  # no symmetric states: they would hide phase errors
+HALF_TURNS = (0.1, 0.42, 1.37, 10.37, 100.37)  # no symmetric states: they would hide phase errors
 METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
 COLUMNS = ("theta", "omega", "x")
-WIDTH = 11  # width of a column in characters
+WIDTH = 14  # width of a column in characters
+EMPTY = 1e-6  # span of an empty call, as a part of the whole span
+SETTING = 1e-6  # tolerance of the calls of known and new scenes
+BEHIND = " behind"  # after a ratio below 1
+AHEAD = " is ahead of "  # in the lines of a verdict about peers
 
 
 def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
@@ -72,8 +83,8 @@ def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def end_of(scene: Scene, half_turns: float) -> float:
-    """Time of a number of half turns or half swings [s]; on a slope, counted from the start."""
-    if not scene.slope:
+    """Time of a number of half turns or half swings [s]; downhill, counted from the start."""
+    with suppress(ValueError):  # a run downhill does not repeat itself
         return half_turns * period(scene) / 2
     low, high = 0.0, 1e3
     for _ in range(60):
@@ -97,6 +108,38 @@ def race(
         reference=(by_series_in_60_digits if scene.slope else in_40_digits)(scene),
         steps=[half_turn / 2**k for k in range(1, 12) if half_turn / 2**k < end],
     )  # fmt: skip
+
+
+def costs(
+    scene: Scene, half_turns: float, found: Sequence[Any], rounds: int
+) -> dict[str, list[float]]:
+    """Least seconds of an empty call, of a known scene and of a new one, for every contender."""
+    calls: dict[Any, Callable[[], Any]] = {}
+    end = end_of(scene, half_turns)
+    speeds = itertools.count(1)
+    for each in (*own_contenders(("flow", "exact"), scene, rolls=True), *map(of_peer, found)):
+
+        def new(prepare: Any = each.prepare) -> None:
+            omega = scene.omega * (1 + next(speeds) * 2.0**-40)
+            prepare(scene.replace(omega=omega), end, SETTING)()
+
+        name = each.run.name
+        with suppress(ValueError):  # some take no tolerance that large
+            calls[name, 0] = each.prepare(scene, EMPTY * end, DECADES[0])
+        calls[name, 1], calls[name, 2] = each.prepare(scene, end, SETTING), new
+    known = interleaved({key: call for key, call in calls.items() if key[1] < 2}, rounds)
+    known |= interleaved({key: call for key, call in calls.items() if key[1] == 2}, min(rounds, 3))
+    names = dict.fromkeys(name for name, _ in calls)
+    return {name: [min(known.get((name, k), [math.nan])) for k in range(3)] for name in names}
+
+
+def table_of_calls(found: dict[str, list[float]]) -> str:
+    """A row for each contender: microseconds of an empty call, of a known and of a new scene."""
+    lines = [f"{f'[us], least; setting {SETTING:.0e}':28}"]
+    lines[0] += "".join(f"{head:>{WIDTH}}" for head in ("empty call", "known scene", "new scene"))
+    for name, cells in found.items():
+        lines.append(f"{name:28}" + "".join(f"{microseconds(each):>{WIDTH}}" for each in cells))
+    return "\n".join(lines)
 
 
 def commit() -> str:
@@ -138,7 +181,10 @@ def factors(found: WorkPrecision) -> str:
 
 
 def factor(found: WorkPrecision, decade: float) -> str:
-    """The best peer's time over the package's best; a star if some contenders were not run."""
+    """The best peer's time over the package's best, and whether a peer is ahead.
+
+    A star says that some contenders were not run.
+    """
     others = {run.name for run in found.runs if "peer" in run.tags}
     least = found.least(decade)
     mine = min((time for name, time in least.items() if name not in others), default=math.inf)
@@ -146,7 +192,7 @@ def factor(found: WorkPrecision, decade: float) -> str:
     if math.isinf(mine):
         return "nobody" if math.isinf(best) else "peers only"
     star = "*" if found.not_run(decade) else ""
-    ratio = f"{float(f'{best / mine:.3g}'):g}"  # 6390, not 6.39e+03
+    ratio = f"{float(f'{best / mine:.3g}'):g}" + BEHIND * (best < mine)  # 6390, not 6.39e+03
     return ("no peer" if math.isinf(best) else ratio) + star
 
 
@@ -166,21 +212,25 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     how: dict[str, Any] = {"rounds": chosen.rounds, "max_seconds": seconds}
     if chosen.quick:
         how |= {"rounds": 2, "tolerances": [1e-2, 1e-6, 1e-10, 1e-14]}
-        chosen.scenes, chosen.half_turns = ["R"], HALF_TURNS[:1]
+        chosen.scenes, chosen.half_turns = ["R"], [1.37]
     found, missing = peers.available()
     if slope_reference is None:
         missing["gmpy2"] = "no judge on a slope"
         chosen.scenes = [name for name in chosen.scenes if not SCENES[name].slope]
         if not chosen.scenes:
-            options.error("the scene S needs gmpy2 for its judge")
+            options.error("the scenes S and W need gmpy2 for their judge")
     libraries = ", ".join(dict.fromkeys(peer.library for peer in found))
     print(libraries)
     for library, reason in missing.items():
         print(f"missing: {library}: {reason}")
     # the commit is read before this script changes any file
     stamp = {"peers": libraries, "commit": commit()}
-    races = {}
+    races, calls = {}, {}
     for name in chosen.scenes:
+        first = chosen.half_turns[0]
+        print(f"\n{name}: calls over {first} half turns or swings")
+        calls[name] = costs(SCENES[name], first, found, chosen.rounds)
+        print(table_of_calls(calls[name]))
         for half_turns in chosen.half_turns:
             result = race(name, half_turns, found, **how)
             result = replace(result, machine=result.machine | machine() | stamp)
@@ -189,6 +239,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
             print(f"{table(result)}\n{result.verdict()}")
             if chosen.save:
                 result.save(chosen.save / f"peers_{name}_{half_turns}.json")
+    if chosen.save:
+        (chosen.save / "calls.json").write_text(json.dumps(calls, indent=1), encoding="utf-8")
     print(", ".join(f"{key} {value}" for key, value in result.machine.items()))
     return races
 

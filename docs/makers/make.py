@@ -51,6 +51,7 @@ MOTIONS = {
     "R": "rolling over, {:g} half turns",
     "L": "rocking, {:g} half swings",
     "S": "down a slope of 0.1, {:g} half turns",
+    "W": "rocking on a slope of 0.1, {:g} half swings",
 }
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
@@ -210,15 +211,21 @@ def write_part(path: Path, name: str, made: str) -> None:
 
 
 def speed() -> str:
-    """Text and table of the races: the leaders of one race, and the peers' ratios in all races."""
+    """Text and table of the races: the leaders of one race, and the peers' ratios in all races.
+
+    Where peers are ahead, the verdict's sentences follow, then the costs of calls.
+    """
     import bench_peers
 
-    rows = []
+    rows, behind = [], []
     for name, motion in MOTIONS.items():
         for path in sorted(DATA.glob(f"peers_{name}_*.json"), key=half_turns):
             race = WorkPrecision.load(path)
             cells = [bench_peers.factor(race, decade) for decade in COLUMNS]
-            rows.append([f"{motion.format(half_turns(path))}", *cells])
+            what = motion.format(half_turns(path))
+            rows.append([what, *cells])
+            said = [line.rstrip(";") for line in race.verdict().splitlines()]
+            behind += [f"* {what}: {line}" for line in said if bench_peers.AHEAD in line]
     drawn = WorkPrecision.load(DATA / "peers_R_10.37.json")
     head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
@@ -229,8 +236,23 @@ def speed() -> str:
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     first, *leaders = [line for line in drawn.verdict().splitlines() if line[0] != " "]
     verdict = fill(f"{first.replace('_', ' ')} {' '.join(leaders).rstrip(';')}.", 130)
-    table = "\n".join(lines)
+    if behind:
+        lines += ["\nBehind are:\n", *behind]
+    table = "\n".join([*lines, *calls()])
     return f"{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
+
+
+def calls() -> list[str]:
+    """Lines of a table, if it was measured: calls of the package and of the quickest peers."""
+    path = DATA / "calls.json"
+    if not path.exists():
+        return []
+    known = json.loads(path.read_text(encoding="utf-8"))["R"]
+    own = ("flow", "exact")
+    peers = sorted(known.keys() - {*own}, key=lambda name: known[name][1])[:3]
+    head = ["a call [µs]", "empty", "a known scene", "a new scene"]
+    rows = [[name, *(f"{1e6 * each:.3g}" for each in known[name])] for name in (*own, *peers)]
+    return ["", *(f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows))]
 
 
 def others() -> str:

@@ -146,6 +146,33 @@ def test_the_quick_benchmark_lists_every_contender(
         assert reached < (1e-14 if name == "flow" else BOUND), name
     assert race.reference.name == "quadrature_in_40_digits" and race.reference.floor == 0
     assert "best peer / best of package" in printed and "is unbeaten" in printed
+    assert "empty call   known scene     new scene" in printed
+
+
+def test_a_peer_that_is_ahead_is_printed_as_such() -> None:
+    """A peer that costs nothing is ahead of the package at the errors that it reaches."""
+
+    class Lucky:
+        name, library = "lucky", "none"
+
+        def prepare(self, scene: Scene, t_end: float, setting: float) -> Any:
+            answer = exact_end(t_end)
+            return lambda: answer
+
+    race = bench_peers.race("R", 1.37, [Lucky()], rounds=2, max_seconds=5.0, tolerances=[1e-2])
+    assert bench_peers.factor(race, 1e-2).endswith(bench_peers.BEHIND)
+    assert race.verdict().splitlines()[1].startswith("lucky" + bench_peers.AHEAD + "flow, ")
+    known = bench_peers.costs(R, 1.37, [Lucky()], 2)
+    assert list(known) == ["flow", "exact", "lucky"]
+    for empty, call, new in known.values():
+        assert 0 < empty < 10 * call and 0 < call < new
+    lines = bench_peers.table_of_calls(known).splitlines()
+    assert [line.split()[0] for line in lines[1:]] == list(known)
+
+
+def test_a_well_races_as_long_as_its_swings() -> None:
+    scene = bench_peers.SCENES["W"]
+    assert bench_peers.end_of(scene, 0.42) == 0.42 * period(scene) / 2
 
 
 def test_the_judge_detects_a_small_error() -> None:
