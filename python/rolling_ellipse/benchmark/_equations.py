@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -213,7 +213,7 @@ class Ode:
     kind: str = ""
     side: int = 0
     quiet: float = 0.0
-    xp: Any = np
+    xp: Any = field(default_factory=lambda: np)
 
     def rhs(self, t: Any, y: Any) -> Any:
         """Return dy/dt of the state y on this arc, shape (6,).
