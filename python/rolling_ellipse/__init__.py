@@ -8,20 +8,24 @@ below.
 =================  =================================================================================
 set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`
 compute a motion   `simulate`: a `Trajectory` with arrays ``motion.t``, ``.theta``, ``.x``, ...
-at other times     ``motion.at(t)``, ``motion.sol(times)``, ``motion.scene_at(t)`` to continue
+at other times     ``motion.sol(times)`` for arrays, ``motion.at(t)`` for one time, neither solves
+                   again; ``motion.scene_at(t)`` to continue
 when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``
 ask, not compute   `outcome`, `classify`, `certify`, `thresholds`, `required_friction`, `blow_to`
 draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return what they drew, with
                    ``.axes`` and ``.savefig("motion.png")``; ``rl.plot(motion).theta.axes`` has the
-                   angle over time; a second axis of time is in the help of `plot_energy`
-film, page         `animate` writes .gif, .mp4, .webm or .html; in `explore` a hand strikes
+                   angle over time; the help of `plot_energy` has a second axis in milliseconds
+film, page         `animate`: ``rl.animate(motion, "film.mp4")``, or .gif, .webm, .html; in
+                   `explore` a hand strikes
 save               ``motion.save("motion.npz")`` and `load`
-table              ``motion.to_dataframe()``, ``motion.to_xarray()``
-grid of scenes     `simulate_many`; `ends` keeps only last states, `load_many` reads a folder
+table              ``motion.to_dataframe()``, which has ``.to_csv``; ``motion.to_xarray()``
+grid of scenes     `simulate_many`, with ``returns="theta"`` as arrays over the grid; `ends` keeps
+                   only last states, `load_many` reads a folder
 fit to a film      `read_track`, `fit_motion`; to measured impacts: `impacts`
 derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`
 your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_precision`: a race;
-                   ``Trajectory.from_arrays`` takes your arrays, to draw or to film them
+                   ``Trajectory.from_arrays`` takes your arrays, to draw, film or compare them
+                   (`plot_error`)
 score a simulator  `benchmark`: ``benchmark.run(simulator)``, ``benchmark.score(results)``
 teach              `course` marks answers, `examples` writes the notebooks
 shape and period   `geometry`, `period`
