@@ -57,9 +57,13 @@ def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
 def test_a_motion_that_stops_early_has_an_exception_in_place_of_its_end() -> None:
     endless = rl.Scene(1.0, 1.0, z=1.5, friction=0.0, restitution=1.0)
     seen: list[Any] = []
-    found = rl.ends([NAMED[0], endless], 1e5, progress=lambda *done: seen.append(done))
+    found = rl.ends(
+        [NAMED[0], endless], 1e5, rest_speed=0.01, progress=lambda *done: seen.append(done)
+    )
     assert found.status.tolist() == ["COMPLETED", "MAX_EVENTS"] and list(found.errors) == [(1,)]
-    assert isinstance(found.errors[1,], rl.IntegrationError) and np.isnan(found.theta[1])
+    error = found.errors[1,]
+    assert isinstance(error, rl.IntegrationError) and np.isnan(found.theta[1])
+    assert error.trajectory.settings.rest_speed == 0.01
     assert seen == [(2, 2)]
 
 

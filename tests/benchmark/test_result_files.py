@@ -54,6 +54,17 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
     assert score.passed and score.events["times"].keys() == {"STICK"}
 
 
+def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
+    """They are the sides of a jump; here the first of each two is wrong."""
+    one = benchmark.problem("slide.stick")
+    rows = np.repeat(np.column_stack([one.output_times, one.exact(one.output_times)]), 2, axis=0)
+    rows[::2, 1:] += 1.0
+    header = "t,x,z,theta,x_dot,z_dot,omega"
+    np.savetxt(tmp_path / f"{one.id}.csv", rows, "%.17g", ",", header=header, comments="")
+    (score,) = benchmark.score(tmp_path, problems=one)
+    assert score.passed and score.digits > 12
+
+
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
     """All or nothing is written: over a file, a link to it, a dangling link, a folder, a pipe."""
     mine, place = tmp_path / "mine", tmp_path / "place"
