@@ -6,6 +6,7 @@ import inspect
 import re
 from pathlib import Path
 
+import pytest
 import rolling_ellipse
 from matplotlib import pyplot
 from oracles.every_verb import use
@@ -70,6 +71,8 @@ def test_classes_of_the_stub_have_the_members_of_the_extension() -> None:
 
 def test_a_typed_script_with_every_verb_runs(tmp_path: Path) -> None:
     """mypy --strict reads the script with the tests; here it runs, and misses no verb."""
+    for package in ("scipy", "pandas", "xarray"):
+        pytest.importorskip(package)  # of extras, which the trial of a wheel leaves out
     assert all(isinstance(number, float | int) for number in use(tmp_path))
     script = inspect.getsource(use)
     for name in rolling_ellipse.__all__:
