@@ -236,6 +236,7 @@ bool grow(SlopeFlow& flow, double until) {
         flow.by_series = true;
     }
     if (!flow.stretches.empty() && flow.stretches.back().end == infinity) return false;
+    if (flow.stretches.empty()) measure_quarter(flow.body);
     const SlopePlace from = next_place(flow);
     const Geometry here = geometry(flow.body, from);
     if (from.omega > 0 || flow.stretches.empty()) {

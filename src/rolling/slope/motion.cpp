@@ -148,9 +148,12 @@ SlopeBody slope_body(const Body& from, double slope) {
     body.d0 = body.short_axis2 * (body.gyration2 + body.short_axis2);
     body.d1 = body.c2 * (body.gyration2 + body.long_axis2 + body.short_axis2);
     body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + body.short_axis2));
+    return body;
+}
+
+void measure_quarter(SlopeBody& body) {
     body.quarter_path = path_from_flat(body.lying(), 1.0, 0.0);
     body.gain = body.gravity.along * 2 * body.quarter_path;
-    return body;
 }
 
 Geometry geometry(const SlopeBody& body, double quarters, double angle) {

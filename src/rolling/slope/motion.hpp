@@ -40,13 +40,16 @@ struct SlopeBody {
     std::optional<Equilibria> equilibria;
     double pull;          // gravity times c2, the factor of physics (62)
     double slowest;       // rate at which gravity moves a body that starts at rest
-    double quarter_path;  // path of the centre in a quarter turn
-    double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
+    double quarter_path;  // path of the centre in a quarter turn, once measured
+    double gain;          // and gain of W = D omega^2/2 in half a turn downhill, physics (58)
 
     Axes lying() const { return {long_axis, short_axis}; }
 };
 
 SlopeBody slope_body(const Body& body, double slope);
+
+// Finds the path of a quarter turn, which a body that rocks does not need.
+void measure_quarter(SlopeBody& body);
 
 // A point of the motion. Its angle is measured from a flat position (even quarters) or from a tip
 // (odd quarters).
