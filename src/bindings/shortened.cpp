@@ -86,7 +86,8 @@ py::object make_type() {
 
 }  // namespace
 
-// The object, and with it all that it holds, lives as long as the process: a function of a module.
+// The object and all that it holds are never freed: it serves as a function of a module, which
+// lives as long as the process.
 py::object shortened(const py::function& function, ShortWay way) {
     const py::object type = make_type();
     auto* const made = PyType_GenericAlloc(reinterpret_cast<PyTypeObject*>(type.ptr()), 0);

@@ -79,7 +79,8 @@ class ContactRun {
         return angle.rest;
     }
 
-    // Continues from a state with its angle measured from a quarter turn; returns that angle.
+    // Continues from a state, its angle now measured from the nearest flat position or tip; returns
+    // that angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);

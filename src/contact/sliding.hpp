@@ -25,8 +25,8 @@ struct SlidingBody {
     double ahead;
     bool is_held;
 
-    // False for infinite friction: B is small near the tip, but the force does not become large
-    // there. A body that does not turn has a constant B.
+    // False for infinite friction, as the force stays moderate near the tip although B is small
+    // there; and for a body that is held from turning, whose B is constant.
     bool may_jam() const { return normal_share != 0 && !is_held; }
 
     // The lever arm of the contact force about the centre; the force turns the body backwards.

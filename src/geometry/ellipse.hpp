@@ -122,8 +122,9 @@ double centre_path(const Axes& axes, double theta);
 // Arc length along the ellipse from the contact at 0 to the contact at theta [m]: centre_path + h'.
 double arc_length(const Axes& axes, double theta);
 
-// path_from_flat is the path of the centre from the flat position (long axis along the ground),
-// path_from_tip from the tip, to the angle with sine s >= 0 and cosine c >= 0 from there; a >= b.
+// The path of the centre while the body turns from the flat position (path_from_flat, long axis
+// along the ground) or from the tip (path_from_tip) by an angle with sine s >= 0 and cosine c >= 0;
+// a >= b.
 double path_from_flat(const Axes& lying, double s, double c);
 double path_from_tip(const Axes& lying, double s, double c);
 

@@ -48,7 +48,7 @@ void require_positive(std::string_view name, std::string_view kind, double value
     if (!(value > 0 && std::isfinite(value))) {
         refuse(name, "a positive finite " + std::string(kind), value);
     }
-    // Within these bounds products of four lengths, an energy and gravity do not overflow.
+    // Within these bounds, the product of four lengths, an energy and gravity does not overflow.
     if (value < 1e-30 || value > 1e30) {
         refuse(name, "a " + std::string(kind) + " between 1e-30 and 1e30", value);
     }

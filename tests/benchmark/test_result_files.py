@@ -1,4 +1,4 @@
-"""Files of problems and results: they overwrite nothing and are read as documented."""
+"""Problem and result files: writing overwrites nothing, and reading works as documented."""
 
 import os
 import shutil

@@ -23,7 +23,7 @@ from rolling_ellipse._motion.export.strict import scene_of
 
 FIELDS = list(UNITS["Scene"])
 BLOW = Impulse(jx=3.0, jz=-5.0, dx=0.3, dz=-0.2)
-# A start in the air over a slope uses x_dot, z and z_dot; a new field gets a small number.
+# A start in the air over a slope, so that x_dot, z and z_dot matter; fields not listed get 2^-6.
 GIVEN = {
     "a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.0, "inertia": 11.0, "slope": 0.2,
     "friction": 0.3, "restitution": 0.6, "theta": 0.5, "omega": 1.5, "x": 0.7, "z": 2.5,

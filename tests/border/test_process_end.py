@@ -61,7 +61,7 @@ assert thread.is_alive()
 
 @pytest.mark.parametrize("call", LONG.values(), ids=LONG)
 def test_a_daemon_thread_does_not_block_the_end_of_the_process(call: str, tmp_path: Path) -> None:
-    """The main thread ends during the call, at two moments; the process ends with exit code 0."""
+    """The main thread ends early or later during the call; the process exits with code 0."""
     for seconds in ("0.15", "0.22"):
         script = DAEMON.replace("{call}", call).replace("{seconds}", seconds)
         done = run(script, cwd=tmp_path)

@@ -105,7 +105,7 @@ class Given(SimpleNamespace):
         return count * math.pi / TRUE["2.3"](self)
 
     def hit(self) -> tuple[Any, ...]:
-        """Reaction along and up, and velocities, after a blow and an impact by Stronge's law."""
+        """Reaction (along the ground, up) and velocities after a blow and a Stronge impact."""
         spin = (self.jx * self.dz - self.jz * self.dx) / self.inertia
         v = self.x_dot + self.jx / self.mass, self.z_dot + self.jz / self.mass, self.omega + spin
         free: Any = self.but(x_dot=v[0], z_dot=v[1], omega=v[2])

@@ -83,7 +83,7 @@ def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
         (ROLL, ("mass", *CAMERA), "mass"),
     ],
 )
-def test_what_a_film_does_not_tell_apart_is_named(
+def test_unknowns_that_a_film_cannot_determine_are_named(
     scene: Scene, free: tuple[str, ...], lost: str
 ) -> None:
     """A flight without touch has neither ground nor scale, a body at rest no clock."""

@@ -32,8 +32,9 @@ class Violation(AssertionError):
 
 
 def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
-    """`actual` is a sum of products of up to `factors` rounded numbers, and `terms` the sum of
-    their magnitudes: each factor may have the error of its rounding, or twice that if computed."""
+    """Require `actual` to equal `exact` within rounding. It is a sum of products of up to `factors`
+    rounded numbers; `terms` is the sum of the products' magnitudes. Each factor may be off by its
+    own rounding, or by twice that if it was computed."""
     off = np.abs(long(actual) - exact)
     allowed = 2 * factors * ROUNDING * long(terms)
     if not np.all(off <= allowed):

@@ -126,8 +126,8 @@ COLUMN = (slice(None), None)  # index that stacks motions
 class Chart(NamedTuple):
     """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v, for even steps at every scale.
 
-    The narrowest feature (1 - (b/a)^2 small inertia) is (b/a)^2 wide; tan phi = 1e9 stands for
-    the tip, where every force is even in pi/2 - phi: the difference is 1e-18.
+    The narrowest feature, of thin bodies of small inertia, is (b/a)^2 wide; tan phi = 1e9 stands
+    for the tip, about which every force is even in pi/2 - phi: the difference is 1e-18.
     """
 
     waist: Long

@@ -58,8 +58,8 @@ def path_grain(motion: Inputs) -> Floats:
 
 
 def known_to_in_two_moves(first: float, second: float, motion: dict[str, float]) -> Floats:
-    """Bound of rounding for a motion that continues from its state after the first time: the errors
-    of that state, as the second time changes them, and of the second move."""
+    """Bound on the rounding error of a motion continued from its state after the first time: the
+    errors of that state, as the second move propagates them, plus those of the second move."""
     theta, omega, _ = state(first, **motion)
     error = known_to(state, {"t": first} | motion)
     inputs = {"t": second} | motion | {"theta": float(theta), "omega": float(omega)}

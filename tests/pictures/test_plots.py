@@ -253,7 +253,7 @@ def test_the_separatrix_lies_between_rocking_and_rolling_over(a: float, b: float
     ours = (np.abs(theta - flat) < 1.5) & (omega != 0)
     assert np.count_nonzero(ours) > 800
     theta, omega = theta[ours], omega[ours]
-    # a motion a millionth beside the separatrix reaches the tip in some ln(1e6)/lambda = 8 s
+    # a millionth off the separatrix, a motion nears the tip in about ln(1e6)/lambda = 8 s
     for factor, over in ((1 + 1e-6, True), (1 - 1e-6, False)):
         later, _, _ = rl.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
         assert np.all((np.abs(later - flat) > math.pi / 2) == over)

@@ -1,4 +1,4 @@
-"""The core as WebAssembly beside the extension, in node and in a browser, and the pages with it."""
+"""The WebAssembly core against the extension, in node and in a browser, and pages that use it."""
 
 import gzip
 import json

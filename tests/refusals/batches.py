@@ -1,4 +1,4 @@
-"""Refusals of many motions, and of the folders that hold them."""
+"""Wrong calls of the functions for many motions, and folders of motions that are refused."""
 
 import json
 import math

@@ -70,7 +70,7 @@ def test_corrected_projects_to_the_nearest_state() -> None:
     there, rates = motion.q[0], motion.q_dot[0]
 
     def distance2(change: Array) -> Array:
-        """Twice the kinetic energy of a change of (x, z, theta) / mass; psi and r have no mass."""
+        """Twice the kinetic energy per mass of a change of (x, z, theta); psi, r have no mass."""
         found: Array = change[..., :3] ** 2 @ [1, 1, 1.25]
         return found
 

@@ -142,9 +142,9 @@ def test_gains_above_their_limit_ruin_the_motion(method: str, mix: tuple[float, 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("gains", [(10.0, 10.0), (40.0, 5.0), (3.0, 30.0)])
 def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float, float]) -> None:
-    """Above the limit a warning names the largest step: it is stable and 1.01 of it is not. A run
-    with that step does not warn of its gains. (The step is rounded down to 1e-6 s, less than 1e-4
-    of it.)"""
+    """Above the limit a warning names the largest stable step; 1.01 times that step is unstable. A
+    run with that step gives no warning about the gains. (The step is rounded down to a multiple of
+    1e-6 s, a relative change of less than 1e-4.)"""
     limit = largest(lambda step: growth(method, *gains, step) <= 1 + 1e-12, 1e-3, 10.0, 1e-9)
     how = kept_by("baumgarte", method=method, baumgarte=gains, raise_on_failure=False)
     with pytest.warns(rl.StabilityWarning, match="does not bear the gains") as caught:

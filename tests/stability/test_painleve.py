@@ -77,9 +77,9 @@ def test_a_force_law_continues_with_nonsense_where_the_package_jams(scene: Scene
 def test_a_slide_jams_above_the_critical_friction_and_not_below(
     distance: float, mirrored: bool
 ) -> None:
-    """N = g/B, however large, holds below the critical friction: B is a fraction `distance` of Gnn
-    at the critical angle, and the slip of 5 m/s ends in proportion to B. Closer still, B is a few
-    ulp."""
+    """N = g/B holds, however large, below the critical friction: B is `distance` times Gnn at the
+    critical angle, and the time until the slip of 5 m/s ends is proportional to B. Closer still, B
+    is only a few ulp."""
     exact = float(critical()[0])
     angle = float(critical()[1])
     start = {"theta": math.pi - angle, "x_dot": -5.0} if mirrored else {}

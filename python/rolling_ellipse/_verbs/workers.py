@@ -87,8 +87,8 @@ def in_order(
 def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
     """Return `function` as a function of (number of elements, columns) that workers compute.
 
-    `function` also takes a number of threads. Results do not depend on the workers, bit for bit; an
-    exception of a task is raised.
+    `function` also takes a number of threads. Results are the same, bit for bit, for any workers;
+    an exception in a task is raised again.
     """
     threads = threads_of(workers)
     if threads is not None:

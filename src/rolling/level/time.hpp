@@ -113,7 +113,8 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
             {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
 }
 
-// Integrates from one offset to another; bodies side by side have no tails.
+// Integrates from one offset to another. A motion with a tail is computed alone, not side by side
+// with others.
 inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin,
                                        Pack end) {
     return integral_by_panels<Pack>(phase, quarters, begin, end);

@@ -73,8 +73,8 @@ void open(RunPanel& panel) {
     panel.last = std::asinh(std::tan(panel.last) / panel.grade);
 }
 
-// W at the tip, from W at `at`, without the gain along the slope. The height of the tip above the
-// centre is a product, accurate even for nearly round bodies.
+// W at the tip, from W at `at`, without the gain along the slope. The rise of the centre up to the
+// tip is computed as a product, which is accurate even for nearly round bodies.
 double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
     return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
 }
