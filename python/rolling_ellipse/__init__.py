@@ -17,7 +17,8 @@ draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return wh
                    angle over time; the help of `plot_energy` has a second axis in milliseconds
 film, page         `animate`: ``rl.animate(motion, "film.mp4")``, or .gif, .webm, .html; in
                    `explore` a hand strikes
-save               ``motion.save("motion.npz")`` and `load`
+save               ``motion.save("motion.npz")`` and `load`; a scene as text or link:
+                   ``scene.to_json()``, ``Scene.from_json(text)``
 table              ``motion.to_dataframe()``, which has ``.to_csv``; ``motion.to_xarray()``
 grid of scenes     `simulate_many`, with ``returns="theta"`` as arrays over the grid; `ends` keeps
                    only last states, `load_many` reads a folder

@@ -35,7 +35,7 @@ def use(folder: Path) -> list[float]:
     race = rl.work_precision(body, 0.5, methods=["flow"], rounds=1, max_seconds=0.1)
     growth = motion.sensitivity(wrt="omega").state[-1].sum() + rolls.sol(0.3).x[0] + rolls.at(0.3).x
     rolls.save(folder / "motion.npz")
-    loaded = rl.load(folder / "motion.npz") == rolls
+    loaded = rl.load(folder / "motion.npz") == rolls and rl.Scene.from_json(body.to_json()) == body
     given = rl.Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
     pictures = [rl.plot(motion), motion.plot_phase(), rl.plot_phase_map(resolution=4), fit.plot()]
     pages = [rl.animate(rolls).figure, rl.explore(body), rl.examples(folder / "examples")]

@@ -30,6 +30,35 @@ def run(**options: Any) -> Callable[[Path], Any]:
     return lambda _: rl.simulate(**{**USUAL, **options})
 
 
+def from_a_file(folder: Path) -> Scene:
+    (folder / "scene.json").write_bytes(b"PK\x03\x04\xff")
+    return Scene.from_json(folder / "scene.json")
+
+
+HEAD, OLDER = '{"version": 1, "a": 2, "b": 1', "#a=2&b=1&mass=1&omega=0&theta=0&k=1&slip=0"
+SOURCES: list[tuple[str, Any]] = [
+    *(("source", source) for source in (
+        42, None, b"{}", "", "scene.json", "{", "[1]", '{"a":' * 50_000, f"{HEAD}, 1}}",
+        f'{HEAD}, "x": {"1" * 5000}}}', f'{HEAD}, "mu": 0.3}}', f'{HEAD}, "t": 6}}',
+        "#a=2&b=1&fricton=1", "#a=2&b=1&height=0&z=2")),
+    ("version", '{"a": 2, "b": 1}'), ("a", '{"version": 1}'), ("b", '{"version": 1, "a": 2}'),
+    *(("version", f'{{"version": {value}, "a": 2, "b": 1, "new": 3}}')
+      for value in ("2", "0", "1.0", "true", "null", '"1"', "[1]")),
+    ("a", HEAD + ', "a": 2}'), ("dx", HEAD + ', "impulse": {"dx": 1, "dx": 2}}'),
+    *(("theta", f'{HEAD}, "theta": {value}}}') for value in (
+        "NaN", "null", "true", '"0.5"', '"nan"', "[0]", "{}", '"inf"', "-Infinity", "1" * 400)),
+    *(("impulse", f'{HEAD}, "impulse": {value}}}')
+      for value in ("48", '"press"', "[1]", '{"F": 48}', '{"jz": -1, "dx": 3}')),
+    *(("jx", f'{HEAD}, "impulse": {{"jx": {value}}}}}')
+      for value in ("NaN", "null", '"inf"', "[1]")),
+    ("z", HEAD + ', "z": 0.5}'), ("friction", HEAD + ', "friction": -1}'),
+    ("a", "#"), ("a", "https://pages.example/live"), ("b", "file:///live.html#a=2"),
+    *(("b", f"#a=2&b={text}") for text in ("", "nan", "pi", "10°", "-1")),
+    ("b", "#a=2&b=1&b=1"), ("jx", "#a=2&b=1&jx=x"), ("jx", "#a=2&b=1&jx=inf"),
+    ("height", OLDER), ("height", OLDER + "&height=nan"), ("z", OLDER + "&height=inf"),
+    ("mass", "#a=2&b=1&k=1"), ("inertia", OLDER.replace("k=1", "k=0&height=0")),
+    ("theta", OLDER.replace("theta=0", "theta=inf&height=0")),
+]  # fmt: skip
 RESISTED = Scene(2.0, 1.0, theta=0.3, friction=1.0, rolling_resistance=0.02)
 rolling = partial(rl.simulate, **USUAL, model="rolling")
 multipliers = partial(rl.simulate, **USUAL, model="multipliers")
@@ -64,6 +93,9 @@ REFUSALS: list[Row] = [
     *wrong(AIR.to_mjcf, {}, timestep=[*NOT_POSITIVE, 5e-324, 1e300], contact_steps=NOT_POSITIVE),
     ("restitution", lambda _: AIR.replace(restitution=0.5).to_mjcf()),
     *(("friction", lambda _, to=to: to()) for to in (AIR.to_mjcf, AIR.to_sdf)),
+    # scenes as text, and links of the live page with Scene's names and with older ones
+    *((key, lambda _, source=source: Scene.from_json(source)) for key, source in SOURCES),
+    ("source", from_a_file),
     # bodies with rolling resistance
     *(("rolling_resistance", lambda _, verb=verb: verb(RESISTED)) for verb in (
         Scene.to_sdf, rl.period, rl.outcome, rl.required_friction,

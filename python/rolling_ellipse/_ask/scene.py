@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar, Self, TypedDict, Unpack
@@ -15,6 +16,7 @@ from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .reason import blow_in_words, in_words
 from .records import FieldsOnly, cached_property
+from .texts import arguments, to_json
 from .words import table
 from .xml import to_mjcf, to_sdf
 
@@ -242,6 +244,38 @@ class Scene(FieldsOnly, Listed):
         height = positive("thickness", thickness) * positive("density", density)
         return cls(a, b, mass=math.pi * number("a", a) * number("b", b) * height, **others)
 
+    @classmethod
+    def from_json(cls, source: str | os.PathLike[str]) -> Scene:
+        """Return the scene of a JSON text, of a link of the live page, or of a file with either.
+
+        Arguments of Scene that are left out have their defaults. As states that a motion reaches, a
+        body may be about to hit the ground, and it may have more energy than the constructor takes.
+
+        Parameters
+        ----------
+        source : str or path
+            Text that begins with ``{`` as `to_json` writes it, or a link that begins with ``#`` or
+            ``http``; its ``t`` and ``lang`` are not read. A path is an `os.PathLike`, such as
+            ``pathlib.Path("scene.json")``, not a str.
+
+        Raises
+        ------
+        ValueError
+            If a key is unknown, missing or repeated, the version is another one, or a value is not
+            a number or out of its range; the message begins with the key.
+        TypeError
+            If the source is of another type, or null is given for a number that must be given.
+
+        Examples
+        --------
+        >>> egg = '{"version": 1, "a": 0.03, "b": 0.02, "friction": 0.4}'
+        >>> rl.Scene.from_json(egg)
+        Scene(a=0.03, b=0.02, friction=0.4)
+        >>> rl.Scene.from_json("#a=2&b=1&jz=-48&dx=1.5&t=5.4&lang=de")
+        Scene(a=2.0, b=1.0, impulse=Impulse(jx=0.0, jz=-48.0, dx=1.5, dz=0.0))
+        """
+        return reached_scene(arguments(source))
+
     @cached_property
     def core(self) -> _core.Scene:
         """The scene as an object of the core, which is never pickled."""
@@ -284,7 +318,7 @@ class Scene(FieldsOnly, Listed):
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
         return InitialState(**known, reason=in_words(start["reason"]))
 
-    to_mjcf, to_sdf = to_mjcf, to_sdf
+    to_json, to_mjcf, to_sdf = to_json, to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
         """Return the semi-axes, which have no defaults, and fields that differ from defaults."""
