@@ -22,8 +22,8 @@ from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Options for those arguments of `simulate` and `explore` whose names begin error messages
-_OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time"}
+# Options for those arguments of functions whose names begin error messages
+_OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
 

@@ -22,6 +22,7 @@ from . import _core, benchmark, scenes
 from ._ask.printing import text_table
 from ._ask.scene import Impulse, Scene
 from ._ask.settings import METHODS, MODELS
+from ._ask.texts import LINKS
 from ._ask.words import LANGUAGES
 from ._core import Mode, Validity
 from ._motion.trajectory import Trajectory
@@ -44,8 +45,8 @@ SCENE_OPTIONS = {
     "inertia": "moment of inertia about the centre [kg m^2] (default: a uniform disc)",
 }
 _BASE = (
-    "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
-    "centre; options change it."
+    "The scene is that of --scene, or else the report's, a = 2 m, b = 1 m, 10 kg, pressed down by "
+    "48 N s at 1.5 m from its centre; other options change it."
 )
 _ABOUT = str(benchmark.__doc__).partition("\n\nExamples")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
@@ -72,6 +73,11 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
         prog=prog, description=f"{description} {_BASE}", epilog=epilog, allow_abbrev=False
     )
     parser._negative_number_matcher = _NEGATIVE
+    parser.add_argument(
+        "--scene", metavar="FILE|LINK|-",
+        help="JSON of Scene.to_json in a file or standard input, or a link of the live page; the "
+        "time of a link is not read",
+    )  # fmt: skip
     for name, meaning in SCENE_OPTIONS.items():
         option = "--" + name.replace("_", "-")
         parser.add_argument(option, type=float, metavar="NUMBER", help=meaning)
@@ -132,7 +138,7 @@ def require_file(option: str, path: str) -> None:
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
-    """Return the report's scene changed by the options.
+    """Return the scene of --scene, or else the report's, changed by the other options.
 
     Its blow is kept, unless --omega sets the start or --press gives another blow.
 
@@ -141,6 +147,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     ValueError
         If a number is out of its range, or the blow misses the body.
     """
+    scene = _read_scene(options.scene) if options.scene is not None else scenes.report
     given: dict[str, Any] = {
         name: value for name in SCENE_OPTIONS if (value := getattr(options, name)) is not None
     }
@@ -151,11 +158,18 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.omega is not None:
         given["impulse"] = None
     try:
-        return scenes.report.replace(**given)
+        return scene.replace(**given) if given else scene
     except ValueError as error:
         if str(error).startswith("impulse") and options.press is None:
             raise ValueError(f"{error}: give --press F D, or --omega for no blow") from None
         raise
+
+
+def _read_scene(given: str) -> Scene:
+    """Return the scene of a link, of a file, or of standard input if its name is "-"."""
+    if given == "-":
+        return Scene.from_json(sys.stdin.read() if sys.stdin else "")
+    return Scene.from_json(given if given.startswith(LINKS) else Path(given))
 
 
 def benchmark_parser() -> OneLineParser:

@@ -1,5 +1,6 @@
 """`python -m rolling_ellipse` in a process as users type it, and its parts through `main`."""
 
+import io
 import json
 import math
 import os
@@ -186,6 +187,32 @@ def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) ->
     assert both["distance"] == rl.simulate(pressed, 6.0).x[-1]
 
 
+def test_a_scene_is_read_from_a_file_a_link_or_standard_input(
+    command: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Other options change it as they change the report's scene."""
+    scene = rl.scenes.drop.replace(x=3.0, impulse=rl.Impulse(jx=0.5, jz=-0.5, dx=0.1))
+    (tmp_path / "scene.json").write_text(scene.to_json())
+    x = rl.simulate(scene, 1.0).x
+    link = "https://pages.example/#a=2&b=1&omega=3.2&friction=0.5&jz=-1&dx=1&t=9&lang=de"
+    monkeypatch.setattr("sys.stdin", io.StringIO(scene.to_json() + "\n"))
+    facts = [strict_json(command("--scene", given, "--time", "1", "--json").out)
+             for given in ("scene.json", str(tmp_path / "scene.json"), "-")]  # fmt: skip
+    assert facts[0] == facts[1] == facts[2]
+    assert facts[0]["distance"] == x[-1] - x[0] != x[-1]
+    linked = rl.Scene.from_json(link)
+    for options, expected in (
+        ([], linked),
+        (["--mass", "2", "--theta", "0.25"], linked.replace(mass=2.0, theta=0.25)),
+        (["--omega", "1"], linked.replace(omega=1.0, impulse=None)),
+        (["--press", "2", "-1"], linked.replace(impulse=rl.Impulse.press(2.0, -1.0))),
+    ):
+        found = strict_json(command("--scene", link, *options, "--json").out)
+        assert found["distance"] == rl.simulate(expected, 6.0).x[-1], options
+    monkeypatch.setattr("sys.stdin", None)
+    assert command("--scene", "-").code == 2
+
+
 def test_a_blow_that_misses_the_body_is_rejected_with_advice(command: Any) -> None:
     for options in (["--a", "1"], ["--theta", "1.5"]):
         code, out, err = command(*options)
@@ -338,6 +365,9 @@ def test_extreme_motions_still_give_standard_json(command: Any) -> None:
         ("--time --json", "--time"), ("--omega -x", "--omega"), ("-1e-3", "-1e-3"),
         ("--json -1", "-1"), ("explore --a -1", "a must"), ("explore --bogus", "--bogus"),
         ("explore --time 300", "--time must be"), ("explore --press 20", "--press"),
+        ("--scene no_such.json", "no_such.json"), ("--scene .", "'.'"), ("--scene", "--scene"),
+        ("--scene #a=2&b=1&mu=1", "--scene must have keys of"), ("--scene #a=2", "b must be given"),
+        ("--scene #a=2&b=1&jz=-1 --a -1", "a must"), ("explore --scene #", "a must be given"),
         ("explore --save no/such/page.html", "page.html"), ("explore --save .", "'.'"),
     ],
 )  # fmt: skip
@@ -364,8 +394,8 @@ def test_the_installed_command_runs_the_same_function(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "options"),
     [
-        ("", [*SCENE_OPTIONS, "time", "model", "method", "step", "save", "plot", "json"]),
-        (" explore", [*SCENE_OPTIONS, "press", "time", "language", "save", "no-open"]),
+        ("", ["scene", *SCENE_OPTIONS, "time", "model", "method", "step", "save", "plot", "json"]),
+        (" explore", ["scene", *SCENE_OPTIONS, "press", "time", "language", "save", "no-open"]),
     ],
 )
 def test_help_lists_every_option(tmp_path: Path, command: str, options: list[str]) -> None:

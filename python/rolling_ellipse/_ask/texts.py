@@ -15,7 +15,7 @@ from .impulse import Impulse
 _Given = dict[str, Any]
 _VERSION = 1
 _NAMES, _BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
-_LINKS = ("#", "http", "file:")
+LINKS = ("#", "http:", "https:", "file:")
 _BESIDE = ("t", "lang")  # in a link: end of the motion [s], and language of the page
 _OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older links, and Scene's
 
@@ -52,7 +52,7 @@ def arguments(source: Any) -> _Given:
     text = source.strip()
     if text.startswith("{"):
         return _of_json(text)
-    if text.startswith(_LINKS):
+    if text.startswith(LINKS):
         return _of_link(text)
     raise ValueError(f"source must be JSON in braces, a link or an os.PathLike, got {shown(text)}")
 
