@@ -3,17 +3,18 @@
 
 const FULL = 6; // half turns of the strongest colours
 const SETTLED = 300; // time without a change after which the address has the scene [ms]
-const NOT_NAMED = ["jx", "jz", "dx", "dz", "t"]; // among the arguments of Scene
+const NO_BLOW = { jx: 0, jz: 0, dx: 0, dz: 0 };
+const NOT_NAMED = [...Object.keys(NO_BLOW), "t"]; // among the arguments of Scene
 
 export class Workbench extends Explorer {
   constructor(host, film) {
-    const { page } = film, linked = film.linked ?? inAddress(location.hash);
+    const { page } = film, linked = film.linked ?? inAddress(location.hash, page.usual);
     const language = linked.lang in page.languages ? linked.lang : film.words.lang;
     const own = { ...page.given, friction: page.given.friction ?? Infinity };
     super(host, { ...film, ...page.languages[language], own, axes: ["dx", "jz"],
       given: { ...own, ...known(linked, own) } });
     addEventListener("hashchange", () => {
-      const { lang, ...numbers } = inAddress(location.hash);
+      const { lang, ...numbers } = inAddress(location.hash, page.usual);
       if (!host.isConnected || this.address === location.hash) return;
       this.change(numbers);
       if (lang !== this.film.words.lang) this.speak(lang);
@@ -88,10 +89,9 @@ export class Workbench extends Explorer {
     this.settling = setTimeout(() => this.settle(), SETTLED);
   }
 
-  /** Write the scene into the address of the page. */
+  /** Write the scene into the address of the page, by the names of Scene. */
   settle() {
-    const numbers = Object.entries(this.given).filter(([name, value]) => value !== null
-      && (value || name !== "rolling_resistance")); // links without it stay as they were
+    const numbers = Object.entries(this.sceneOf(this.given)).filter(([, value]) => value !== null);
     this.address = `#${new URLSearchParams({ ...Object.fromEntries(numbers),
       lang: this.film.words.lang })}`;
     history.replaceState(null, "", this.address);
@@ -160,7 +160,7 @@ export class Workbench extends Explorer {
     const flies = height > 0, x_dot = flies ? slip : slip ? h * omega + slip : null;
     return { ...given, inertia: k === 1 ? null : (k * mass * (a * a + b * b)) / 4, x_dot,
       z: flies ? h + height : null, z_dot: flies ? given.z_dot : null,
-      jx: jx || jz ? jx : null };
+      jx: jx || jz ? jx : null, jz: jx || jz ? jz : null };
   }
 
   code() {
@@ -271,9 +271,22 @@ function numberIn(text, unit = "") {
   return plain ? Number(plain) : NaN;
 }
 
-const inAddress = (hash) => Object.fromEntries(new URLSearchParams(hash.slice(1)));
 const rounded = (value) => Number(value.toPrecision(4));
 const halfTurns = (theta, start) => Math.round((theta - start) / Math.PI) + 0;
+
+/** The page's numbers in an address; it has Scene's names, or is older and has the page's own. */
+function inAddress(hash, usual) {
+  const linked = Object.fromEntries(new URLSearchParams(hash.slice(1)));
+  if (!linked.a || !linked.b || "k" in linked) return linked;
+  const { inertia, z, x_dot, ...others } = { ...NO_BLOW, friction: Infinity, z_dot: null, ...usual,
+    ...linked };
+  const [a, b, mass, theta, omega] = ["a", "b", "mass", "theta", "omega"].map((name) =>
+    Number(others[name]));
+  const [h] = support(theta, a, b), flies = z > h * (1 + 8 * Number.EPSILON); // as Scene decides
+  return { ...others, height: flies ? z - h : 0,
+    k: inertia === undefined ? 1 : (4 * inertia) / (mass * (a * a + b * b)),
+    slip: x_dot === undefined ? 0 : x_dot - (flies ? 0 : h * omega) };
+}
 
 /** Those of some numbers, or their texts, that a page has. */
 function known(numbers, own) {

@@ -18,7 +18,7 @@ draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return wh
 film, page         `animate`: ``rl.animate(motion, "film.mp4")``, or .gif, .webm, .html; in
                    `explore` a hand strikes
 save               ``motion.save("motion.npz")`` and `load`; a scene as text or link:
-                   ``scene.to_json()``, ``Scene.from_json(text)``
+                   ``scene.to_json()``, ``scene.to_link()``, ``Scene.from_json(text)``
 table              ``motion.to_dataframe()``, which has ``.to_csv``; ``motion.to_xarray()``
 grid of scenes     `simulate_many`, with ``returns="theta"`` as arrays over the grid; `ends` keeps
                    only last states, `load_many` reads a folder

@@ -96,6 +96,7 @@ REFUSALS: list[Row] = [
     # scenes as text, and links of the live page with Scene's names and with older ones
     *((key, lambda _, source=source: Scene.from_json(source)) for key, source in SOURCES),
     ("source", from_a_file),
+    *wrong(ROLLING.to_link, {}, t=[*NOT_POSITIVE, "6"]),
     # bodies with rolling resistance
     *(("rolling_resistance", lambda _, verb=verb: verb(RESISTED)) for verb in (
         Scene.to_sdf, rl.period, rl.outcome, rl.required_friction,

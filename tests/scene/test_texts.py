@@ -33,12 +33,16 @@ def bits(scene: Scene) -> str:
     return repr([getattr(scene, field.name) for field in fields(scene)])
 
 
-def test_300_scenes_return_from_json_with_their_bits() -> None:
+def test_300_scenes_return_from_json_and_links_with_their_bits() -> None:
     scenes = [*random_scenes(200, 41), *random_scenes(98, 42, struck=1.0), FULL, rl.scenes.report]
     for scene in scenes:
         text = scene.to_json()
         again = Scene.from_json(text)
         assert again == scene and bits(again) == bits(scene) and again.to_json() == text
+        link = scene.to_link("https://pages.example/live/#a=1", t=6.0)
+        linked = Scene.from_json(link)
+        assert linked == scene and bits(linked) == bits(scene)
+        assert linked.to_link("https://pages.example/live/", t=6.0) == link
     assert len(scenes) == 300 and sum(scene.impulse is not None for scene in scenes) == 100
     assert sum(scene.friction == math.inf for scene in scenes) > 5
     assert sum(scene.z is not None for scene in scenes) > 50

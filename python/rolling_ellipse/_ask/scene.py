@@ -16,7 +16,7 @@ from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .reason import blow_in_words, in_words
 from .records import FieldsOnly, cached_property
-from .texts import arguments, to_json
+from .texts import arguments, to_json, to_link
 from .words import table
 from .xml import to_mjcf, to_sdf
 
@@ -318,7 +318,7 @@ class Scene(FieldsOnly, Listed):
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
         return InitialState(**known, reason=in_words(start["reason"]))
 
-    to_json, to_mjcf, to_sdf = to_json, to_mjcf, to_sdf
+    to_json, to_link, to_mjcf, to_sdf = to_json, to_link, to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
         """Return the semi-axes, which have no defaults, and fields that differ from defaults."""

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from .. import _core
-from .check import evaluate, finite, readable, shown
+from .check import evaluate, finite, positive, readable, shown
 from .habits import meant
 from .impulse import Impulse
 
@@ -37,9 +37,47 @@ def to_json(scene: Any) -> str:
     """
     from json import dumps  # it takes a tenth of the package's import time
 
-    given = {name: value for name, value in asdict(scene).items() if value is not None}
+    given = _given(scene)
     endless = {name: "inf" for name, value in given.items() if value == math.inf}
     return dumps({"version": _VERSION, **given, **endless})
+
+
+def to_link(scene: Any, page: str | os.PathLike[str] = "", *, t: float | None = None) -> str:
+    """Return a link that opens the scene in the live page; `Scene.from_json` reads it bit by bit.
+
+    It has the arguments of Scene and of the blow by their names. The page shows a blow of no force
+    as none.
+
+    Parameters
+    ----------
+    page : str or path
+        Address of the page, such as that of ``live/index.html`` in the built site; what it has from
+        ``#`` on is replaced. Without a page, the link begins with ``#``.
+    t : float, optional
+        Time that the page shows [s]; None: the page's own.
+
+    Raises
+    ------
+    ValueError
+        If t is not positive and finite.
+
+    Examples
+    --------
+    >>> link = rl.scenes.report.to_link("https://pages.example/live/", t=6.0)
+    >>> link[:50]
+    'https://pages.example/live/#a=2.0&b=1.0&mass=10.0&'
+    >>> rl.Scene.from_json(link) == rl.scenes.report
+    True
+    """
+    from urllib.parse import urlencode
+
+    given = _given(scene)
+    given |= given.pop("impulse", {}) | ({} if t is None else {"t": positive("t", t)})
+    return f"{str(page).partition('#')[0]}#{urlencode(given)}"
+
+
+def _given(scene: Any) -> _Given:
+    return {name: value for name, value in asdict(scene).items() if value is not None}
 
 
 def arguments(source: Any) -> _Given:
