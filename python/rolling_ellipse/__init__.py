@@ -10,7 +10,8 @@ set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`
 compute a motion   `simulate`: a `Trajectory` with arrays ``motion.t``, ``.theta``, ``.x``, ...
 at other times     ``motion.sol(times)`` for arrays, ``motion.at(t)`` for one time, neither solves
                    again; ``motion.scene_at(t)`` to continue
-when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``
+when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``, and
+                   ``motion.events.table`` as arrays
 ask, not compute   `outcome`, `classify`, `certify`, `thresholds`, `required_friction`, `blow_to`
 draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return what they drew, with
                    ``.axes`` and ``.savefig("motion.png")``; ``rl.plot(motion).theta.axes`` has the

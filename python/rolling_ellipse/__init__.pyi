@@ -20,6 +20,7 @@ from ._core import Validity as Validity
 from ._motion.constraints import ConstraintResiduals as ConstraintResiduals
 from ._motion.constraints import constraints as constraints
 from ._motion.constraints import kinematics as kinematics
+from ._motion.event_table import EventTable as EventTable
 from ._motion.events import Event as Event
 from ._motion.export import load as load
 from ._motion.samples import Sample as Sample
@@ -41,6 +42,7 @@ from ._player import Explorer as Explorer
 from ._player import animate as animate
 from ._player import explore as explore
 from ._verbs.batches import Ends as Ends
+from ._verbs.batches import EventArrays as EventArrays
 from ._verbs.batches import MotionArrays as MotionArrays
 from ._verbs.batches import ends as ends
 from ._verbs.batches import load_many as load_many

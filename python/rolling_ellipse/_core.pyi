@@ -51,7 +51,7 @@ class Outcome(_Named, enum.IntEnum):
     JAMS = 5
     EDGE = 6
 
-class EventKind(_Named, enum.Enum):
+class EventKind(_Named, enum.IntEnum):
     SLIP = 0
     STICK = 1
     REVERSE = 2
@@ -92,6 +92,7 @@ class Impulse:
 
 class Scene:
     gyration2: Final[float]
+    body: Final[list[float]]
 
 class Solution:
     ending: Final[int]
@@ -156,6 +157,7 @@ def validate_settings(settings: Settings, t_end: float) -> None: ...
 def ends_table(
     scenes: FloatArray, settings: Settings, times: FloatArray, workers: int
 ) -> _Tables: ...
+def bodies(scenes: FloatArray) -> FloatArray: ...
 def friction_table(scenes: FloatArray, to_rest: bool, workers: int) -> FloatArray: ...
 def simulate_table(
     scenes: FloatArray, settings: Settings, times: FloatArray, workers: int

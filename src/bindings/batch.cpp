@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
 constexpr int refused = -1;  // code of a rejected scene; the codes of Ending are >= 0
 
-// The scene in a row, validated; NaN marks an absent value.
-Scene scene_in(const double* row, Origin origin) {
+// The scene in a row; NaN marks an absent value.
+Scene scene_in(const double* row) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);
     };
@@ -24,7 +24,11 @@ Scene scene_in(const double* row, Origin origin) {
     std::transform(row, blow, numbers.begin(), given);
     std::optional<Impulse> impulse;
     if (given(*blow)) read(impulse.emplace(), impulse_fields, blow);
-    const Scene scene = scene_of(numbers, impulse);
+    return scene_of(numbers, impulse);
+}
+
+Scene scene_in(const double* row, Origin origin) {
+    const Scene scene = scene_in(row);
     validate(scene, origin);
     return scene;
 }
@@ -222,6 +226,16 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     return py::dict("states"_a = states, "codes"_a = codes);
 }
 
+// The body of each scene, one in a row.
+Array bodies(const Array& scenes) {
+    const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
+    Array found = matrix(n, body_of({}).size());
+    for (py::ssize_t i = 0; i < n; ++i) {
+        store(found, i, body_of(scene_in(scenes.data(i, 0))).data());
+    }
+    return found;
+}
+
 // The friction that each scene needs to roll forever, or to lie still.
 Array friction_table(const Array& scenes, bool to_rest, int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -243,6 +257,7 @@ void bind_batch(py::module_& m) {
     m.attr("COLUMNS") = columns();
     m.def("ends_table", ends_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
     m.def("friction_table", friction_table, "scenes"_a, "to_rest"_a, "workers"_a);
+    m.def("bodies", bodies, "scenes"_a);
     m.def("simulate_table", simulate_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
 }
 

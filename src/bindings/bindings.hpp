@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "bindings/arrays.hpp"
@@ -84,6 +85,14 @@ template <class Struct, std::size_t N>
 const double* read(Struct& to, const Field<Struct> (&table)[N], const double* from) {
     for (const Field<Struct>& field : table) to.*field.number = *from++;
     return from;
+}
+
+// What the energies and impulses of a body depend on: mass, moment of inertia and its k^2, gravity,
+// cosine and sine of the slope, friction.
+inline std::array<double, 7> body_of(const Scene& scene) {
+    const double cosine = std::cos(scene.slope), sine = std::sin(scene.slope);
+    const double k2 = scene.body().gyration2;
+    return {scene.mass, scene.inertia, k2, scene.gravity, cosine, sine, scene.friction};
 }
 
 // The state given by arrays q and q_dot of shape (5,); other shapes are rejected.

@@ -109,9 +109,9 @@ void bind_scene(py::module_& m) {
                  return impulse;
              }),
              "jx"_a, "jz"_a, "dx"_a, "dz"_a);
-    bind_class<Scene>(m, "Scene").def_property_readonly("gyration2", [](const Scene& s) {
-        return s.body().gyration2;
-    });
+    bind_class<Scene>(m, "Scene")
+        .def_property_readonly("body", body_of)
+        .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
     m.def("scene_of", SceneMaker(), "numbers"_a, "impulse"_a, "reached"_a);
     bind_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.");
     m.attr("FIELDS") =

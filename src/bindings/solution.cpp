@@ -281,7 +281,7 @@ void ContactColumns::store(const ContactSample* samples, py::ssize_t begin, py::
 }
 
 void bind_solution(py::module_& m) {
-    bind_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.");
+    bind_enum<EventKind>(m, "EventKind", "enum.IntEnum", "Kind of an event.");
     bind_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.");
     bind_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.");
     bind_class<Solution>(m, "Solution")

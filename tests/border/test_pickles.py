@@ -56,6 +56,8 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "thresholds": lambda: rl.thresholds(2.0, 1.0),
     "settings": lambda: MOTIONS["gauss"]().settings,
     "arrays": lambda: rl.simulate_many([rl.scenes.report], TIMES, returns="x"),
+    "event table": lambda: MOTIONS["contact"]().events.table,
+    "event arrays": lambda: rl.simulate_many([rl.scenes.jump], 1.0, returns="events"),
     "ends": lambda: rl.ends([rl.scenes.report], 1.0),
     "sample": lambda: MOTIONS["contact"]().at(0.3),
     "constraints": lambda: MOTIONS["rolling"]().constraint_residuals(),

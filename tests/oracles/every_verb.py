@@ -21,6 +21,11 @@ def use(folder: Path) -> list[float]:
     many = rl.simulate_many([body, rl.scenes.jump], 1.0)
     last = [each.x[-1] for each in many if isinstance(each, rl.Trajectory)]
     grid = rl.simulate_many({"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}, [0.5], returns="x")
+    hits = rl.simulate_many([body, rl.scenes.jump], 1.0, returns="events")
+    table: rl.EventTable = motion.events.table
+    assert table["t"][table["kind"] == rl.EventKind.SLIP].tolist() == slips and hits.axes == (
+        "scene",
+    )
     stored = rl.load_many(rl.simulate_many([body], 1.0, out=folder / "many"))
     ended = rl.ends([body], 1.0).status == rl.Status.COMPLETED
     theta, _, x = rl.flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0)

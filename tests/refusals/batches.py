@@ -161,7 +161,7 @@ REFUSALS: list[Row] = [
     ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),
     *wrong(rl.simulate_many, {"scenes": [], "t": 1.0},
            t=[-1.0], rtol=[-1.0], model=["roling"], raise_on_failure=[1], progress=[1, "yes"],
-           out=[3], returns=[3, ["x", "vx"], ["reason"]], workers=WORKERS),
+           out=[3], returns=[3, ["x", "vx"], ["reason"], ["events", "x"]], workers=WORKERS),
     ("out", many([], out="here", returns="x")),
     ("step", many([], method="rk4")),
     ("out", other_folder),

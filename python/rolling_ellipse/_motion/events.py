@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
+import numpy as np
+import numpy.typing as npt
+
 from .. import _core
-from .._ask.printing import Row, brief, html_table, printable, required, text_table
-from .._ask.records import FieldsOnly, find_late, trusted
-from .._ask.scene import STATE_UNITS, InitialState, Scene
+from .._ask.printing import Row, brief, html_table, printable, text_table
+from .._ask.records import FieldsOnly, cached_property, find_late, trusted
+from .._ask.scene import InitialState, Scene
 from .._ask.words import table
 from .._core import EventKind, Mode
+from .energies import energy
+from .event_table import COLUMNS, EventTable, columns_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -89,26 +93,11 @@ class Event(FieldsOnly):
         )
 
 
-def _columns() -> dict[str, tuple[str, str]]:
-    """Return the columns of the event table: attribute and unit; texts have the unit "1"."""
-    columns = {"t": ("t", "s"), "kind": ("kind.name", "1")}
-    for when in ("before", "after"):
-        for name, unit in STATE_UNITS.items():
-            columns[f"{name}_{when}"] = f"state_{when}.{name}", unit
-        columns[f"mode_{when}"] = f"state_{when}.mode.name", "1"
-        columns[f"energy_{when}"] = f"energy_{when}", "J"
-    for name in ("reaction_x", "reaction_z", "energy_lost"):  # only states after an event have them
-        columns[name] = f"state_after.{name}", InitialState._units[name]
-    return columns | {"reason": ("state_after.reason", "1")}
-
-
 class Events(tuple[Event, ...]):
     """A tuple of events in order of time that prints as a table, as its slices do.
 
     The table of many events shows the first and the last ones.
     """
-
-    __slots__ = ()
 
     @overload
     def __getitem__(self, place: SupportsIndex) -> Event: ...
@@ -137,50 +126,34 @@ class Events(tuple[Event, ...]):
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)
 
+    @cached_property
+    def table(self) -> EventTable:
+        """The events as flat arrays."""
+        if made := vars(self).get("_rows"):
+            rows, scene = made
+            return EventTable(columns_of(rows, scene.core.body))
+        paths = {name: attrgetter(path) for name, (path, _) in COLUMNS.items()}
+        return EventTable({name: [*map(path, self)] for name, path in paths.items()})
+
+    def __getstate__(self) -> None:
+        """Leave rows and table out of pickles and copies."""
+
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame with a row for each event.
-
-        Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, with their
-        energies, the reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the
-        units by column.
-
-        Raises
-        ------
-        ImportError
-            Without pandas: it comes with ``rolling_ellipse[data]``.
-        """
-        pandas = required("pandas", "to_dataframe")
-        columns = _columns()
-        values = {name: [*map(attrgetter(path), self)] for name, (path, _) in columns.items()}
-        frame: DataFrame = pandas.DataFrame(values)
-        units = {name: unit for name, (_, unit) in columns.items()}
-        frame = frame.astype({name: float for name, unit in units.items() if unit != "1"})
-        frame.attrs = {"units": units}
-        return frame
+        """Return the table as a pandas DataFrame: `EventTable.to_dataframe`."""
+        return self.table.to_dataframe()
 
 
-def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
-    """Return the events from rows of numbers; their states are made on first access."""
-    return Events(
+def events(scene: Scene, rows: npt.ArrayLike) -> Events:
+    """Return the events from rows of numbers; states and table are made on first access."""
+    each = np.reshape(rows, (-1, len(_core.COLUMNS["events"])))
+    found = Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_numbers": row, "_scene": scene})
-            for row in rows  # a row has the columns `_core.COLUMNS["events"]`
+            for row in each.tolist()
         ]
     )
-
-
-def energies(scene: Scene, of: Any) -> tuple[Any, Any, Any]:
-    """Return translational, rotational and potential energy of a state, or of samples [J]."""
-    translational = 0.5 * scene.mass * (of.x_dot**2 + of.z_dot**2)
-    rotational = 0.5 * (scene.mass * scene.gyration2) * of.omega**2
-    height = of.z * math.cos(scene.slope) - of.x * math.sin(scene.slope)
-    return translational, rotational, scene.mass * scene.gravity * height
-
-
-def energy(scene: Scene, of: Any) -> Any:
-    """Return the energy of a state [J]; `sum` has other roundings for floats since Python 3.12."""
-    translational, rotational, potential = energies(scene, of)
-    return translational + rotational + potential
+    vars(found)["_rows"] = each, scene
+    return found
 
 
 def _state(event: Any, *, after: bool) -> InitialState:
@@ -192,7 +165,7 @@ def _state(event: Any, *, after: bool) -> InitialState:
 
 
 def _energy(event: Any, state: InitialState) -> Any:
-    return energy(event._scene, state)
+    return energy(event._scene.core.body, state)
 
 
 find_late(

@@ -114,7 +114,8 @@ def when(
     if name == "event":
         kind = choice("event", wanted.name if isinstance(wanted, EventKind) else wanted, _EVENTS)
         if kind != "roll_over":
-            return np.array([each.t for each in motion.events if each.kind.name == kind.upper()])
+            events = motion.events.table
+            return events["t"][events["kind"] == EventKind[kind.upper()]]
         rolled = when(motion, theta=_tips(motion), direction=sense)
         return np.sort(np.concatenate([[], *rolled]))
     values = np.empty(()) if name == "function" else finite(name, wanted)

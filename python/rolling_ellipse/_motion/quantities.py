@@ -1,8 +1,11 @@
-"""Units and meanings of the arrays of a trajectory."""
+"""Units and meanings of the arrays of a trajectory, and names of codes."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import enum
+from typing import Any, NamedTuple
+
+import numpy as np
 
 
 class Quantity(NamedTuple):
@@ -59,3 +62,9 @@ MULTIPLIERS = (
     Quantity("lambda4", "N m", "multiplier of the constraint f4"),
 )
 MODE = Quantity("mode", "1", "what the body does")
+
+
+def flags(kind: type[enum.IntEnum]) -> dict[str, Any]:
+    """Return attributes with the names of codes, as in the CF conventions."""
+    names = " ".join(each.name for each in kind)
+    return {"flag_values": np.array(list(kind), dtype=np.int8), "flag_meanings": names}

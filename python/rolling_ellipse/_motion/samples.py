@@ -15,7 +15,8 @@ from .._ask.check import FloatArray, array, require, shown
 from .._ask.records import trusted
 from .._ask.settings import GIVEN
 from .._core import Mode
-from .events import MODES, energy
+from .energies import energy
+from .events import MODES
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -196,5 +197,5 @@ def sample_at(motion: Trajectory, t: float) -> Sample:
     values["t"], values["turns"] = t, (values["theta"] - scene.theta) / (2 * math.pi)
     values["mode"] = MODES[values["mode"]]
     sample = trusted(Sample, values)
-    values["energy"] = energy(scene, sample)
+    values["energy"] = energy(scene.core.body, sample)
     return sample

@@ -20,7 +20,8 @@ from .._ask.scene import Scene, reached_scene, require_scene
 from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
-from .events import Event, Events, energies, events
+from .energies import energies
+from .events import Event, Events, events
 from .methods import bind_methods
 from .quantities import MATRICES, MODE, QUANTITIES
 from .samples import (
@@ -258,7 +259,7 @@ class Trajectory(FieldsOnly):
         lambda self: self.x + support_slope(self.theta, a=self.scene.a, b=self.scene.b)
     )
     turns = _derived(lambda self: (self.theta - self.scene.theta) / (2 * math.pi))
-    _energies = cached_property(lambda self: energies(self.scene, self))
+    _energies = cached_property(lambda self: energies(self.scene.core.body, self))
     translational_energy, rotational_energy, potential_energy = (
         _part("_energies", i) for i in range(3)
     )
@@ -277,8 +278,9 @@ class Trajectory(FieldsOnly):
     def events(self) -> Events:
         """Events of the model "contact" in order of time, a tuple that prints as a table."""
         if self.kept_events is not None:
-            return Events(self.kept_events)
-        return events(self.scene, self._solution.events.tolist())
+            kept = self.kept_events
+            return kept if isinstance(kept, Events) else Events(kept)
+        return events(self.scene, self._solution.events)
 
     @property
     def success(self) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from .._ask.check import FloatArray
 from .._ask.printing import html_table, required, text_table
 from .._core import Mode
-from .._motion.events import energies
+from .._motion.energies import energies
 from .._motion.trajectory import Trajectory
 from ._answers import answered
 from ._events import gap_and_slip
@@ -294,7 +294,8 @@ def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, fl
     scene, length = one.scene, float(one.scales[0])
     mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
     unit = scene.mass * scene.gravity * length
-    change = (sum(energies(scene, mine)) - sum(energies(scene, exact))) / unit
+    body = scene.core.body
+    change = (sum(energies(body, mine)) - sum(energies(body, exact))) / unit
     gap, slip = gap_and_slip(one, states)
     gap, slip = gap / length, np.abs(slip)
     touching, rolling = exact.normal_force > 0, exact.mode == Mode.ROLLING

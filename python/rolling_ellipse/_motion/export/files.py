@@ -143,7 +143,7 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
         scene=scene,
         settings=Settings(**settings),
         status=Status[choice("status", about["status"], tuple(Status.__members__))],
-        kept_events=events(scene, map(event_row, about["events"])),
+        kept_events=events(scene, [*map(event_row, about["events"])]),
     )
     _require_consistent(trajectory)
     again = _about(trajectory)

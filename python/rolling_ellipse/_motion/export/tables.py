@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..._ask.printing import required
 from ..._core import Mode
-from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity
+from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity, flags
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -81,11 +79,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     _, units, meanings, _ = zip(*MULTIPLIERS, strict=True)
     about = {"units": ", ".join(units), "long_name": "; ".join(meanings)}
     variables["multipliers"] = ("t", "constraint"), trajectory.multipliers.copy(), about
-    flags = {  # names of the codes, as in the CF conventions
-        "flag_values": np.array(list(Mode), dtype=np.int8),
-        "flag_meanings": " ".join(mode.name for mode in Mode),
-    }
-    variables["mode"] = ("t", trajectory.mode.copy(), attributes(MODE) | flags)
+    variables["mode"] = ("t", trajectory.mode.copy(), attributes(MODE) | flags(Mode))
     times = "t", trajectory.t.copy(), attributes(TIME)
     coordinates = {"t": times, "constraint": ["f1", "f2", "f3", "f4"]}
     return xarray.Dataset(variables, coordinates, _facts(trajectory))

@@ -48,6 +48,7 @@ TABLES = ("codes", "numbers", "text", "events", "rolling", "contact", "mode", "q
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
+EVENTS = "events"  # what can be returned instead of quantities
 DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
 _STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers": DIRECT}
 _TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
@@ -159,7 +160,7 @@ class _Part:
         )
         scene = scene_of(self._scenes[place])
         status, model = STATUSES[code["ending"]], MODELS[code["model"]]
-        kept = made_events(scene, tables["events"][events].tolist()) if self._keep_events else None
+        kept = made_events(scene, tables["events"][events].copy()) if self._keep_events else None
         return _samples(model, tables, samples, self._times) | numbers | {
             "scene": scene, "model": model, "method": METHODS[code["method"]], "status": status,
             "message": message or status.value, "span": float(self._times[-1]), "start": None,
@@ -345,8 +346,11 @@ def names_in(returns: Any) -> tuple[str, ...]:
     """Return the names of quantities in an argument ``returns``."""
     if not isinstance(returns, Iterable):
         raise TypeError(f"returns must be names of quantities, got {shown(returns)}")
-    names = (returns,) if isinstance(returns, str) else returns
-    return tuple(choice("returns", name, tuple(_KNOWN)) for name in names)
+    given = (returns,) if isinstance(returns, str) else returns
+    names = tuple(choice("returns", name, (*_KNOWN, EVENTS)) for name in given)
+    if EVENTS in names and len(names) > 1:
+        raise ValueError(f"returns must be {EVENTS!r} alone, or quantities, got {shown(names)}")
+    return names
 
 
 def gathered(

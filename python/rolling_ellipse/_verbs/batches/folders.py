@@ -20,7 +20,7 @@ from functools import partial
 from importlib.metadata import version
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar, overload
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from ..._motion.export import strict
 from ..._motion.export.atomic import remove_unfinished, replacing
 from . import answers as results
 from .asked import Chunk, sizes
+from .event_arrays import EventArrays, gathered_events
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -181,11 +182,17 @@ class StoredMotions(Sequence[results.Answer]):
         begin, end = self._begins[index : index + 2]
         return _chunk(self._folder, self._names[index], end - begin, self._request.samples)
 
-    def arrays(self, returns: Any = results.DIRECT) -> results.MotionArrays:
-        """Return quantities of all motions, as `simulate_many` does for ``returns``."""
+    @overload
+    def arrays(self, returns: Literal["events"]) -> EventArrays: ...
+    @overload
+    def arrays(self, returns: Any = results.DIRECT) -> results.MotionArrays: ...
+    def arrays(self, returns: Any = results.DIRECT) -> Any:
+        """Return quantities or events of all motions, as `simulate_many` does for ``returns``."""
         each = map(self._tables, range(len(self._names)))
         parts = ((tables["scenes"], tables) for tables in each)
         names = results.names_in(returns)
+        if names == (results.EVENTS,):
+            return gathered_events(self._request, parts, self._axes, self._shape)
         return results.gathered(names, self._request, parts, self._axes, self._shape)
 
     def to_xarray(self, returns: Any = results.DIRECT) -> Dataset:
@@ -211,7 +218,8 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
         Bit for bit as computed; ``events`` are those of the machine that computed them. Only one
         file, of at most 2048 scenes, is in memory at a time. ``arrays(("theta", "x"))``,
         ``to_xarray(…)`` and ``to_dataframe(…)`` return the named quantities (default: theta,
-        omega, x) in the shape of the scenes, with the axes of `MotionArrays`.
+        omega, x) in the shape of the scenes, with the axes of `MotionArrays`; of "events", all
+        events.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from inspect import Signature, signature
-from typing import Any, TypeAlias, Unpack, overload
+from typing import Any, Literal, TypeAlias, Unpack, overload
 
 from numpy.typing import ArrayLike
 
@@ -18,8 +18,9 @@ from ..._ask.settings import Options, Settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times, simulate
 from ..workers import Lost, Task, in_order, threads_of
-from .answers import Answer, MotionArrays, Request, answers, gathered, names_in
+from .answers import EVENTS, Answer, MotionArrays, Request, answers, gathered, names_in
 from .asked import Chunk, SceneGrid, SceneList, asked
+from .event_arrays import EventArrays, gathered_events
 from .folders import Folder
 
 _Scenes: TypeAlias = Iterable[Scene] | Mapping[str, Any]
@@ -31,6 +32,11 @@ def simulate_many(
     scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
     out: None = None, returns: None = None, **options: Unpack[Options],
 ) -> list[Answer]: ...  # fmt: skip
+@overload
+def simulate_many(  # type: ignore[overload-overlap]
+    scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
+    out: None = None, returns: Literal["events"], **options: Unpack[Options],
+) -> EventArrays: ...  # fmt: skip
 @overload
 def simulate_many(
     scenes: _Scenes, t: ArrayLike, *, workers: Any = 1, progress: _Progress = False,
@@ -80,13 +86,14 @@ def simulate_many(
         only missing and damaged chunks. `load_many` reads it.
     returns : str or iterable of str, optional
         Names of quantities of a trajectory: they are returned as `MotionArrays`, over the scenes'
-        shape, then the times. "theta", "omega" and "x" need no Python objects.
+        shape, then the times. "theta", "omega" and "x" need no Python objects. Or "events", alone:
+        all events up to the last time, as `EventArrays`.
     raise_on_failure, **options
         As for `simulate`, from ``model`` to ``rest_speed``.
 
     Returns
     -------
-    list of Trajectory or exception, or str, or MotionArrays
+    list of Trajectory or exception, or str, or MotionArrays, or EventArrays
         One for each scene, in order; with ``out`` the path of the folder; or what ``returns``
         names. The arrays of a trajectory are made when it is first used; until then its chunk of
         up to 2048 motions stays in memory. A scene that `simulate` would reject has a ValueError;
@@ -121,9 +128,10 @@ def simulate_many(
     how = Settings(**options)
     times = sample_times(t)
     _core.validate_settings(how.core, float(times[-1]))
-    request = Request(how, times, flag("raise_on_failure", raise_on_failure))
-    threads_of(workers)
     names = None if returns is None else names_in(returns)
+    sampled = times[-1:] if names == (EVENTS,) else times
+    request = Request(how, sampled, flag("raise_on_failure", raise_on_failure))
+    threads_of(workers)
     if names is not None and out is not None:
         raise ValueError(
             f"out must be None with returns, got {shown(out)}: load_many(out) makes arrays, too"
@@ -135,6 +143,8 @@ def simulate_many(
         each = parts(request, wanted, workers, report)
         if names is not None:
             tables = ((chunk.table, part) for chunk, part in each)
+            if names == (EVENTS,):
+                return gathered_events(request, tables, wanted.axes, wanted.shape)
             return gathered(names, request, tables, wanted.axes, wanted.shape)
         listed: list[Answer] = []
         for chunk, part in each:
