@@ -17,9 +17,9 @@ const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// The swing of a body that rocks; null if it is followed by series.
+// The swing of a body that rocks; null if it is followed by series, or not yet known.
 const Swing* swing_of(const SlopeFlow& flow) {
-    return std::get_if<Swing>(&flow.stretches.back().law);
+    return flow.stretches.empty() ? nullptr : std::get_if<Swing>(&flow.stretches.back().law);
 }
 
 // Whether the body turns by less than an angle in a time from the start. Near the start only series
@@ -186,8 +186,7 @@ void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, doub
 
 // Whether a motion that is to be known up to a time may be a swing but has not been tried as one.
 bool may_swing(const SlopeFlow& flow, double until) {
-    return !flow.by_series && !(!flow.stretches.empty() && swing_of(flow)) &&
-           !is_near(flow, until, near_in_swing);
+    return !flow.by_series && !swing_of(flow) && !is_near(flow, until, near_in_swing);
 }
 
 // The point at the end of the last stretch.
@@ -253,10 +252,9 @@ bool grow(SlopeFlow& flow, double until) {
 }
 
 SlopeFlow by_series(const SlopeFlow& flow) {
-    SlopeFlow followed = flow;
-    followed.stretches.clear();
-    if (followed.start.omega != 0) followed.turning.reset();
-    followed.by_series = true;
+    SlopeFlow followed{flow.theta, flow.omega, flow.x, flow.rests, flow.body, flow.acceleration,
+                       flow.start, flow.datum, {},     {},         true};
+    if (flow.start.omega == 0) followed.turning = flow.start.time;
     return followed;
 }
 

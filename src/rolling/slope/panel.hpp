@@ -10,6 +10,11 @@ namespace {
 
 constexpr std::size_t usual_parts = 16;
 
+// |tan phi| at the complex zeros of D near the flat position.
+inline double grade_at_flat(const SlopeBody& body) {
+    return std::sqrt(body.d0 / (body.d0 + body.d1));
+}
+
 // Positions of the ellipse: sines and cosines of their angles from a flat position, both with a
 // common factor, and the square of its inverse; the squares of both without that factor; and the
 // height of the centre.

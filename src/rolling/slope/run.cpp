@@ -172,7 +172,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     const double least =
         std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
     // A grade is the tanh of about the imaginary part of the nearest singularity of dt/dphi.
-    const double at_flat = std::sqrt(body.d0 / (body.d0 + body.d1));
+    const double at_flat = grade_at_flat(body);
     // The singularities of the flat position may be closer to the hill than the hill's own.
     const double to_flat = half_pi - std::abs(hill);
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;

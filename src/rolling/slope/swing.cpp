@@ -14,7 +14,7 @@ SineCosine sine_cosine(double angle) { return {std::sin(angle), std::cos(angle)}
 
 WellPanel flat_panel(const SlopeBody& body, double angle, const SineCosine& at,
                      const SineCosine& from_rim) {
-    const double grade = std::sqrt(body.d0 / (body.d0 + body.d1));
+    const double grade = grade_at_flat(body);
     const double value = at.sine / (at.cosine * grade);
     return {angle, at, grade, value, root_of_squares(1.0, value), {0.0, 1.0}, from_rim};
 }
