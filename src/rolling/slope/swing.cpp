@@ -107,20 +107,18 @@ Reached reached(const SlopeBody& body, const WellPanel& panel, double v) {
 
 // ------------------------------------------------------------------------- turning points
 
-// The change of W from the centre of a panel to a coordinate, and its derivative there.
+// The change of W from the centre of a panel to a coordinate, and its derivatives there.
 struct Change {
     double energy;
     double rate;
+    double bend;
 };
 
-// Complex zeros of D and h are pi/2 away, so that the rule errs by 1e-17 on parts of the usual
-// width, by 1e-10 on wide ones.
-constexpr double usual = 1.4;
-constexpr double wide = 2.8;
-
+// Complex zeros of D and h are pi/2 away, so that the rule errs by 1e-17.
 ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPanel& panel,
-                                             double to, double widest = usual) {
+                                             double to) {
     static_assert(lanes == 4);
+    constexpr double widest = 1.4;
     const GaussRule& rule = gauss_rule(12);
     const auto rate = [&](Pack v) __attribute__((always_inline)) {
         return moment_at(body, panel, places_at(body, panel, v));
@@ -139,25 +137,56 @@ ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPa
     }
     double total = 0.0;
     for (int i = 0; i < lanes; ++i) total += lane_of(sum, i);
-    return {half * total, lane_of(rate(pack(to)), 0)};
+    const double near = 1e-4 * to;
+    const Pack rates = rate(Pack{to, to - near, to + near, to});
+    return {half * total, lane_of(rates, 0), (lane_of(rates, 2) - lane_of(rates, 1)) / (2 * near)};
 }
 
-// The coordinate between 0 and `most` up to which W changes by an energy, by Newton's method for
-// the root of the change, which is almost linear.
+// An estimate of the coordinate between 0 and `most` up to which W changes by an energy from the
+// bottom, from a cubic through four points of the moment over the coordinate.
+ROLLING_ELLIPSE_WIDE double estimate(const SlopeBody& body, const WellPanel& panel, double energy,
+                                     double most) {
+    constexpr int steps = 3;
+    constexpr double beyond = 1.25;  // the moment grows less than at the bottom, mostly
+    const double height = std::sqrt(body.short_axis2 + body.c2 * square(panel.at.sine));
+    const double turned = panel.grade * panel.rate * square(panel.at.cosine);
+    const double bend = body.pull * panel.from_rim.sine * square(turned) / height;
+    const double unit = 0.25 * std::min(beyond * std::sqrt(2 * energy / std::abs(bend)), most);
+    const Pack x = {1.0, 2.0, 3.0, 4.0};
+    std::array<double, lanes> m;
+    store(unit / x * moment_at(body, panel, places_at(body, panel, unit * x)), m.data());
+    const double c0 = 4 * (m[0] + m[2]) - 6 * m[1] - m[3];
+    const double c1 = (-26 * m[0] + 57 * m[1] - 42 * m[2] + 11 * m[3]) / 6;
+    const double c2 = 1.5 * m[0] - 4 * m[1] + 3.5 * m[2] - m[3];
+    const double c3 = (3 * (m[1] - m[2]) + m[3] - m[0]) / 6;
+    double root = std::sqrt(2 * energy / c0);
+    for (int i = 0; i < steps; ++i) {
+        const double level = c0 / 2 + root * (c1 / 3 + root * (c2 / 4 + root * c3 / 5));
+        const double moment = c0 + root * (c1 + root * (c2 + root * c3));
+        root = std::min(root + (energy / root - root * level) / moment, 4.0);
+    }
+    return unit * root;
+}
+
+// The coordinate between 0 and `most` up to which W changes by an energy, by Halley's method for
+// the root of the change, which is almost linear; infinite if W changes less.
 double coordinate_of(const SlopeBody& body, const WellPanel& panel, double energy, double guess,
                      double most) {
     constexpr int most_steps = 60;
-    constexpr double converged = 1e-8;  // the next step would be its square
+    constexpr double converged = 3e-6;  // the next step would be its cube
     double low = 0.0;
-    double high = most;
+    double high = infinity;
     double v = guess;
     for (int i = 0; i < most_steps; ++i) {
         if (!(v > low && v < high)) v = 0.5 * (low + high);
-        const auto [change, rate] = change_of_energy(body, panel, v);
+        v = std::min(v, most);
+        const auto [change, rate, bend] = change_of_energy(body, panel, v);
+        if (change < energy && v == most) return infinity;
         (change < energy ? low : high) = v;
-        const double step = 2 * (energy - change) / (rate * (1 + std::sqrt(energy / change)));
+        const double missing = 2 * (energy - change) / (1 + std::sqrt(energy / change));
+        const double step = missing / (rate + missing * (0.5 * bend / rate - 0.25 * rate / change));
         v += step;
-        if (std::abs(step) <= converged * v) break;
+        if (std::abs(step) <= converged * std::min(v, 1.0)) break;
     }
     return v;
 }
@@ -181,17 +210,16 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
     const WellPanel panels[] = {bottom_panel(body, well, 0, 1.0), bottom_panel(body, well, 1, 1.0)};
     const double whole =
         energy + change_of_energy(body, panels[here], coordinate(panels[here], away)).energy;
+    if (!(whole > 0)) return std::nullopt;
     TurningPoints found{};
     for (const std::size_t i : {1, 0}) {
         const WellPanel& panel = panels[i];
         const double most = coordinate(panel, widest[i]);
-        const double deepest = change_of_energy(body, panel, most, wide).energy;
-        if (!(whole > 0 && whole < deepest)) return std::nullopt;
         if (i != here || energy >= 0.5 * whole) {
-            // as if the root of the change were a sine of the angle
-            const double about = 2 / pi * well.to_rim[i] * std::asin(std::sqrt(whole / deepest));
-            const double guess = coordinate(panel, std::min(about, widest[i]));
-            const double v = coordinate_of(body, panel, whole, guess, 1.01 * most);
+            const double guess = estimate(body, panel, whole, most);
+            if (!(guess < most)) return std::nullopt;
+            const double v = coordinate_of(body, panel, whole, guess, most);
+            if (!(v < most)) return std::nullopt;
             found.to_bottom[i] = reached(body, panel, v).angle;
             if (i == here) found.ahead = found.to_bottom[i] - away;
             continue;
@@ -202,8 +230,9 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
                 flat_panel(body, seen, sine_cosine(seen), sine_cosine(away - well.to_rim[i]));
             local.to_bottom = sine_cosine(-away);
             const double guess = energy / change_of_energy(body, local, 0.0).rate;
-            const double v =
-                coordinate_of(body, local, energy, guess, coordinate(local, widest[i] - away));
+            const double reach = coordinate(local, widest[i] - away);
+            const double v = coordinate_of(body, local, energy, guess, reach);
+            if (!(v < reach)) return std::nullopt;
             found.ahead = reached(body, local, v).angle;
         }
         found.to_bottom[i] = away + found.ahead;
@@ -297,11 +326,13 @@ struct Ahead {
 
 // The time and path at an angle from the turning point.
 Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
-    const double v[] = {coordinate(side.panels[0], angle),
-                        coordinate(side.panels[1], angle - to_bottom)};
+    const double start[] = {angle, angle - to_bottom};
+    std::optional<double> v[2];
     double time = 0.0;
     for (const RunPart& part : side.parts) {
-        const double x = (v[part.panel] - part.middle) / part.half;
+        auto& at = v[part.panel];
+        if (!at) at = coordinate(side.panels[part.panel], start[part.panel]);
+        const double x = (*at - part.middle) / part.half;
         if (x <= 1 || &part == &side.parts.back()) {
             const PartReading of = reading_of(part, 0.0, part.lasts, node_times(part, 0.0));
             const double inside = std::clamp(x, -1.0, 1.0);
