@@ -25,8 +25,9 @@ struct Solution : Integration<Motion> {
 
 // Numerical errors of an integrated motion in its energy and its constraints.
 struct Losses {
-    // Largest change of the energy over the largest kinetic + |potential| energy. Heights are
-    // measured from the ground where the motion starts, so that the origin of x does not matter.
+    // Largest change of the energy relative to the largest kinetic + |potential| energy. Heights
+    // are measured from the ground where the motion starts, so that the origin of x does not
+    // matter.
     double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
     double projected = 0.0;    // largest constraint residual after a step, before its projection
@@ -38,13 +39,13 @@ Certificate certify(const Scene& scene);
 Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
-// The multiplier model from coordinates and velocities that violate the constraints; such a motion
-// is never valid. The scene gives body and ground. (A start that obeys the constraints is a scene.)
+// Simulates the multiplier model from coordinates and velocities that violate the constraints; such
+// a motion is never valid. The scene provides the body and the ground.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
-// The time at which the model of a scene's solution stops being valid, followed beyond the last
-// requested time where necessary.
+// The time at which the model of a scene's solution stops being valid. Where necessary, the motion
+// is followed beyond the last requested time.
 double valid_until(const Scene& scene, const Solution& solution);
 
 // Numerical errors of energy and constraints in a motion computed in steps; empty for all others.

@@ -110,7 +110,7 @@ std::vector<Figure> codes_of(const Answer& answer) {
     return codes;
 }
 
-// The lists of all answers, concatenated; `part` is a member of Answer or returns one.
+// The lists of all answers, concatenated; `part` is a member of Answer or a getter.
 template <class Part>
 auto joined(std::vector<Answer>& answers, const Part& part) {
     std::vector<typename std::decay_t<decltype(std::invoke(part, answers[0]))>::value_type> all;
@@ -226,7 +226,7 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
     return py::dict("states"_a = states, "codes"_a = codes);
 }
 
-// The body of each scene, one in a row.
+// The bodies of the scenes, one per row.
 Array bodies(const Array& scenes) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     Array found = matrix(n, body_of({}).size());

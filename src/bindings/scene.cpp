@@ -85,7 +85,7 @@ void take(py::handle given, Value& value) {
     }
 }
 
-// Whether two tuples hold the same objects; one comparison in Python for each would cost more.
+// Whether two tuples hold the same objects; comparing them one by one in Python would cost more.
 bool hold_the_same(const py::tuple& x, const py::tuple& y) {
     const auto is = [](const py::handle one, const py::handle other) { return one.is(other); };
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), is);

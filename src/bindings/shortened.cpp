@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_arguments = 16;
 
-// What stands for the function. Only its references to it are ever changed once it is made.
+// The object that stands for the function. Once it is made, only the references to it change.
 struct Shortened {
     PyObject head;
     vectorcallfunc call;
@@ -23,8 +23,8 @@ struct Shortened {
 
 Shortened& of(PyObject* self) { return *reinterpret_cast<Shortened*>(self); }
 
-// Names are compared by identity, as compilers of Python intern them; a name that is not interned
-// takes the long way.
+// Names are compared by identity, since Python's compiler interns them; a call with a name that is
+// not interned goes to the function.
 PyObject* call(PyObject* self, PyObject* const* given, std::size_t flags, PyObject* named) {
     const auto& [head, own, weak, way, function, count, names, defaults] = of(self);
     const auto by_python = [&] { return PyObject_Vectorcall(function, given, flags, named); };
@@ -43,7 +43,7 @@ PyObject* call(PyObject* self, PyObject* const* given, std::size_t flags, PyObje
     return answer != nullptr ? answer : by_python();
 }
 
-// What is asked of the object besides calls is asked of the function.
+// The function, to which everything except short calls is passed on.
 PyObject* asked(PyObject* self) { return of(self).function; }
 
 PyObject* attribute(PyObject* self, PyObject* name) { return PyObject_GetAttr(asked(self), name); }
@@ -52,7 +52,7 @@ int set_attribute(PyObject* self, PyObject* name, PyObject* value) {
     return PyObject_SetAttr(asked(self), name, value);
 }
 
-// Python's `help` asks the type for it, past the attributes.
+// Python's `help` reads the docstring from the type, without looking at the attributes.
 PyObject* doc(PyObject* self, void*) { return PyObject_GetAttrString(asked(self), "__doc__"); }
 
 PyObject* represented(PyObject* self) { return PyObject_Repr(asked(self)); }

@@ -38,7 +38,7 @@ py::object sample_times(const py::object& t) {
     if (Py_TYPE(t.ptr()) == py::detail::npy_api::get().PyArray_Type_) {
         const auto array = py::reinterpret_borrow<py::array>(t);
         if (!array.dtype().is(py::dtype::of<double>())) return py::none();
-        times = Array(array);  // itself, if it is contiguous and aligned
+        times = Array(array);  // the array itself, if contiguous and aligned
     } else if (PyList_CheckExact(t.ptr())) {
         const py::tuple given(t);  // another thread may change the list
         times = vector(given.size());

@@ -116,7 +116,7 @@ class Gap {
         return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
-    // Rise of h over its tangent, h - (h0 + h0' phi), after a small turn phi, and its slope, h' -
+    // Rise of h above its tangent, h - (h0 + h0' phi), after a small turn phi, and its slope, h' -
     // h0', from the difference of h^2 and the square of the tangent: all terms are of order phi^2,
     // and the first, with the initial h'', is accurate for every body.
     struct Rise {

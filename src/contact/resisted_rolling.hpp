@@ -9,7 +9,7 @@
 
 namespace rolling_ellipse {
 
-// The contact force per mass as series, times h^3, with the sizes of the terms they are made from.
+// The contact force per mass times h^3, as series with the magnitudes of their terms.
 struct RollingForces3 {
     std::array<Tracked, long_order + 1> normal;
     std::array<Tracked, long_order + 1> friction;

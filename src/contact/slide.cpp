@@ -181,9 +181,9 @@ class SlideIntegration {
 
   private:
     // Computes omega from the energy where the body slows down on its way to the tip. The series
-    // carry the rounding errors of the fast motion before; those of the energy, measured from the
-    // tip, are smaller, unless friction has done much work, whose rounding errors are in the
-    // energy. It lacks the work of rolling resistance, physics (66).
+    // carry the rounding errors of the earlier, fast motion. Those of the energy, measured from the
+    // tip, are smaller unless friction has done much work, which adds its own. The energy does not
+    // include the work of rolling resistance, physics (66).
     void keep_energy() {
         if (slide_.body.ahead != 0) return;
         constexpr double small = 0.25;      // terms of the energy over the largest kinetic energy
@@ -255,7 +255,7 @@ class SlideIntegration {
             for (const double side : {1.0, -1.0}) {
                 search(End::law, [&, side](int k) { return rolling_margin(mu, side, k); });
                 if (end_ == End::law && reach_ < reach) law_side_ = side;
-                if (std::isinf(mu)) return;  // it asks for N alone
+                if (std::isinf(mu)) return;  // only N > 0 is required
             }
             return;
         }

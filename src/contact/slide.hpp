@@ -30,8 +30,7 @@ struct SlidePoint {
     DoubleDouble energy;
 };
 
-// The motion from a point onwards, as power series of its changes in a clock that starts there at
-// 0.
+// The motion from a point onwards: its changes as power series in a clock that starts there at 0.
 struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;

@@ -381,8 +381,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta) {
     const Geometry before = geometry(scene.axes(), state.theta);
     const Geometry after = geometry(new_axes, theta);
-    // Keeps the offset of a value from its value in rolling, if at most 16 times the change by
-    // rounding.
+    // Keeps the offset of a value from its value in rolling, if it is at most 16 times the change
+    // due to rounding.
     const auto kept = [](double value, double was, double is) {
         return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
     };

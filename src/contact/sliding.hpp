@@ -155,8 +155,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll 
                           double blur = 0.0);
 
 // The state of a scene with its angle measured anew, for the new axes, so that h and h' change by
-// rounding. A gap of that order is kept, and so are slip and rate of the gap on the ground: a
-// contact remains a contact, and a body without slip remains without slip.
+// rounding. A gap of that order is kept, and so are the slip and the rate of the gap on the ground:
+// a contact remains a contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // How a body continues from its start, which may be in the air.

@@ -5,14 +5,14 @@
 namespace rolling_ellipse {
 namespace {
 
-// Depth of the lowest point of an ellipse under its centre [m], by the implicit equation d^T M d =
-// 1 in ground axes, physics (11). It does not use the support function, so that each method checks
-// the other.
+// Depth of the lowest point of an ellipse below its centre [m], from the implicit equation d^T M d
+// = 1 in ground axes, physics (11). The support function is not used, so that the two methods check
+// each other.
 double lowest_depth(const Axes& axes, double theta) {
     const double along_a = std::sin(theta) / axes.b;
     const double along_b = std::cos(theta) / axes.a;
-    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the least value of
-    // the form is y^2 det M/M_xx, which is 1 where the line is tangent.
+    // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the quadratic form
+    // is at least y^2 det M/M_xx, which is 1 where the line is tangent.
     const double m_xx = along_a * along_a + along_b * along_b;
     return axes.a * axes.b * std::sqrt(m_xx);
 }

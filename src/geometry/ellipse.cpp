@@ -67,8 +67,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc of the ellipse from the tip to the contact at an angle from it, physics (10): DLMF
-// 19.25.10 without its last term, the centre's lead -h'.
+// Arc length of the ellipse from the tip to the contact, by the sine and cosine of the angle turned
+// from the tip, physics (10): DLMF 19.25.10 without its last term -h', the lead of the centre.
 double arc_from_tip(const Axes& lying, double s, double c) {
     const auto [long_axis, short_axis] = lying;
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -137,7 +137,7 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // Tests the angle h'/h'' from equilibrium, since a nearly round body has a small h' everywhere.
+    // Judges by the angle h'/h'' from equilibrium, since a nearly round body has small h' anyway.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

@@ -1,4 +1,4 @@
-// Geometry of an ellipse on a straight ground, from its support function.
+// Geometry of an ellipse on straight ground, from its support function.
 //
 // theta is the clockwise rotation of the body; at theta = 0 the axis a is parallel to the ground.
 // All functions hold for a > b, a = b and a < b and for any angle.
@@ -54,7 +54,7 @@ inline double bend_of_height(const Axes& axes, const Geometry& at) {
     return axes.c2() * ((across - along) * (across + along)) / square(at.h);
 }
 
-// A position given by its angle phi from the flat one: phi is theta for a >= b, otherwise
+// A position given by its angle phi from the flat position: phi is theta for a >= b, otherwise
 // theta - pi/2. Half turns, which map the ellipse to itself, are removed so that cos phi >= 0.
 struct FlatView {
     double long_axis;
@@ -138,8 +138,8 @@ inline double within_a_turn(double angle) {
 
 inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 
-// An angle as quarter turns and a remainder: the angle from the nearest flat position or tip, the
-// most precise form.
+// An angle split into quarter turns and the angle from the nearest flat position or tip. No other
+// form is as precise.
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
@@ -158,8 +158,8 @@ inline QuarterView quarter_view(double sin, double cos) {
     return {std::copysign(1.0, sin), {-std::copysign(std::atan2(cos, s), sin), 0.0}};
 }
 
-// The same direction by an angle small enough that sums with it resolve a fraction of a turn:
-// unchanged up to 1e15, where a double resolves 0.1 rad, and reduced by full turns beyond.
+// An equivalent angle, small enough that sums with it resolve a fraction of a turn: unchanged up to
+// 1e15, where a double resolves 0.1 rad, and reduced by full turns beyond.
 inline double resolved(double angle) {
     constexpr double largest = 1e15;
     return std::abs(angle) > largest ? within_a_turn(angle) : angle;

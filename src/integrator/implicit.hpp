@@ -22,8 +22,8 @@ Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Sta
     return sum;
 }
 
-// Stopping criterion of an iteration to the last bit: no component's change shrinks any more (M.
-// Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
+// Stopping criterion for an iteration to the last bit: the change of every component has stopped
+// shrinking (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
 template <int N, int Stages>
 class Stagnation {
   public:

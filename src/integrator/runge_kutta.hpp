@@ -176,7 +176,7 @@ class ExplicitMethod {
         return sum / N;
     }
 
-    // The mean square of a step's error relative to the tolerance; no root of it is needed.
+    // The mean square of a step's error relative to the tolerance; its root is never needed.
     [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
                                                double h, const Tolerance& tolerance) const {
         Vector<N> size;

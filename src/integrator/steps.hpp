@@ -1,5 +1,5 @@
-// A solution as the list of the points between its steps. The dense output of a step is stored if
-// it needs no further evaluation of f; otherwise it is computed when the step is sampled.
+// A solution, stored as the list of points between its steps. The dense output of a step is stored
+// if it needs no further evaluation of f; otherwise it is computed when the step is sampled.
 //
 // An integration method is a class template over a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size

@@ -130,7 +130,7 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
 }
 
 // Projects by Newton's method until the residuals stop shrinking. psi and r have no mass, so their
-// values are free: if far off, they are first computed from theta, which thus keeps its precision.
+// values are free: if far off, they are first computed from theta, to keep theta precise.
 double ConstrainedBody::project(CoordinateState& state) const {
     constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;

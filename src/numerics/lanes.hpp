@@ -105,7 +105,7 @@ template <class T>
     return found;
 }
 
-// from[index] for each lane, which has its own index.
+// from[index] in each lane, with a separate index for each.
 template <class T>
 [[gnu::always_inline]] inline T element(const T* from, T index) {
     T found{};

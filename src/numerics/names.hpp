@@ -1,4 +1,4 @@
-// The names of the values of an enum, which count from 0; each enum is followed by its names.
+// The names of the values of an enum, which start at 0. Each enum defines its own.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Functions on a part, -1 ... 1, as polynomials through its Gauss nodes, in several lanes at once.
+// Functions on the interval -1 ... 1 (a part) as polynomials through its Gauss nodes, in several
+// lanes.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ struct PartRule {
     PartArray places;
     PartArray weights;
     PartMatrix integrals;  // integrals from -1 to the nodes
-    PartMatrix moments;    // those of (1 + x) times a function, over (1 + x)^2
+    PartMatrix moments;    // the same of (1 + x) times a function, over (1 + x)^2
     PartMatrix legendre;   // coefficients of the Legendre polynomials
     PartMatrix powers;     // power coefficients from Legendre coefficients
 };

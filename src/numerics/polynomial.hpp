@@ -37,8 +37,8 @@ using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };
 
-// The most roundings between the parameters and a result, along any chain of operations. Each is at
-// most epsilon/2 of the magnitude, so that together they stay below the margin.
+// The largest number of roundings in any chain of operations from the parameters to a result. Each
+// is at most epsilon/2 of the magnitude, so that together they stay below the margin.
 //   * The law of rolling, degree 10, is the longest: counted along the lines of force_polynomials
 //     and grip_polynomial, with n + m + 1 + min(M, N) for the product of polynomials of degrees M,
 //     N with n, m roundings, it has 37.
@@ -48,7 +48,7 @@ enum class Sign { positive, negative, undecided };
 //   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
 // So the law has 98, and the series 98 plus those of its terms. Subdivision in the middle adds N
 // sums each time, up to 48 times; `divided` adds their roundings to the magnitude. The parameters
-// themselves are rounded: the sign is that of a body and a start just as close to the exact ones.
+// are rounded, too: the sign is right for some body and start just as close to the exact ones.
 constexpr double most_roundings = 128;
 
 // Bound on the rounding error of a number.

@@ -17,7 +17,7 @@ namespace rolling_ellipse {
 inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
-// The terms first .. last of coefficient k of a product, as two independent sums.
+// The sum of terms first .. last of coefficient k of a product, from two independent sums.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
                                          int first, int last) {

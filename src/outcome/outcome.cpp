@@ -10,7 +10,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// What has an answer for a body with rolling resistance.
+// What users of a body with rolling resistance can call instead.
 constexpr const char* instead = "the events of simulate tell how the body moves with it";
 
 // A slip after rolling never starts inside the Painleve region. Where |F| exceeds mu N > 0, with

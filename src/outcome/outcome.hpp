@@ -18,7 +18,7 @@ enum class Outcome : std::int8_t {
     slips,          // the contact slides
     loses_contact,  // it leaves the ground, or is in the air
     jams,           // the contact jams; never directly after rolling, see outcome/outcome.cpp
-    edge,           // two outcomes that rounding cannot tell apart
+    edge,           // rounding hides which of two outcomes occurs
 };
 
 template <>

@@ -10,8 +10,8 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// A time, and the observable there minus the requested value; exactly 0 if it touches within
-// rounding.
+// A time, and the observable there minus the requested value; exactly 0 where it touches that value
+// to within rounding.
 struct Reading {
     double t;
     double excess;

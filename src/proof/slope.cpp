@@ -11,8 +11,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The scene, seen so that the slope falls towards growing angles and the long axis is along the
-// ground at angle 0.
+// The scene, viewed so that the slope falls towards growing angles and the long axis is parallel to
+// the ground at angle 0.
 Scene downhill(Scene scene) {
     if (scene.a < scene.b) std::swap(scene.a, scene.b);
     scene.slope = std::abs(scene.slope);
@@ -69,7 +69,7 @@ class Well {
     double energy(double angle) const { return energy_ + gained(angle); }
 
     // W at an angle minus W at the start. Over small angles, where a difference of two heights or
-    // paths would be inaccurate, it is a quadrature of physics (62).
+    // paths would be inaccurate, it is computed by quadrature of physics (62).
     double gained(double angle) const {
         const double turned = angle - start_;
         const Geometry from = geometry(axes_, start_);
@@ -155,8 +155,8 @@ class Well {
     bool holds_ = false;
 };
 
-// The friction needed in a motion with constant forces: that of a body in equilibrium or of a
-// circle.
+// The friction needed by a body in equilibrium or by a circle, whose forces are constant; empty for
+// all others.
 std::optional<double> constant_friction(const Scene& scene, const State& start) {
     const double incline = std::tan(scene.slope);
     const Geometry here = geometry(scene.axes(), start.theta);

@@ -185,7 +185,7 @@ namespace {
 // Whether the law provably holds on a part with the given forces: its margin at each node exceeds
 // the largest possible change of the margin between a node and the points around it, since |P_k'|
 // <= k (k + 1)/2 on -1 ... 1. The omitted terms, which fall at least by a factor of 2 per degree,
-// change it by less than 40 of the last two.
+// change it by less than 40 times the sum of the last two.
 bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, double friction) {
     constexpr double to_a_node = 0.077;  // largest distance of a point from the nearest node
     constexpr double resolved = 1e-8;

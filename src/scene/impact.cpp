@@ -167,10 +167,11 @@ void add(double change, double& number, double& low) {
 // The gap rate afterwards is exactly the rebound, and v exactly 0 if the contact sticks. The
 // angular momentum about the contact, which no reaction changes, gives the sticking angular
 // velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
-// rebound; if omega changes little, its change is computed from v and u before. If the contact
-// keeps slipping, the impulse gives x_dot and omega. If little is left of the omega of a light and
-// fast body, the angular momentum about another point of the line of the impulse, at the height of
-// the centre, gives omega more accurately. If little is left of h' omega, the impulse gives z_dot.
+// rebound; if omega changes little, its change is computed from v and u before the collision. If
+// the contact keeps slipping, the impulse gives x_dot and omega. If little is left of the omega of
+// a light and fast body, the angular momentum about another point of the line of the impulse, at
+// the height of the centre, gives omega more accurately. If little is left of h' omega, the impulse
+// gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;

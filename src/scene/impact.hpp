@@ -1,6 +1,6 @@
 // Collisions with the ground: Coulomb friction along the impulse path, energetic restitution (W. J.
-// Stronge, Impact Mechanics (2000), ch. 3 to 5). An applied impulse is a collision without
-// restitution, of a body that the impulse has just set in motion.
+// Stronge, Impact Mechanics (2000), ch. 3 to 5). An applied impulse is treated as a collision,
+// without restitution, of the body that it has just set in motion.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -15,8 +15,8 @@ enum class Restitution { stronge, poisson, newton };
 template <>
 inline constexpr std::array names<Restitution>{"STRONGE", "POISSON", "NEWTON"};
 
-// The state just after the applied impulse, or the scene's own state without one. Its mode follows
-// from its velocities; contact/sliding.hpp has the mode that the forces allow.
+// The state just after the applied impulse, or the scene's own state if there is none. Its mode
+// follows from its velocities; contact/sliding.hpp has the mode that the forces allow.
 struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]

@@ -90,8 +90,8 @@ struct SceneField {
     void set(Scene& scene, std::optional<double> value) const;
 };
 
-// The fields of a scene, in the order of the columns of a table of scenes and of the files of
-// `simulate_many`.
+// The fields of a scene, in the order of the columns of a table of scenes and of the files that
+// `simulate_many` writes.
 inline constexpr SceneField scene_fields[] = {
     {"a", &Scene::a, unit::length},
     {"b", &Scene::b, unit::length},
@@ -272,7 +272,7 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
 // by a motion may have gained energy down a slope, and may be about to hit the ground it touches.
 enum class Origin { typed, reached };
 
-// Whether the lever of rolling resistance balances a lever with these two terms, to within
+// Whether rolling resistance can balance a lever, given as the sum of two terms, to within
 // rounding.
 inline bool is_within(double resistance, double one, double other) {
     const double rounding = equal_ulps * epsilon * (std::abs(one) + std::abs(other));
@@ -283,7 +283,7 @@ inline bool is_within(double resistance, double one, double other) {
 // of contact, which extends by the lever of rolling resistance to both sides, physics (63).
 bool is_held(const Scene& scene, const Geometry& at);
 
-// The couple of rolling resistance opposes a rotation, or one that is about to begin. Its lever is
+// The lever of rolling resistance, whose couple opposes a rotation or one that is about to start;
 // positive if the rotation is clockwise.
 inline double lever_against(const Scene& scene, double rotation) {
     return scene.rolling_resistance > 0 ? std::copysign(scene.rolling_resistance, rotation) : 0.0;
@@ -299,7 +299,7 @@ void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega, double most = most_energy);
 void validate_slope(double slope);
 void validate_friction(double friction);
-// Refuses rolling resistance where `who` has no answer for it; `instead` says what has one.
+// Throws if there is rolling resistance, which `who` does not support; `instead` names what does.
 void require_no_resistance(const Scene& scene, std::string_view who, std::string_view instead);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene, Origin origin = Origin::typed);

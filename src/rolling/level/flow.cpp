@@ -29,7 +29,7 @@ bool is_complete(const Series& series) {
 }
 
 // The state after a short move, by one power series, which keeps small changes accurate; empty if
-// the move is too long for it, or needs none: at rest, of a circle, and after no time.
+// the move is too long for it, or needs none: for a body at rest, a circle, or t = 0.
 std::optional<FlowSample> short_move(const RollingStart& from, double x, double t) {
     const auto [unit, short_axis, c2, sin, cos] = from.view;
     if (from.rests || c2 == 0 || t == 0 || !may_be_short(from, t)) return std::nullopt;
@@ -55,7 +55,7 @@ FlowSample long_move(const RollingFlow& flow, double t) {
     return moved;
 }
 
-// A motion, all but its quarter.
+// A motion, complete except for its quarter.
 RollingFlow flow_of(const RollingStart& from, double x) {
     RollingFlow flow;
     flow.kind = from.rests ? MotionKind::rest : MotionKind::uniform;
@@ -158,7 +158,7 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         half_turns = on_way_back == flow.on_way_back ? 0.0 : 1.0;
     }
     DoubleDouble time = time_since_flat(flow, {sin, cos}) - time_since_flat(flow, flow.start_phase);
-    // An angle passed just before the start, in the same direction, is passed in the next swing.
+    // An angle passed in the same direction just before the start is passed again one swing later.
     if (flow.kind == MotionKind::libration && half_turns == 0 && time.high < 0) half_turns = 2.0;
     if (half_turns != 0) {
         if (std::isinf(flow.phase.half_turn.high)) return infinity;

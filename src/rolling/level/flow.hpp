@@ -1,15 +1,16 @@
 // Exact rolling on level ground: its start and the state at any time. There are no steps: a state
 // costs the same however far it is from the start.
 //
-// A motion is described by its phase: the integrand of the time, the coordinate of the integration,
-// and the integrals; for one body (T = double) or for one body per lane of a Pack.
+// A motion is described by its phase. The types below hold the integrand of the time, the
+// coordinate of the integration and the integrals, for one body (T = double) or one body per lane
+// of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
-// of physics (27) becomes that of physics (29),
+// of physics (27) becomes physics (29),
 //     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
 //     sin phi   = amplitude sin phase,
-// rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
+// so that rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) share it:
 //     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
 // There is no cancellation, except in H - L itself.

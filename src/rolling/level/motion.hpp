@@ -72,7 +72,7 @@ inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
                 (integrand.energy_height + sqrt(h2)) / h2);
 }
 
-// Sets the motion of a given start, all but its quarter.
+// Sets the motion of a given start, except for its quarter.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     PhaseIntegrand<T>& integrand = motion.phase.integrand;

@@ -1,7 +1,7 @@
 // Exact rolling on a slope: the state at any time.
 //
 // The motion is a list of stretches, each with its law, extended as far as the requested times
-// need. Neither cost nor error grows with the number of half turns or swings.
+// require. Neither cost nor error grows with the number of half turns or swings.
 #pragma once
 
 #include <optional>
@@ -84,7 +84,7 @@ void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSampl
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
 // Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many, or if a
-// given time t is far below it, which is quicker to find out.
+// given time t is far below it, which is quicker to determine.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
 // Time between two turning points of a body that rocks; empty for all others.

@@ -48,7 +48,7 @@ struct SlopeBody {
 
 SlopeBody slope_body(const Body& body, double slope);
 
-// Finds the path of a quarter turn, which a body that rocks does not need.
+// Computes the path of a quarter turn and the gain, which a body that rocks does not need.
 void measure_quarter(SlopeBody& body);
 
 // A point of the motion. Its angle is measured from a flat position (even quarters) or from a tip

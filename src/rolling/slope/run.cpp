@@ -62,7 +62,7 @@ void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
                           high < here + pi ? high - centre.at() : end_of_half_turn(2.0)});
 }
 
-// Completes a panel that has the angles of its ends from the centre.
+// Completes a panel whose ends are given by their angles from the centre.
 void open(RunPanel& panel) {
     const double s = std::sin(panel.angle);
     const double c = std::cos(panel.angle);
@@ -171,7 +171,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     const double fallen = fall(body, run.datum.at, top).value;
     const double least =
         std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
-    // A grade is the tanh of about the imaginary part of the nearest singularity of dt/dphi.
+    // A grade is about the tanh of the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = grade_at_flat(body);
     // The singularities of the flat position may be closer to the hill than the hill's own.
     const double to_flat = half_pi - std::abs(hill);
@@ -187,7 +187,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
         add_panel(run, left, left.at(), split);
         add_panel(run, right, split, right.at());
     };
-    constexpr double widest_gap = 2.0;  // farther from its centre, an angle is mapped too far away
+    constexpr double widest_gap = 2.0;  // an angle farther from its centre is mapped too far
     for (int i = -3; i < 5; ++i) {
         const Centre left = centre(i);
         const Centre right = centre(i + 1);

@@ -72,8 +72,8 @@ struct WellPlaces : Positions {
     return at;
 }
 
-// The coordinate of a point from its angle from the centre, accurate even if this is small; not a
-// number beyond the reach of the panel.
+// The coordinate of a point from its angle from the centre, accurate even if the angle is small;
+// NaN beyond the reach of the panel.
 double coordinate(const WellPanel& panel, double ahead) {
     const double tan = std::tan(ahead);
     const double centre = panel.grade * panel.value;
@@ -346,8 +346,8 @@ Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
 
 // -------------------------------------------------------------------------------- reading
 
-// Where a time belongs: the side, its part, the time between there and the end of the part towards
-// the turning point, and the direction of motion, +1 ahead.
+// Where a time belongs: the side, its part, the time between it and the end of that part nearer the
+// turning point, and the direction of motion, +1 ahead.
 struct Phase {
     std::size_t side;
     std::size_t part;

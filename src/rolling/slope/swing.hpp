@@ -4,8 +4,8 @@
 // turning point, in the time int sqrt(D/2) W^(-1/2) dtheta. W = D omega^2/2 is itself an integral
 // from the turning point, of the moment of gravity in physics (62): a product, so that W is never a
 // difference where it is small. Each side has two panels of a coordinate v that removes what is not
-// smooth: about the turning point tan(theta - rim) is a multiple of cosh(v), which takes the root
-// of W away; elsewhere tan(theta) is a multiple of sinh(v), as D has complex zeros near the flat
+// smooth: about the turning point tan(theta - rim) is a multiple of cosh(v), which removes the root
+// of W; elsewhere tan(theta) is a multiple of sinh(v), as D has complex zeros near the flat
 // position.
 //
 // Angles and paths ahead are measured from the turning point of a side towards the bottom.

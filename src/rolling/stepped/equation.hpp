@@ -98,9 +98,9 @@ class RollingEquation {
         return {mass * normal, mass * friction};
     }
 
-    // With a normal force that acts `lever` ahead of the contact. The couple changes the angular
-    // acceleration by -s, s = lever N/(m M), where N is the force without it and M = D + lever h':
-    // physics (64).
+    // The acceleration with a normal force that acts `lever` ahead of the contact. The couple
+    // changes the angular acceleration by -s, s = lever N/(m M), where N is the force without it
+    // and M = D + lever h': physics (64).
     double acceleration(const Geometry& at, double omega, double lever) const {
         const double slowing = lever * force(1.0, at, omega).normal / inertia(at, lever);
         return acceleration(at.sin, at.cos, omega) - slowing;
