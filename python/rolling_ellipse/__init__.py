@@ -2,8 +2,7 @@
 
 SI units and radians: ``np.radians(30.0)`` goes in, ``np.degrees(motion.theta)`` comes out. theta is
 clockwise positive, x lies along the ground, z points away from it; time is the first axis. The help
-of functions, classes and methods ends with examples, which assume the first two lines of those
-below.
+of functions, classes and methods ends with examples, which assume the two imports below.
 
 =================  =================================================================================
 set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`

@@ -22,7 +22,7 @@ from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Options for those arguments of functions whose names begin error messages
+# Options for the arguments whose names begin the error messages of functions
 _OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
@@ -33,9 +33,9 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 on success; 1 if the motion could not be followed to its end (the summary covers the
-        part before), or an answer to `benchmark` is wrong; 2 (and one line) on bad input, or if a
-        file cannot be written. A StabilityWarning is printed as one line, too.
+        0 on success; 1 if the motion could not be followed to its end (the summary covers the part
+        computed), or an answer to `benchmark` is wrong; 2 (and one line) on bad input, or if a file
+        cannot be written. A StabilityWarning is printed as one line, too.
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {

@@ -140,7 +140,7 @@ def require_file(option: str, path: str) -> None:
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """Return the scene of --scene, or else the report's, changed by the other options.
 
-    Its blow is kept, unless --omega sets the start or --press gives another blow.
+    The scene's blow is kept unless --omega sets the start or --press gives another blow.
 
     Raises
     ------

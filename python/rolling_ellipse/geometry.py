@@ -1,4 +1,4 @@
-"""Geometry of an ellipse on a straight ground, as functions of its angle.
+"""Geometry of an ellipse on straight ground, as functions of its angle.
 
 ``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Angles may
 be of any size, the semi-axes ``a`` and ``b`` [m] in any order. Scalars give floats, arrays
@@ -115,8 +115,8 @@ def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
 def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
     """Return the integral of h from 0 to theta: the displacement of the centre in rolling [m].
 
-    By Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms without
-    cancellation, for any number of turns.
+    It is computed by Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms
+    without cancellation, for any number of turns.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the arc of the ellipse from its contact at angle 0 to its contact at theta [m].
+    """Return the arc length of the ellipse from the contact at angle 0 to that at theta [m].
 
     Equal to ``centre_path + support_slope``; 2 pi gives the perimeter.
 

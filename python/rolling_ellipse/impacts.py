@@ -84,7 +84,7 @@ def collide(
     ----------
     theta, x_dot, z_dot, omega : float or array_like
         Angle [rad] and velocities [m/s, m/s, rad/s] just before. If the contact does not move into
-        the ground, they are returned unchanged.
+        the ground, the velocities are returned unchanged.
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like

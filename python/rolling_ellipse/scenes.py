@@ -15,9 +15,9 @@
 ``bounce``      as ``drop``, but elastic and without friction
 ==============  ====================================================================================
 
-They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are two
-of those; the others have finite friction, round heights, or are farther from limits, so that any
-simulator can be set up and rounding decides nothing (docs/benchmark.md compares them).
+They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are in
+both; the other problems have finite friction, round heights, or are farther from limits, so that
+any simulator can be set up and rounding decides nothing (docs/benchmark.md compares them).
 
 Examples
 --------

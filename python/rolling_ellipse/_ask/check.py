@@ -1,8 +1,8 @@
 """Conversion of arguments to doubles; anything else is rejected with the name of the argument.
 
-Numbers are real and within the range of doubles: those of Python and NumPy (also arrays without
-axes), Decimals and Fractions. Text, complex numbers, times, masked entries and quantities with
-units are rejected. An array with one element does not count as a number.
+Real numbers within the range of doubles are accepted: those of Python and NumPy (also arrays
+without axes), Decimals and Fractions. Text, complex numbers, times, masked entries and quantities
+with units are rejected. An array with one element does not count as a number.
 """
 
 from __future__ import annotations
@@ -111,9 +111,9 @@ def flag(name: str, value: Any) -> bool:
 
 
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a contiguous float64 array, with the errors of `number`.
+    """Return ``value`` as a contiguous float64 array; errors are those of `number`.
 
-    NumPy's results may differ in the last bits for another layout.
+    With another layout NumPy's results may differ in the last bits.
     """
     doubles = _doubles(name, value)
     if doubles is None:
@@ -225,7 +225,7 @@ def _has_units(value: Any) -> bool:
     """Whether an object carries units, as quantities of pint, astropy, unyt and brian2 do.
 
     Only attributes of its class and of its `__dict__` count: other attributes of pandas and xarray
-    objects may be the user's labels. A tuple holds the axis names of a netCDF4 variable.
+    objects may be the user's labels. A tuple does not count: it names a netCDF4 variable's axes.
     """
     own = getattr(value, "__dict__", ())
     return any(
@@ -322,7 +322,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
-    """Return an argument; for an empty array, one number that is valid with the others' values."""
+    """Return an argument; for an empty array, a number that is valid with the other arguments."""
     if known[name].size:
         return known[name]
     lengths = [*(known[axis] for axis in ("a", "b")), np.ones(1)]
@@ -381,7 +381,7 @@ def readable(name: str, value: Any) -> str:
 
 
 def choice(name: str, value: Any, valid: tuple[_Name, ...]) -> _Name:
-    """Return the valid name that ``value`` spells in any case; a ValueError suggests a near one."""
+    """Return the valid name equal to ``value`` in any case; a ValueError suggests a similar one."""
     word = value.casefold() if isinstance(value, str) else ""
     for known in valid:
         if word == known.casefold():

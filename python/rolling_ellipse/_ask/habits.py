@@ -52,7 +52,7 @@ def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
             names = [each.name for each in takes]
             unknown = [meant(name, names) for name in named if name not in names]
             if not unknown and (error.__traceback__ is None or error.__traceback__.tb_next):
-                raise  # it comes from inside the function
+                raise  # the error comes from inside the function
             plain = Signature([each.replace(annotation=Parameter.empty) for each in takes])
             hint = "".join(unknown) or f"; it is called as {function.__name__}{plain}"
             wrong = str(error).rpartition("() ")[2]  # without the name of an inner function

@@ -22,8 +22,8 @@ class Impulse:
     """An impulse applied to a point of the body, or many impulses.
 
     Arrays that broadcast make one impulse for each element of their common shape; `outcome` takes
-    many, a Scene one. Arrays are kept as read-only copies. Two impulses are equal if their values
-    and array shapes are equal.
+    many, a Scene takes one. Arrays are kept as read-only copies. Two impulses are equal if their
+    values and array shapes are equal.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Printing of values: tables as text, as HTML without its own colours, and in other packages."""
+"""Printing of values: tables as text and as HTML without colours of its own."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def text_table(rows: Sequence[Row]) -> str:
 
 
 def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
-    """Return an HTML table without its own colours; the first cell of a row is its heading.
+    """Return an HTML table without colours of its own; the first cell of a row is its heading.
 
     All text is escaped.
     """

@@ -8,14 +8,14 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
-UNREAD = "_unread"  # what `trusted` takes for late fields: a function that returns them all
+UNREAD = "_unread"  # key of a function, given to `trusted`, that returns all late fields
 _new, _set = object.__new__, object.__setattr__  # bound once: this speeds up each use
 
 
 class cached_property(Generic[_Value]):
     """A property that is computed on first access, and then kept in the object's `__dict__`.
 
-    Up to Python 3.11 that of functools has a single lock for all objects: threads wait for each
+    Up to Python 3.11, the one in functools has a single lock for all objects: threads wait for each
     other, and a process forked meanwhile hangs forever. Here two threads may compute the same
     value; both get the one that was stored first.
     """
@@ -37,7 +37,7 @@ class cached_property(Generic[_Value]):
 
 
 class _late_field(cached_property[Any]):
-    """A field that is found on first access: by the object's own reader of fields, or computed."""
+    """A field that is read by the object's own reader, or else computed, on first access."""
 
     def __get__(self, instance: object | None, owner: type) -> Any:
         known = {} if instance is None else instance.__dict__

@@ -84,7 +84,7 @@ class _Nothing(TypedDict):
 
 @dataclass(frozen=True, init=False, repr=False)
 class Scene(FieldsOnly, Listed):
-    """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
+    """An ellipse, its ground, its state at t = 0 and the impulse, if any, that it then receives.
 
     SI units, radians; theta is positive clockwise, so that rolling forwards increases x. At
     theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all their arguments are
@@ -246,25 +246,26 @@ class Scene(FieldsOnly, Listed):
 
     @classmethod
     def from_json(cls, source: str | os.PathLike[str]) -> Scene:
-        """Return the scene of a JSON text, of a link of the live page, or of a file with either.
+        """Return the scene in a JSON text, in a link to the live page, or in a file with either.
 
-        Arguments of Scene that are left out have their defaults. As states that a motion reaches, a
-        body may be about to hit the ground, and it may have more energy than the constructor takes.
+        Arguments of Scene that are left out have their defaults. Like a state that a motion
+        reaches, the start may be about to hit the ground, with more energy than the constructor
+        accepts.
 
         Parameters
         ----------
         source : str or path
             Text that begins with ``{`` as `to_json` writes it, or a link that begins with ``#`` or
-            ``http``; its ``t`` and ``lang`` are not read. A path is an `os.PathLike`, such as
+            ``http``; its ``t`` and ``lang`` are ignored. A path is an `os.PathLike`, such as
             ``pathlib.Path("scene.json")``, not a str.
 
         Raises
         ------
         ValueError
-            If a key is unknown, missing or repeated, the version is another one, or a value is not
-            a number or out of its range; the message begins with the key.
+            If a key is unknown, missing or repeated, the version differs, or a value is not a
+            number or out of its range; the message begins with the key.
         TypeError
-            If the source is of another type, or null is given for a number that must be given.
+            If the source is of another type, or a required number is null.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""A scene as text: JSON, and links of the live page."""
+"""A scene as text: JSON, and links to the live page."""
 
 import math
 import os
@@ -21,7 +21,7 @@ _OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older link
 
 
 def to_json(scene: Any) -> str:
-    """Return the scene as JSON text, which `Scene.from_json` reads as an equal scene, bit by bit.
+    """Return the scene as JSON text; `Scene.from_json` restores it bit for bit.
 
     The text is an object with the arguments of Scene that are not None, by their names and in SI
     units, and with the key ``version``, which is 1. An infinite number is the word ``"inf"``; the
@@ -43,18 +43,18 @@ def to_json(scene: Any) -> str:
 
 
 def to_link(scene: Any, page: str | os.PathLike[str] = "", *, t: float | None = None) -> str:
-    """Return a link that opens the scene in the live page; `Scene.from_json` reads it bit by bit.
+    """Return a link that opens the scene in the live page; `Scene.from_json` reads it exactly.
 
-    It has the arguments of Scene and of the blow by their names. The page shows a blow of no force
-    as none.
+    The link holds the arguments of Scene and of the blow by name. The page shows a blow without
+    force as no blow.
 
     Parameters
     ----------
     page : str or path
-        Address of the page, such as that of ``live/index.html`` in the built site; what it has from
+        Address of the page, such as that of ``live/index.html`` in the built site; anything from
         ``#`` on is replaced. Without a page, the link begins with ``#``.
     t : float, optional
-        Time that the page shows [s]; None: the page's own.
+        Time that the page shows [s]; None: the page's default.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _given(scene: Any) -> _Given:
 
 
 def arguments(source: Any) -> _Given:
-    """Return the arguments of Scene in what `Scene.from_json` takes."""
+    """Return the arguments of Scene in a source of `Scene.from_json`."""
     if isinstance(source, os.PathLike):
         with open(readable("source", source), encoding="utf-8-sig", errors="replace") as file:
             source = file.read()
@@ -146,7 +146,7 @@ def _of_older(given: _Given) -> _Given:
 
 
 def _known(what: str, pairs: Any, names: Sequence[str], required: Sequence[str] = ()) -> _Given:
-    """Return pairs of keys and values as a dict; its keys are among the names, each once."""
+    """Return pairs of keys and values as a dict; each key must be a known name, and occur once."""
     given: _Given = {}
     for key, value in pairs:
         if key not in names:
@@ -172,7 +172,7 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _linked(name: str, text: str) -> Any:
-    """Return the number that a link has as text."""
+    """Return the number that a link gives as text."""
     value: Any = text
     with suppress(ValueError):
         value = float(text)

@@ -3,8 +3,8 @@
 A part has a few events and starts in the middle of an arc, in the state that the motion has there.
 If M are its derivatives with respect to that state, and P those with respect to the parameters of
 the body, the derivatives S at its start become M S + P at its end. Differences then only have to
-cope with the growth within a part, so they exist even where no neighbour of the whole motion has
-the same events, up to a growth of 1e13.
+cope with the growth within a part, so derivatives exist even where no neighbour of the whole motion
+has the same events, up to a growth of 1e13.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
     growth = 1.0  # growth of changes of the inputs, or of the state after the first part
-    # For each earlier part: the derivatives of the state with respect to that at the part's end,
-    # and the errors of the part itself
+    # For each earlier part: the derivatives of the current state with respect to the state at its
+    # end, and its own errors
     since: list[tuple[FloatArray, FloatArray]] = []
     for index, (part, own) in enumerate(_parts(motion)):
         last = len(part.t) - 1

@@ -135,8 +135,8 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
     """Return the relative errors of the constraints by name: positions, then velocities, (n,).
 
     Lengths are divided by the longer semi-axis, rates also by max|omega|, or sqrt(gravity/length)
-    for a motion without rotation. In flight the ground does not constrain f1, f2, gap and slip, nor
-    f1 and slip while sliding: they are NaN then.
+    for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, or
+    f1 and slip in a slide: they are NaN there.
     """
     scene, residuals = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)
@@ -166,9 +166,9 @@ def may_lose_energy(motion: Trajectory) -> bool:
 def losses(motion: Trajectory) -> dict[str, FloatArray]:
     """Return the energies lost in rolling, in slides and in impacts [J] up to each sample, (n,).
 
-    Samples are at events, too: what is lost after a sample in flight is lost in an impact. Where
-    rolling resistance and friction take energy together, the work of the former is that of its
-    couple by the trapezoidal rule between samples.
+    There is a sample at every event, so energy lost after a sample in flight is lost in an impact.
+    Where rolling resistance and friction take energy together, the work of the former is that of
+    its couple by the trapezoidal rule between samples.
     """
     t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
     lost = -np.diff(motion.energy, prepend=motion.energy[:1])

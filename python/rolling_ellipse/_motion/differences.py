@@ -101,7 +101,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
     """Return derivatives of n sampled states and of m event times with respect to an input.
 
     They are vectors in natural units, shape (6, n + m); those of times are (dt, 0, ...). The
-    exception is the reason for an infinite error.
+    exception states the reason for an infinite error.
     """
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)

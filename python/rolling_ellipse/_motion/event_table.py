@@ -43,7 +43,7 @@ COLUMNS = _columns()
 
 
 class EventTable(dict[str, npt.NDArray[Any]]):
-    """The events of a motion: read-only arrays by name, with the bits of its `Event` objects.
+    """The events of a motion as read-only arrays by name, bit for bit as in its `Event` objects.
 
     Notes
     -----
@@ -51,7 +51,7 @@ class EventTable(dict[str, npt.NDArray[Any]]):
     ``theta_before``, ``theta_after`` and so on: states just before and after, also ``mode_before``
     (codes of `Mode`) and ``energy_before`` [J].
     ``reaction_x``, ``reaction_z`` [N s], ``energy_lost`` [J]: impulse of the ground and energy lost
-    in an impact, 0 for other events; ``reason``: why it happens.
+    in an impact, 0 for other events; ``reason``: why the event happens.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         vars(self).update(about)
 
     def __reduce__(self) -> Any:
-        """Make the arrays read-only again: pickles and deep copies lose that."""
+        """Make the arrays read-only again: pickles and deep copies leave them writeable."""
         return partial(type(self), **vars(self)), (dict(self),)
 
     def __repr__(self) -> str:
@@ -132,7 +132,7 @@ def _unit(column: str) -> str:
 
 
 def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
-    """Return the columns of a table from rows of the core, for one body or one of each row."""
+    """Return the columns of a table from rows of the core, for one body, or a body for each row."""
     found: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
     before, after = (
         SimpleNamespace(**{name: found[f"{name}_{when}"] for name in STATE_UNITS})

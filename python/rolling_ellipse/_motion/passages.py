@@ -46,7 +46,7 @@ def when(
 ) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    They are those of the motion itself, accurate to the last bits, and do not depend on its
+    The times are those of the motion itself, accurate to the last bits; they do not depend on its
     samples. A `CompletenessWarning` is issued where some may be missed, as for every `function`.
 
     Parameters
@@ -55,7 +55,7 @@ def when(
         One value, or n values, of this quantity [rad, m, rad/s]; exactly one quantity is given,
         or `function`.
     function : callable, optional
-        Takes a Trajectory and returns one number for each sample; its zeros are found.
+        Takes a Trajectory and returns one number for each sample; `when` returns its zeros.
     event : EventKind or str, optional
         Kind of events, or its name in any case; or ``"roll_over"``: the body passes a position
         with its long axis perpendicular to the ground (a circle: its axis a).

@@ -67,8 +67,8 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
     """Return samples as fields of a Trajectory.
 
-    Those of rolling are t, theta, omega, x; contact adds the fields of ContactSamples; those of the
-    multiplier model are t, q, q_dot.
+    Samples of rolling are t, theta, omega, x; contact adds the fields of ContactSamples; samples of
+    the multiplier model are t, q, q_dot.
     """
     if len(samples) == _OF_COORDINATES:
         t, q, q_dot = samples
@@ -108,7 +108,7 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return the array read-only: copied, unless it already is and is not a view."""
+    """Return a read-only array: a copy, unless the array already is read-only and no view."""
     is_own = values.base is None and not values.flags.writeable
     return values if is_own else frozen(values.copy())
 

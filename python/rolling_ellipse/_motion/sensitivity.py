@@ -40,7 +40,7 @@ _NEAREST = 1e-6  # first distance of the search for other events, and its resolu
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sensitivity(FieldsOnly):
-    """Derivatives of a motion at its samples, and of its events.
+    """Derivatives of a motion at its samples, and of the times of its events.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Sensitivity(FieldsOnly):
         return sensitivity(there, self.wrt, side=self.side).state[0]
 
     def forecast(self, **changes: float) -> FloatArray:
-        """Return the states at the samples to first order in changes, shape (n, 6).
+        """Return the states at the samples to first order in changes of inputs, shape (n, 6).
 
         An ExtrapolationWarning is issued if a change is larger than its `distance` or not towards
         its `side`, or if all changes together lead to other events.

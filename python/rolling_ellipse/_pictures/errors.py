@@ -97,7 +97,7 @@ def plot_energy(
     kind: Literal["energies", "error", "losses"] | None = None,
     **options: Any,
 ) -> Energy:
-    """Draw energies of motions [J], their losses, or the error of what they should conserve.
+    """Draw energies of motions [J], their losses, or the errors of the energy to be conserved.
 
     The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
     a logarithmic scale, which cannot show exact zeros; E0 is the energy of the first sample. Losses

@@ -31,7 +31,7 @@ ABOVE_FIRST, BESIDE = BELOW_FIRST[::-1], ((1, 0), (-1, 0))
 
 
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
-    """Return positions from low to high, at least a gap apart, close to ascending preferred ones.
+    """Return ascending positions, at least a gap apart, close to the ascending preferred ones.
 
     The sum of the squared moves is minimal: positions too close to each other become a block around
     their mean.

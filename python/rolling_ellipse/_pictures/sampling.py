@@ -188,7 +188,7 @@ def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
 def is_at_hand(motion: Trajectory) -> bool:
     """Whether the motion of a trajectory can be sampled at any time; warns if not.
 
-    One computed by `simulate` can, even after it was read from a file. Between external samples the
+    A motion computed by `simulate` can, even if it was read from a file. Between external samples a
     motion is unknown.
     """
     some = np.unique(np.linspace(0, motion.t.size - 1, _COMPARED).round().astype(int))

@@ -39,9 +39,9 @@ def explore(
 ) -> Explorer:
     """Make a page on which the reader strikes the body by dragging a hand over it.
 
-    The hand sets where and how hard. The page shows the motion with its forces, its first outcome
-    with the reason, its events, and a map of the outcomes of all blows. It needs no kernel and no
-    network.
+    The hand sets the point and the strength. The page shows the motion with its forces, its first
+    outcome with the reason, its events, and a map of the outcomes of all blows. It needs no kernel
+    and no network.
 
     Parameters
     ----------
@@ -149,9 +149,9 @@ class Explorer(FieldsOnly):
         ValueError
             If the path does not end in .html.
         TypeError
-            If it is not a path.
+            If `path` is not a path.
         OSError
-            If it cannot be written; an old file is kept.
+            If the file cannot be written; an old file is kept.
 
         Examples
         --------

@@ -44,12 +44,12 @@ def fragment(
     around: str = "{player}",
     module: str = "",
 ) -> str:
-    """Return a `div` with pictures of the motions, whose script replaces them by the player.
+    """Return a `div` with pictures of the motions, and a script that replaces them by the player.
 
-    Without scripts, pictures and text stay. A page may hold the same fragment several times. Data
-    without words get the English ones. `around` is HTML around the player. `module` is JavaScript
-    with the class that `starts` names, if the package has no such class. No key event leaves the
-    `div`, which carries JupyterLab's marker: else the notebook would act on the keys.
+    Where scripts are disabled, pictures and text stay. A page may hold the same fragment several
+    times. Data without words get the English ones. `around` is HTML around the player. `module` is
+    JavaScript with the class that `starts` names, if the package has no such class. No key event
+    leaves the `div`, whose JupyterLab marker keeps the notebook from acting on keys.
     """
     scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")

@@ -1,4 +1,4 @@
-"""The outcome of a blow, the friction that rolling requires, and the blow for a speed."""
+"""The outcome of a blow, the friction that rolling requires, and the blow that gives a speed."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ class Fit:
         The fitted motion at the times of the film, in the scene's coordinates and time.
     message : str
         Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
-        film does not determine; and if the scene does not fit the film, a statement of that, with
-        any reading of the film that fits.
+        film does not determine; and whether the scene does not fit the film, with any reading of
+        the film that does.
 
     Examples
     --------
@@ -130,10 +130,10 @@ def fit_motion(
 ) -> Fit:
     """Return the parameters of a scene, and of the camera, that fit a film best, with errors.
 
-    Angles are in radians, between the semi-axis a and the ground, clockwise if x points to the
-    right; z is the height of the centre above the ground, and t the time since the start of the
-    scene. What a camera has instead can be free, too: x_film = scale x, z_film = ground + scale z,
-    t_scene = t_film + clock, where no frame with data is before the start.
+    Angles are in radians, from the ground to the semi-axis a, clockwise if x points to the right; z
+    is the height of the centre above the ground, and t the time since the start of the scene. If a
+    camera measures otherwise, its parameters can be free, too: x_film = scale x, z_film = ground +
+    scale z, t_scene = t_film + clock, where no frame with data precedes the start.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def fit_motion(
         Tracks of the centre [m] and of the angle [rad], NaN where they are missing; angles are
         compared modulo pi. At least one is needed.
     scene : Scene
-        What is known; its values of the free parameters are first guesses.
+        The known values; those of the free parameters are first guesses.
     free : iterable of str
         The unknown parameters: of the scene "friction", "restitution", "theta", "omega", "inertia",
         ..., finite in `scene`; of its impulse "jx", "jz", "dx", "dz"; of the camera "scale",
@@ -167,20 +167,20 @@ def fit_motion(
     ------
     ValueError
         If names are unknown or repeated, arrays do not fit together, sigma is out of range, there
-        are not more data than unknowns, no film tells them apart, or no motion of the search
+        are not more data than unknowns, no film tells them apart, or no motion in the search
         reaches the last time.
     ImportError
         If SciPy is not installed.
 
     Notes
     -----
-    Nonlinear least squares [1]_ by SciPy starts from the scene itself and from straight lines and
+    SciPy's nonlinear least squares [1]_ start from the scene itself and from straight lines and
     parabolas through the first frames, each with several coefficients, for longer and longer parts
     of the film; then from points around the best solutions, since chi2 has many minima. Each
     parameter is moved by three times its error, and then further, with the others refitted. If the
-    change divided by the square root of the rise in chi2 is larger than the error, it replaces it;
-    this happens beyond a friction threshold, or where another scene fits equally well. A parameter
-    that the film does not determine keeps its guess.
+    change divided by the square root of the rise in chi2 is larger than the error, this quotient
+    replaces the error; this happens beyond a friction threshold, or where another scene fits
+    equally well. A parameter that the film does not determine keeps its guess.
 
     The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
     that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above

@@ -57,7 +57,7 @@ def flow(
     slope : float or array_like
         Angle of the ground [rad], descending towards +x, within ±1.5. On a slope, power series
         follow a swing; a run downhill or a climb is a quadrature of the energy integral over one
-        half turn. Adjacent times of one motion share them.
+        half turn. Adjacent times of one motion share this work.
     workers : int or executor
         Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
         or an executor, as for `simulate_many`, for many millions of elements. The results are the
@@ -69,10 +69,10 @@ def flow(
         Angle [rad], angular velocity [rad/s], displacement of the centre [m]; floats if all
         arguments are scalars, else arrays of the broadcast shape. A body in equilibrium (omega = 0
         and ``|h'|`` within 8 ulp of h) stays. The last bits may depend on the number of times: many
-        times of one motion are evaluated by Taylor series about points on it. Their x then has a
+        times of one motion are evaluated by Taylor series about points on it. In this case x has a
         rounding error of 2e-16 max(a, b), even where the body has returned to its start and x is
         small. Many motions at one time each are computed side by side in the processor's vector
-        registers (SSE2, AVX2 or AVX-512), bit for bit as each alone.
+        registers (SSE2, AVX2 or AVX-512), with the same bits as each alone.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def period(scene: Scene) -> float:
     Raises
     ------
     ValueError
-        If it does not, as with rolling resistance.
+        If it does not, as for any scene with rolling resistance.
 
     Examples
     --------

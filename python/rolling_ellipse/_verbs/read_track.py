@@ -1,4 +1,4 @@
-"""Tracks of a body from the tables that trackers write."""
+"""Tracks of a body from tables written by trackers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def read_track(
     delimiter: str | None = None, decimal: str | None = None, y_up: bool = True,
     clockwise: bool = False, degrees: bool = False, scale: float = 1.0,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """Return times, places and angles from a tracker's table, as `fit_motion` takes them.
+    """Return times, positions and angles from a tracker's table, as arguments for `fit_motion`.
 
     Names are those in the last line above the numbers; where a name occurs again, ".1", ".2", ...
     follow it, and without such a line names are "0", "1", .... Empty cells are NaN.
@@ -36,20 +36,20 @@ def read_track(
     path : path, mapping or DataFrame
         A text file (UTF-8), or columns by name, each of shape (n,).
     t, x, z, theta : str, optional
-        Columns of the times [s], of the centre, to the right and up, and of the angle of the
-        semi-axis a. Without `t` rows are frames of a film with `fps`.
+        Columns of the times [s], of the centre (to the right and up) and of the angle of the
+        semi-axis a. Without `t`, rows are the frames of a film with `fps`.
     points : four of str, optional
         Instead of `x`, `z` and `theta`: columns of x and z of one point and of another, both on the
         long axis and as far from the centre. The angle is that of the line to the second one.
     fps : float, optional
         Units of `t` per second, as for numbers of frames, or 1000 for milliseconds.
     delimiter, decimal : str, optional
-        Characters between columns and before decimals. By default the first of tab, semicolon,
-        bar, comma and space that the last line has, and comma or point.
+        Characters between columns and before decimals. By default the first of tab, semicolon, bar,
+        comma and space that occurs in the last line, and comma or point.
     y_up : bool
         False if the column `z` counts downwards, as in pixels of an image.
     clockwise, degrees : bool
-        What the column `theta` has, as seen in the film.
+        Sense and unit of the column `theta`, as seen in the film.
     scale : float
         Metres per unit of the file's lengths.
 
@@ -57,15 +57,15 @@ def read_track(
     -------
     t, x, z, theta : ndarray, shape (n,)
         Times [s], centre [m] and angle [rad], clockwise, without jumps by half turns (of points, by
-        full turns). NaN for what is not in the table.
+        full turns). NaN for quantities that are not in the table.
 
     Raises
     ------
     ValueError
-        If a column is missing or of another length, times do not increase, no place and no angle is
-        a number, both points coincide, or `fps` or `scale` is not positive.
+        If a column is missing or of another length, times do not increase, no position and no angle
+        is a number, both points coincide, or `fps` or `scale` is not positive.
     TypeError
-        If a column has text, which is shown.
+        If a column contains text; the message shows it.
     OSError
         If the file cannot be read.
 

@@ -1,10 +1,10 @@
 """Known answers for other simulators, integrators and gradients.
 
-We make no simulator with bodies, joints or GPUs: nothing here competes with yours. Twenty
+This package is no general simulator of bodies and joints: nothing here competes with yours. Twenty
 problems of an ellipse on the ground have exact answers, computed by two independent programs, and
-condition numbers. SI units and radians; ``x`` lies along the ground (downhill on a
-slope), ``z`` points away from it, ``theta`` is the clockwise rotation and counts turns. States are
-in the order x, z, theta, x_dot, z_dot, omega.
+condition numbers. SI units and radians; ``x`` lies along the ground (downhill on a slope), ``z``
+points away from it, ``theta`` is the clockwise rotation, unwrapped. States are in the order x, z,
+theta, x_dot, z_dot, omega.
 
 Examples
 --------

@@ -89,7 +89,7 @@ def _values(one: Problem, mine: Rows, which: str) -> list[str]:
 def _nearest_law(
     one: Problem, rows: Any, states: FloatArray
 ) -> tuple[FloatArray, list[str], list[str]]:
-    """Return the states by the nearest law, its name with its factor, and why it may not count."""
+    """Return the states by the nearest law, its name and factor, and why it may not count."""
     if not one.laws or not rows.size:
         return one.states[rows], [], []
     motions = {"stronge": one.states, **one.laws}

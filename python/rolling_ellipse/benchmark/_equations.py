@@ -172,7 +172,7 @@ class Dae(FieldsOnly):
 
 @dataclass(frozen=True, eq=False)
 class Ode:
-    """One arc of a motion, ready for `scipy.integrate.solve_ivp` and its like.
+    """One arc of a motion, ready for `scipy.integrate.solve_ivp` or a similar solver.
 
     States are x, z, theta, x_dot, z_dot, omega; the equations are those of a rigid body with
     Coulomb friction, written independently of the package's solver.
@@ -187,7 +187,7 @@ class Ode:
     y0 : ndarray, shape (6,)
         State at t0.
     kind : str
-        Event with which it starts, "" for the first arc.
+        Event with which the arc starts, "" for the first arc.
     side : int
         Sign of the slip, 0 without slip.
     quiet : float

@@ -119,8 +119,8 @@ def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
     Rows without a time or without a state are left out. Two rows at one time are the sides of a
-    jump: the second is kept. Unknown columns are left out, too. An empty file has no rows. Events
-    are in `<id>.events.csv` with the columns kind, t, if it exists and is not empty.
+    jump: the second is kept. Unknown columns are ignored. An empty file has no rows. Events are in
+    `<id>.events.csv` with the columns kind, t, if it exists and is not empty.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""The report's equations as printed, named by number, and the right ones, named by words.
+"""The report's equations as printed, named by number, and correct ones, named by words.
 
 Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
-residual minus the right one is the effect of the misprint.
+residual minus the correct one is the effect of the misprint.
 """
 
 from __future__ import annotations

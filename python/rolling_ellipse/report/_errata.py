@@ -227,7 +227,7 @@ _ERRATA = tuple(
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors of the report in its order; `evaluate()` gives the two numbers of each.
+    """Return the errors of the report in its own order; `evaluate()` gives the two numbers of each.
 
     Examples
     --------

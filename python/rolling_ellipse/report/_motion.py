@@ -71,7 +71,7 @@ class PrintedMotion:
     start : Start
         The initial state, and its difference from the given one.
     message : str
-        The reason why it stopped before the last time; empty if it did not.
+        The reason why the motion stopped before the last time; empty if it did not.
     """
 
     t: FloatArray
@@ -179,7 +179,7 @@ def follow(
 def _integrated(
     slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, how: Settings
 ) -> tuple[FloatArray, str]:
-    """Return the solution of y' = slope(y) at the times reached, and why it did not get further.
+    """Return the solution of y' = slope(y) at the times reached, and why it ended there.
 
     Steps are of one size if `how` has a `step`; else their size follows from the local error
     (HNW II.4). The coefficients are the core's.

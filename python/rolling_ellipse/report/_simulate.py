@@ -1,4 +1,4 @@
-"""The simulation of section 4 of the report, with the right equations or the printed ones.
+"""The simulation of section 4 of the report, with the correct equations or the printed ones.
 
 Its start may violate constraints; on request the nearest consistent state replaces it.
 """
@@ -82,8 +82,8 @@ def simulate(
     consistent : {"refuse", "project", "as_given"}
         Treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations the
         rows in use must allow the rates. "project" takes the nearest consistent state in the
-        metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
-        runs it after an InconsistentStartWarning, and no time of its motion is valid.
+        metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given" keeps
+        the start after an InconsistentStartWarning, and no time of its motion is valid.
     printed : sequence of str, optional
         For the printed equations only: the rows as printed, see `constraint_matrix`; default is
         the report's code, `CODE`. With () all rows are right.
@@ -99,13 +99,13 @@ def simulate(
     Returns
     -------
     Trajectory or PrintedMotion
-        ``start`` of the latter shows what a projection changed.
+        The ``start`` of a PrintedMotion shows what a projection changed.
 
     Raises
     ------
     ValueError
-        If the start is inconsistent and to be refused (naming each violated constraint and its
-        size), or an argument is out of range or has no effect.
+        If an inconsistent start is refused (naming each violated constraint and its size), or an
+        argument is out of range or has no effect.
     IntegrationError
         If the integration of the corrected equations stops before the last time.
 

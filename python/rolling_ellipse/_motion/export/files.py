@@ -40,8 +40,8 @@ _ABOUT = ("schema", "scene", "settings", "status", "events", *_FACTS)
 def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
 
-    Its name ends with .npz or has no suffix. The file appears whole or not at all: if anything goes
-    wrong, an old file is kept.
+    Its name must end with .npz or have no suffix. The file appears whole or not at all: if anything
+    goes wrong, an old file is kept.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Trajectories as a film in true time, for files, windows and notebooks."""
+"""Trajectories as a film with exact timing, for files, windows and notebooks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .movies import pace, within
 
 __all__ = ["RollingAnimation", "animate"]
 
-WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures do not fit into memory
+WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures would not fit into memory
 LAYOUTS, PANELS = ("over", "side by side"), ("phase", "forces", "energy")
 WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks that open windows
 
@@ -45,7 +45,7 @@ def animate(
     panel: Literal["phase", "forces", "energy"] | None = None,
     progress: bool | None = None,
 ) -> RollingAnimation:
-    """Make a film of one motion or several in true time, for a file, a window or a notebook.
+    """Make an exactly timed film of one motion or several, for a file, a window or a notebook.
 
     Frame i shows t = i · speed / fps and lasts 1 / fps; the body is where the motion puts it then.
     The Notes say what a long film, a fast one, and one of several motions show.
@@ -66,8 +66,8 @@ def animate(
         Last time shown [s]; default: the latest end.
     fps : float, optional
         Frames per second, 0.001 to 1000; default: 60 for videos and .html, 50 for .gif and without
-        a path. A GIF counts in 1/100 s: there 100 / fps must be whole and at least 2. The player
-        draws at the screen's rate; there a frame is the step of its keys.
+        a path. A GIF counts time in 1/100 s, so 100 / fps must be whole and at least 2. The player
+        draws at the screen's rate; its keys step by one frame.
     speed : float, optional
         Seconds of motion per second of film, which then shows all of it; 0.1 is slow motion.
     max_frames : int, optional
@@ -107,7 +107,7 @@ def animate(
         another suffix, a GIF cannot keep the time, or at this `speed` the body would seem to roll
         backwards.
     TypeError
-        If something to show is not a Trajectory, or another argument has the wrong type.
+        If an object to show is not a Trajectory, or another argument has the wrong type.
     FileNotFoundError
         If there is no such folder, or no ffmpeg for a video.
     OSError
@@ -178,7 +178,8 @@ def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot's figures are windows; else a notebook would show them next to the player."""
+    """Whether pyplot's figures are windows; if not, a notebook would show them beside the
+    player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

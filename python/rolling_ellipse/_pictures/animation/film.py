@@ -231,7 +231,7 @@ class RollingAnimation(FuncAnimation):
                 options = {"dpi": self.figure.dpi, **options}
                 options["progress_callback"] = lambda i, n: advance(i + 1, n)
                 known = _known(writer)
-                in_place = known == "html" or isinstance(known, HTMLWriter)  # names a folder by it
+                in_place = known == "html" or isinstance(known, HTMLWriter)  # writes a folder, too
                 with _with_settings(), nullcontext(path) if in_place else replacing(path) as new:
                     super().save(new, writer=known, **options)
                 return

@@ -1,4 +1,4 @@
-"""Results of many scenes: tables of numbers, from the core or files, and what they hold.
+"""Results of many scenes: tables of numbers, from the core or from files, and their contents.
 
 Tables from files, which may be damaged, are checked before they are split into answers or arrays.
 An answer is a trajectory, or the exception of its scene. Arrays have the axes of the scenes.
@@ -86,7 +86,7 @@ def solve(
     function: Callable[..., Tables], table: FloatArray, settings: Settings, times: FloatArray,
     threads: int,
 ) -> Tables:  # fmt: skip
-    """Call a core function; the core's settings are made here, since a task cannot carry them."""
+    """Call a core function; the core's settings are made here, since tasks cannot carry them."""
     return function(table, settings.core, times, threads)
 
 
@@ -103,7 +103,7 @@ def answers(
     request: Request, scenes: Sequence[Scene] | FloatArray, tables: Tables, *,
     keep_events: bool = False,
 ) -> list[Answer]:  # fmt: skip
-    """Return a trajectory or an exception for each scene, given as it is or as its row of a table.
+    """Return a trajectory or an exception for each scene, given as a Scene or as a row of a table.
 
     With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
     again when its events are first accessed, as after pickling.
@@ -123,7 +123,7 @@ def answers(
 
 
 class _Part:
-    """The motions in tables, each of which is read when it is first used."""
+    """The motions in tables; each motion is read when it is first used."""
 
     def __init__(self, request: Request, scenes: Any, tables: Tables, keep_events: bool) -> None:
         self._request, self._scenes, self._tables = request, scenes, tables
@@ -357,9 +357,9 @@ def gathered(
     names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Any]],
     axes: tuple[str, ...], shape: tuple[int, ...] | None,
 ) -> MotionArrays:  # fmt: skip
-    """Return quantities from tables of scenes, each with its answers or the loss of its worker.
+    """Return quantities from tables of scenes, each with its answers or with `Lost`.
 
-    A shape of None means that of a list.
+    A shape of None stands for that of a list.
     """
     rows, endings = [np.empty((0, WIDTH))], [np.empty(0, int)]
     blocks = [np.empty((len(names), 0, request.times.size))]

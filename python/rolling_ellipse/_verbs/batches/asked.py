@@ -5,7 +5,7 @@ then those of its impulse. NaN stands for values that were not given.
 
 The size of a chunk depends only on the number of scenes before it and of samples per scene. The
 first chunks are small, so that a few slow scenes occupy many workers. Since sizes do not depend on
-the workers, a folder that some have started can be finished by others.
+the workers, other workers can finish a folder.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class SceneGrid:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the axes: the one argument that varies along just that axis, or "scene"."""
+        """Names of the axes: the argument that varies along this axis only, or "scene"."""
         many = len(self.shape) > 1
         owners: list[list[str]] = [[] for _ in self.shape]
         for name, values in (self._arrays | self._beside).items():
@@ -159,7 +159,7 @@ class SceneGrid:
         return table
 
     def _require_arguments(self) -> None:
-        """Reject wrong arguments if there are no scenes: each by itself, the body's together."""
+        """Reject wrong arguments if there are no scenes: each alone, those of the body together."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))
@@ -227,7 +227,7 @@ def scenes_of(table: FloatArray) -> list[Scene]:
 
 
 def scene_of(given: Scene | FloatArray) -> Scene:
-    """Return a scene that is given as it is, or as the row of such a table."""
+    """Return a scene that is given as a Scene or as a row of such a table."""
     return given if isinstance(given, Scene) else _scene(given.tolist())
 
 

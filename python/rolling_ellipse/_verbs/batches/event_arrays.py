@@ -25,7 +25,7 @@ class EventArrays(EventTable):
     Attributes
     ----------
     axes, status, errors
-        Those of the scenes, as of `MotionArrays`.
+        As in `MotionArrays`.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def gathered_events(
     request: Request, parts: Iterable[tuple[FloatArray, Any]], axes: tuple[str, ...],
     shape: tuple[int, ...] | None,
 ) -> EventArrays:  # fmt: skip
-    """Return the events, by the arguments of `gathered`."""
+    """Return the events; the arguments are those of `gathered`."""
     found = [_events_in(0, np.empty((0, len(_core.COLUMNS["scenes"]))), None)]
 
     def read() -> Iterator[tuple[FloatArray, Any]]:

@@ -224,8 +224,8 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     Raises
     ------
     ValueError
-        If it is another kind of folder, of another schema version, or incomplete, or if its files
-        do not belong together; when a motion is read: if its file, which is named, is damaged.
+        If it is another kind of folder, has another schema version or is incomplete, or if its
+        files do not belong together; when a motion is read: if its file is damaged.
     OSError
         If it cannot be read.
 

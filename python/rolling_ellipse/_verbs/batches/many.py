@@ -59,7 +59,7 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Return the motions of many scenes by any workers, each bit for bit as by `simulate`.
+    """Return the motions of many scenes; with any workers each equals `simulate` bit for bit.
 
     A scene that cannot be simulated yields its exception in the list; the others continue. No
     warnings are issued: see the status of a trajectory (VALIDITY_LOST).

@@ -25,7 +25,7 @@ _SMOOTH = 1e-4  # smallest noise relative to the range of a track
 
 
 def require_told(scene: Scene, names: tuple[str, ...], film: Film) -> None:
-    """Raise ValueError if no film with such tracks tells the unknowns of the camera.
+    """Raise ValueError if no film with such tracks determines the unknowns of the camera.
 
     A later start is the same motion from another state, and a larger body under larger gravity the
     same motion in a larger picture. Anything else that the film cannot determine shows up in the
@@ -52,11 +52,11 @@ def unit_of(film: Film, scene: Scene) -> float:
 
 
 def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], Film]]:
-    """Yield guesses of the camera, and the film as the scene's tracks if they are right."""
+    """Yield guesses of the camera, each with the film converted to the scene's tracks by it."""
     scene, own = unknowns.scene, unknowns.named(unknowns.own)
     grid: dict[str, set[float]] = {}
     if "scale" in own:
-        fall = free_fall(film, scene, least=0.5) or 0.0  # of a rocking body, it is no harm
+        fall = free_fall(film, scene, least=0.5) or 0.0  # harmless for a rocking body
         grid["scale"] = {own["scale"], *_SCALES, max(fall, own["scale"] / 2)}
     if "clock" in own:
         grid["clock"] = {own["clock"], *(size_of(scene, "t") * late for late in _LATE)}
@@ -95,7 +95,7 @@ def free_fall(film: Film, scene: Scene, least: float = 1.5) -> float | None:
 
 
 def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float | None:
-    """Return the downward acceleration of heights on a parabola, or None if they are on none."""
+    """Return the downward acceleration of heights on a parabola, or None if they are not on one."""
     centre, half = (t[0] + t[-1]) / 2, (t[-1] - t[0]) / 2
     powers = ((t - centre) / half)[:, None] ** np.arange(4)
     solution = np.linalg.lstsq(powers, z, rcond=None)[0]

@@ -51,9 +51,9 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
 def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
     """Return readings of angles and positions in other conventions, with the same unit of time.
 
-    What the camera's unknowns explain is not tried.
+    Readings that differ only by free unknowns of the camera are not tried.
 
-    If a film starts later than it lasts, only its clock is questioned.
+    If a film starts at a time later than its duration, only its clock is doubted.
     """
     x, z, theta = film.known.any(axis=0)
     clock = _read(film, "t = t - t[0]", t=film.t - film.t[0])

@@ -25,8 +25,8 @@ def standard_errors(
     """Return standard errors and covariance of the unknowns, and all solutions found meanwhile.
 
     Each parameter is moved by three standard errors, and further, with the others refitted: its
-    error grows to the change over the root of the rise of chi2 if that is larger. Rivals are other
-    minima.
+    error becomes the change divided by the root of the rise of chi2, if that is larger. Rivals are
+    other minima.
     """
     unknowns, rivals = search.unknowns, list(rivals)
     _, singular, axes, known = decomposed(best)

@@ -36,14 +36,14 @@ class Film:
     data: FloatArray
     first: float = 0.0  # what was subtracted from the user's times, if the clock is unknown
     adrift: tuple[int, ...] = ()  # tracks whose origin is unknown
-    reading: tuple[str, ...] = ()  # what was changed, in words of the arguments of `fit_motion`
+    reading: tuple[str, ...] = ()  # changes made, as arguments of `fit_motion`
 
     @cached_property
     def known(self) -> Any:
         return np.isfinite(self.data)
 
     def off(self, motion: Trajectory, factors: Any = 1.0, added: Any = 0.0) -> FloatArray:
-        """Return measured minus computed tracks: angles modulo pi; if adrift, minus their mean."""
+        """Return measured minus computed tracks: angles modulo pi, adrift tracks without mean."""
         off: FloatArray = self.data - (added + factors * columns(motion, TRACKS))
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         for k in self.adrift:
@@ -74,7 +74,7 @@ def sizes_of(scene: Scene) -> FloatArray:
 
 
 def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
-    """Return the given standard deviations of the tracks, NaN for those to be estimated."""
+    """Return the given standard deviations of the tracks, NaN where one must be estimated."""
     given = dict.fromkeys(TRACKS, math.nan)
     if isinstance(sigma, Mapping):
         distinct("sigma", sigma, TRACKS)
@@ -114,7 +114,7 @@ class Unknowns:
         return dict(zip(self.names, (u * self.sizes).tolist(), strict=True))
 
     def lens(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the factors of the camera and what it adds, for each track."""
+        """Return the factor of the camera, and its offset, for each track."""
         values = self.named(u)
         scale, ground = values.get("scale", 1.0), values.get("ground", 0.0)
         return np.array([scale, scale, 1.0]), np.array([0.0, ground, 0.0])

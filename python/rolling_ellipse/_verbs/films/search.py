@@ -1,4 +1,4 @@
-"""Least squares from many starts: the best minimum of a rough function."""
+"""Least squares from many starts: the best minimum of a function with many."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from .starts import Box, cell, starts
 
 cost = attrgetter("cost")  # by which SciPy's solutions are compared
 LEAST = 1e-9  # smallest singular value, relative to the largest, that the data can resolve
-_SHARES = 0.3, 0.6, 1.0  # shares of the film's beginning that are fitted in turn
-_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # its time in sqrt(L/g), and its smallest share of the film
-_LONGER = 1.6  # factor by which what is fitted grows from there
+_SHARES = 0.3, 0.6, 1.0  # shares of the film's beginning, fitted one after another
+_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # duration in sqrt(L/g), and smallest share of the film
+_LONGER = 1.6  # factor by which the fitted part grows from there
 _TRIED = 30  # number of starts that are fitted
 _HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
 _WORSE = 1.1, 50.0  # largest ratio and rise of the cost for which the search continues in a cell
@@ -69,8 +69,8 @@ class Search:
     def minima(self, tried: int = _TRIED) -> list[Any]:
         """Return the best solution of each cell of friction, the best one first.
 
-        Starts and cells are compared by the film's beginning: later, small errors have grown. What
-        is nearly as good as the best is fitted to more and more of the film.
+        Starts and cells are compared by the film's beginning: later, small errors have grown.
+        Solutions nearly as good as the best are fitted to more and more of the film.
         """
         share = self._beginning()
         beginning = self._part(share)
@@ -135,8 +135,8 @@ class Search:
     def _nearest(self, ones: list[Any]) -> Any:
         """Return the best solution; if the clock is unknown, the nearest to the guess of the best.
 
-        A motion may pass a state again: a flight its height, a rocking body all of its states. Of
-        starts in the same state, the one soonest before the film counts.
+        A motion may pass a state again: a flight passes its height twice, a rocking body all of its
+        states. Of starts in the same state, the last one before the film is returned.
         """
         best, unknowns = min(ones, key=cost), self.unknowns
         clock = np.array(unknowns.names) == "clock"
@@ -149,7 +149,7 @@ class Search:
 
 
 def _close(ones: list[Any]) -> list[Any]:
-    """Return those that are nearly as good as the first, the best one."""
+    """Return the solutions that are nearly as good as the first, which is the best."""
     limit = _WORSE[0] * ones[0].cost + _WORSE[1]
     return [one for one in ones if one.cost < limit]
 
@@ -157,7 +157,7 @@ def _close(ones: list[Any]) -> list[Any]:
 def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArray[np.bool_]]:
     """Return the singular value decomposition of the residuals' Jacobian, and which values count.
 
-    The order is: vectors in the space of the data, as columns; singular values; vectors in the
+    The values are: vectors in the space of the data, as columns; singular values; vectors in the
     space of the unknowns, as rows; and which singular values the data resolve.
     """
     data, singular, axes = np.linalg.svd(one.jac, full_matrices=False)

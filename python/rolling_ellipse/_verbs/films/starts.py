@@ -1,4 +1,4 @@
-"""Starting points of a fit: the first frames give positions and velocities, a grid coefficients."""
+"""Starting points of a fit: states from the first frames, coefficients from a grid."""
 
 from __future__ import annotations
 
@@ -32,11 +32,12 @@ _SPINS = 4000  # largest number of angular velocities in a periodogram
 def starts(
     film: Film, unknowns: Unknowns, distance: Callable[[FloatArray], float]
 ) -> Iterator[tuple[float, FloatArray, Box]]:
-    """Yield the best start for each set of coefficients: its distance, itself, and its fit's box.
+    """Yield the best start for each set of coefficients: distance, start, and box of its fit.
 
-    They are the scene's own, and pre-fits of more and more frames, seen by those cameras that make
-    the film most like the scene. Friction stays in a cell of its grid: where it is large enough for
-    the body to stick, no film can determine it, and a step that overshoots would not come back.
+    They are the scene's own values, and pre-fits of more and more frames, seen by the cameras that
+    make the film most similar to the scene. Friction stays in a cell of its grid: where it is large
+    enough for the body to stick, no film can determine it, and a step that overshoots would not
+    come back.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):

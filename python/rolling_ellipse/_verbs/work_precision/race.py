@@ -54,7 +54,7 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer with the interface of peers; its call may have `advice` on its answer."""
+    """A method or peer with the interface of peers; its call may have `advice` about its answer."""
 
     run: Run  # name, model, method, stabilization and tags
     ladder: str | None  # None: it has no setting
@@ -283,7 +283,7 @@ def work_precision(
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:
         spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
-    # a call that took longer than all of that time leaves the rest untouched
+    # a single call that exceeded its share leaves the rest for timing
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,

@@ -127,7 +127,7 @@ class WorkPrecision:
     ) -> Run | None:
         """Return the run of least `y` among the runs whose error `x` is at most `at`, or None.
 
-        An error of the state below the reference's own error counts as the latter.
+        An error of the state below the reference's own error counts as equal to it.
 
         Examples
         --------
@@ -162,7 +162,7 @@ class WorkPrecision:
     ) -> tuple[str, ...]:
         """Return the names of methods that might still reach an error of at most `at`.
 
-        They have not reached it, and were not run at all settings for lack of time.
+        These have not reached it, but lack of time kept them from running at all their settings.
 
         Examples
         --------
@@ -181,8 +181,8 @@ class WorkPrecision:
     ) -> dict[str, tuple[float, ...]]:  # fmt: skip
         """Return, by name, the decades of the error, 1e-2 … 1e-14, at which a method is unbeaten.
 
-        There no other is faster by more than a factor of `margin`, at least 1. Decades that a
-        method might still reach (`not_run`) are left out.
+        At these errors no other method is faster by more than a factor of `margin` >= 1. Decades
+        that a method might still reach (`not_run`) are left out.
 
         Examples
         --------

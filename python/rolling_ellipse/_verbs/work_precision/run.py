@@ -24,8 +24,9 @@ class Errors:
 
     The error of a state is the largest of those of theta [rad], of omega over the largest |omega|
     of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
-    the end, or only at the end for a run without samples. Gap and slip are those of a body that
-    touches and does not slide, over the longer semi-axis, and over that times the largest |omega|.
+    the end, or only at the end for a run without samples. Gap and slip, which should be 0 in
+    contact and without sliding, are divided by the longer semi-axis, and by that times the largest
+    |omega|.
     """
 
     final: float = math.nan  # error of the state at the end
@@ -53,7 +54,7 @@ class Run:
     time: float = math.nan  # shortest time of a call that returns the state at the end [s]
     setup: float = math.nan  # cost of a new scene, with the extra time of a first call [s]
     spread: float = math.nan  # median of the times over the least, minus 1; NaN for a single timing
-    steps: int = 0  # number in that call, as are the next two; 0 if unknown
+    steps: int = 0  # number of steps in that call, like the next two; 0 if unknown
     rejected: int = 0
     evaluations: int = 0  # evaluations of the right-hand side
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)

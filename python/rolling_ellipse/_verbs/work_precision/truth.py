@@ -105,8 +105,8 @@ class Judge:
     def _attainable(self, motion: Callable[[Scene, FloatArray], Columns]) -> FloatArray:
         """Return the attainable error at up to `_MOST` of the times, the end last, (n,).
 
-        Derivatives by the numbers of the scene are central differences, or one-sided if one of
-        the changed scenes has no motion. NaN if the given reference outlasts the motion.
+        Derivatives with respect to the numbers of the scene are central differences, or one-sided
+        if one of the changed scenes has no motion. NaN if the given reference outlasts the motion.
         """
         places = np.unique(np.linspace(1, self.times.size - 1, _MOST).round().astype(int))
         times = self.times[places]

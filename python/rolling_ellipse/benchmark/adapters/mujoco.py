@@ -3,7 +3,7 @@
 MuJoCo locates the contact of ellipsoid and plane exactly; its contact is soft. Friction cones are
 elliptic, which the manual calls more accurate. Contacts have a time constant of four steps:
 with two, the least that the manual allows, sliding bodies hop more. Restitution 1 is stiffness
-without damping, as in the manual, which offers no smaller one. Other integrators change little.
+without damping, as in the manual, which offers no smaller value. Other integrators change little.
 Rolling resistance shares one cone with friction: both are too weak while a body slides and turns.
 """
 

@@ -18,7 +18,7 @@ def simulate(scene: Scene, step: float) -> Run:
     builder, at = newton.ModelBuilder(), scene.initial_state
     builder.add_mjcf(scene.to_mjcf(timestep=step))
     model = builder.finalize()
-    model.set_gravity(gravity(scene))  # the builder keeps only the magnitude of a tilted one
+    model.set_gravity(gravity(scene))  # the builder keeps only its magnitude
     solver = newton.solvers.SolverMuJoCo(model)
     control, states = model.control(), [model.state(), model.state()]
     states[0].joint_q.assign([at.x, at.z, at.theta])
