@@ -44,7 +44,7 @@ def test_the_number_of_workers_changes_no_bit_of_the_results(workers: Any) -> No
 
 
 def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
-    """One motion has the shape ()."""
+    """The end of a single motion has the shape ()."""
     body: dict[str, Any] = {"a": 2.0, "b": 1.0, "z": 3.0, "restitution": 0.3}
     ends = rl.ends(body | {"omega": [[1.0], [2.0]]}, [0.5, 1.0, 2.0])
     each = [rl.ends([rl.Scene(**body, omega=w)] * 3, [0.5, 1.0, 2.0]) for w in (1.0, 2.0)]
@@ -69,8 +69,8 @@ def test_a_motion_that_stops_early_has_an_exception_in_place_of_its_end() -> Non
 
 @pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])
 def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
-    """A disc dropped from a height bounces with e^n of its speed; the first rebound below the rest
-    speed and all that follow end in one event."""
+    """The nth rebound of a dropped disc has e^n of its speed; the first one below the rest speed
+    and all later ones count as one event."""
     e, speed, g = 0.6, 3.0, 9.81
     disc = rl.Scene(1.0, 1.0, z=1.0 + speed**2 / (2 * g), friction=0.0, restitution=e, gravity=g)
     rest_speed = share * np.sqrt(g)

@@ -1,5 +1,5 @@
-"""Batches on any executor equal `simulate_many` without one bit for bit; a lost task loses only its
-own scenes."""
+"""Batches on any executor equal `simulate_many` without an executor, bit for bit; a lost task loses
+only its own scenes."""
 
 import itertools
 import os

@@ -144,7 +144,7 @@ def test_a_folder_from_another_version_is_rejected(
 
 @pytest.mark.parametrize(("schema", "cure"), [(1, ""), (4, ": a newer .* pip install .*")])
 def test_a_folder_of_another_schema_is_refused_as_such(schema: int, cure: str, out: Path) -> None:
-    """Whatever names its request has besides."""
+    """This holds whatever other names its request has."""
     simulate_many(GRID, TIMES, out=out)
     about, arrays = taken_apart((out / "request.npz").read_bytes())
     about = about | {"schema": schema, "colour": 1}
@@ -336,7 +336,7 @@ def test_leftovers_of_killed_runs_are_removed_but_not_files_being_written(out: P
 
 
 def test_a_full_disk_leaves_the_request_intact(out: Path) -> None:
-    """Files may have 15 kB here, and the first chunk, of 1600 samples, needs 40 kB."""
+    """Files are limited to 15 kB here; the first chunk, of 1600 samples, needs 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
     with files_of_at_most(15_000), pytest.raises(OSError) as caught:
         simulate_many(small, np.linspace(0, 1, 100), out=out)
@@ -347,7 +347,7 @@ def test_a_full_disk_leaves_the_request_intact(out: Path) -> None:
 
 
 def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
-    """Sixteen scenes at rest are done at once; a scene of hours after them is interrupted."""
+    """Sixteen scenes at rest finish at once; the next one, which takes hours, is interrupted."""
     quick = [Scene(2.0, 1.0)] * 16
 
     def last() -> Iterator[Scene]:

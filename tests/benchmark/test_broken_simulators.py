@@ -1,6 +1,6 @@
-"""Broken simulators: "right" only where the answer does not depend on the break.
+"""Broken simulators are "right" only where the answer does not depend on the fault.
 
-The table `BROKEN` lists each break, the problems that it leaves unaffected, each with the reason,
+The table `BROKEN` lists each fault, the problems that it leaves unaffected, each with the reason,
 and what the score must say about it elsewhere.
 """
 
@@ -111,7 +111,7 @@ def right(scores: benchmark.Scores) -> set[str]:
 @pytest.mark.parametrize("name", BROKEN)
 @pytest.mark.parametrize("accurate", [True, False])
 def test_only_answers_unaffected_by_the_fault_are_right(name: str, accurate: bool) -> None:
-    """Even with errors of the simulator, here those of a gravity that is off by 1e-5."""
+    """This holds even if the simulator has errors, here from a gravity that is off by 1e-5."""
     broken = BROKEN[name]
 
     def mine(one: Any, t: Any, _: Any) -> Any:
@@ -194,7 +194,7 @@ def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
 @pytest.mark.parametrize("count", [11, 21, 22, 40, 200])
 @pytest.mark.parametrize("sticks", [True, False])
 def test_bounces_may_be_listed_up_to_any_cutoff(count: int, sticks: bool) -> None:
-    """After 200 of them the times between them are below an ulp."""
+    """After 200 bounces the times between them are below an ulp."""
     one = benchmark.problem("hit.settle")
     events = every_impact(one, count)
     end = one.events[-1].t

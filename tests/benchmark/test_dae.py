@@ -1,4 +1,4 @@
-"""The problems that roll all the time as differential-algebraic equations."""
+"""Problems that always roll, as differential-algebraic equations."""
 
 import re
 from dataclasses import replace
@@ -21,7 +21,7 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [*NAMES, "uphill"])
 def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form: str) -> None:
-    """F is 0 to within 8 ulps of each entry of y and y': the exact motion's own and those in F.
+    """F is 0 to within 8 ulps of each entry of y and y': roundings of the exact motion and of F.
 
     Central differences have errors of step^2/6 = 2e-11 from third derivatives, which for the thin
     body are some (a/b)^4 of the Jacobian, and roundings of 1e-16/step.
@@ -102,7 +102,7 @@ def program(library: str) -> Any:
 @pytest.mark.parametrize("form", ["index2", "ggl"])
 def test_solve_dae_stays_within_its_tolerance(form: str) -> None:
     """The page's program, whose states are columns of a matrix, keeps its tolerance for a second;
-    the table has the whole motions."""
+    the page's table covers whole motions."""
     table = PAGE.partition("<!-- radau")[2].partition("<!-- end of radau")[0]
     errors = [float(each) for each in re.findall(rf"\| {form} \| (\S+) \|.* done \|", table)]
     assert len(errors) == 3 and max(errors) <= 1e-8

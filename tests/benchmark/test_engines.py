@@ -1,4 +1,4 @@
-"""Engines read MJCF and SDF as meant, with contacts 1e-6 m deep; adapters answer problems."""
+"""Engines read MJCF and SDF as intended, with contacts 1e-6 m deep; adapters answer problems."""
 
 import math
 import re
@@ -56,7 +56,7 @@ def test_mujoco_resists_rolling_by_a_lever_in_metres(friction: float) -> None:
 
 
 def test_drake_reads_sdf_as_intended() -> None:
-    """Two links of 1e-9 of the mass move with the body; Drake leaves the gravity out."""
+    """Two links of 1e-9 of the mass move with the body; Drake ignores the gravity in the file."""
     drake = pytest.importorskip("pydrake.all")
     builder = drake.DiagramBuilder()
     plant, _ = drake.AddMultibodyPlantSceneGraph(builder, 0.001)
@@ -88,7 +88,7 @@ def test_through_each_adapter_a_body_falls_and_rests_correctly(name: str) -> Non
     assert np.abs(off - np.outer(9.81 * t * 0.005 / 2, [0, 1, 0, 0, 0, 0])).max() < 1e-12
     rest = simulate(benchmark.problem("rest.lie"), np.arange(200) / 100)
     assert np.abs(rest.states - [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]).max() < 2e-3
-    if rest.normal_force is not None:  # no step was made at the first time
+    if rest.normal_force is not None:  # no step precedes the first time
         ends = rest.normal_force[[0, -1]]
         assert ends == pytest.approx([np.nan, 9.81], rel=1e-6, nan_ok=True)
 

@@ -1,9 +1,10 @@
 """The package gives the known answers of reference/make_benchmark.py, which shares no code with it.
 
-Bound. Inputs are doubles, off by up to half an ulp, 1.1e-16 of them, and so are the numbers of the
-files. A condition is the change of an answer, in its own scale, caused by that of all inputs: a
-method as good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room for its own
-roundings and for forces, functions of the state with slopes of up to three weights by scale.
+The bound: inputs are doubles, off by up to half an ulp (a relative 1.1e-16), and so are the numbers
+in the files. A condition is the change of an answer, in its own scale, caused by that of all
+inputs: a method as good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room
+for its own roundings and for forces, functions of the state with slopes of up to three weights by
+scale.
 """
 
 import json
@@ -44,7 +45,7 @@ def errors(data: Any, found: Any, exact: Any) -> NDArray[np.float64]:
 
 @each_problem
 def test_states_forces_and_events_match_the_known_answers(name: str) -> None:
-    """Within the bound, and states and forces to twelve digits where the condition is large."""
+    """Where the condition is large, states and forces also agree to twelve digits."""
     data, of = PROBLEMS[name], motion(name)
     rows, condition = np.array(data["states"]), np.array(data["condition"])
     samples = of.sol(rows[:, 0])
@@ -83,7 +84,7 @@ def test_other_laws_of_restitution_match_the_known_answers() -> None:
 
 @each_problem
 def test_slightly_changed_problems_have_the_same_events(name: str) -> None:
-    """All inputs off by 1e-12 of their size, zeros of the start by 1e-12 of their scale."""
+    """All inputs change by 1e-12 of their size, zeros of the start by 1e-12 of their scale."""
     data, rng = PROBLEMS[name], random.Random(33)
     scene, sizes = data["scene"], dict(zip(STATE, data["scales"], strict=True))
     follow = ["z", "z_dot"] * (Scene(**scene).initial_state.mode.name != "FLIGHT")
@@ -111,7 +112,7 @@ def test_the_files_are_small_and_share_one_format() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """Bounces that count rise by more than 0.002 L before; the end is that of the last."""
+    """A bounce counts if the rise before it exceeds 0.002 L; the end is that of the last bounce."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

@@ -1,4 +1,4 @@
-"""Problems with rolling resistance, which end at rest, and what scores say of them."""
+"""Problems with rolling resistance, which end at rest, and their scores."""
 
 import pytest
 from oracles.simulators import adapter, exact, score_of
@@ -9,7 +9,7 @@ NAMES = ["roll.resist", "slide.resist"]
 
 
 def test_the_slide_stops_when_friction_has_taken_its_momentum() -> None:
-    """It turns neither at the start nor at the end: the mean normal force is the weight."""
+    """The body turns neither at the start nor at the end: the mean normal force is the weight."""
     one = benchmark.problem("slide.resist")
     stop = one.states[0, 3] / (one.scene.friction * one.scene.gravity)
     assert one.events[0].t == pytest.approx(stop, rel=1e-15)
@@ -18,7 +18,7 @@ def test_the_slide_stops_when_friction_has_taken_its_momentum() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_rest_and_half_swings_are_read_off_the_states(name: str) -> None:
-    """REST a little early: where the velocity has fallen to a five hundredth of its scale."""
+    """REST is a little early: where the velocity has fallen to a five hundredth of its scale."""
     one = benchmark.problem(name)
     states = one.exact(one.output_times)
     read = read_off(one, one.output_times, states)
@@ -31,7 +31,7 @@ def test_rest_and_half_swings_are_read_off_the_states(name: str) -> None:
 
 
 def test_a_body_that_rests_elsewhere_or_swings_more_often_is_judged_wrong() -> None:
-    """Also beside the right events."""
+    """This holds even if the events are right."""
     one = benchmark.problem("roll.resist")
     states = one.exact(one.output_times)
     events = [(event.kind, event.t) for event in one.events]
@@ -47,8 +47,8 @@ def test_a_body_that_rests_elsewhere_or_swings_more_often_is_judged_wrong() -> N
 
 
 def test_mujoco_rocks_to_rest_but_slides_too_far() -> None:
-    """It is right about the rocking body, to 0.2 % of the inputs. Sliding and turning it has less
-    of both, since they share a cone: the score says so."""
+    """MuJoCo is right about the rocking body, to 0.2 % of the inputs. While a body slides and
+    turns, friction and resistance are too weak, since they share a cone: the score says so."""
     mine = adapter("mujoco")
     rocks, slides = benchmark.run(mine, problems=NAMES, ladder=[0.001])
     assert rocks.answer == "right" and rocks.over_condition < 3e-3

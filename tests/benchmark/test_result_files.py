@@ -33,7 +33,7 @@ def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: P
 
 
 def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> None:
-    """As a full disk leaves it: a cut within a number gives a shorter row or another number."""
+    """A full disk can cut a file within a number, which leaves a shorter row or another number."""
     one = benchmark.problem("slide.stick")
     benchmark.export(tmp_path)
     path = write_states(tmp_path, one, one.exact(one.output_times))
@@ -55,7 +55,7 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
 
 
 def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
-    """They are the sides of a jump; here the first of each two is wrong."""
+    """They are the sides of a jump; here the first row of each pair is wrong."""
     one = benchmark.problem("slide.stick")
     rows = np.repeat(np.column_stack([one.output_times, one.exact(one.output_times)]), 2, axis=0)
     rows[::2, 1:] += 1.0

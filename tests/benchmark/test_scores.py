@@ -113,7 +113,7 @@ BROKEN: dict[str, tuple[Callable[..., Any], set[str]]] = {
     ),
     # the only body that lifts off
     "sticky ground": (sticky, {"leave.slip_then_lift"}),
-    # those that slide for a while; other slip is within collisions
+    # bodies that slide for a while; other slip is within collisions
     "convex friction": (hovering, WITH_SLIP - {"hit.drop_slip_e", "hit.settle", "law.which"}),
 }  # fmt: skip
 
@@ -130,7 +130,7 @@ def rolls_only(one: Any, t: Any, h: Any) -> Any:
 
 
 def test_the_exact_motion_gets_a_perfect_score() -> None:
-    """Twelve digits at least: an error of 2.2e-16 of all inputs grows by the condition number.
+    """At least twelve digits: an error of 2.2e-16 of all inputs grows by the condition number.
 
     Two such units are allowed for the rounding of the motion and of the known answer.
     """
@@ -157,7 +157,7 @@ def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
 
 
 def test_forces_are_scored_where_they_are_provided() -> None:
-    """Over m g = 9.81 N, with friction 0.2; the normal force of one row is missing."""
+    """Forces are divided by m g = 9.81 N; friction is 0.2, and one row has no normal force."""
     one = benchmark.problem("slide.stick")
     right = exact(one, one.output_times)
     normal, friction = right.normal_force + 0.981, right.friction_force - 0.0981
@@ -174,7 +174,7 @@ def test_forces_are_scored_where_they_are_provided() -> None:
 
 
 def test_events_are_inferred_from_the_states() -> None:
-    """Times to within two rows; kinds not blurred by a short contact or a slow onset of slip."""
+    """Times agree within two rows, kinds unless a short contact or a slow slip blurs them."""
     for name in ("hit.bounce_flat", "hit.drop_slip", "hit.drop_stick", "leave.slip_then_lift"):
         one = benchmark.problem(name)
         read = read_off(one, one.output_times, one.exact(one.output_times))

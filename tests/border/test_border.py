@@ -34,7 +34,7 @@ def test_unaligned_arrays_are_copied_on_entry() -> None:
 
 
 def test_failing_to_start_threads_changes_no_bit() -> None:
-    """200 workers give the bits of one thread even if memory ends after some twenty stacks."""
+    """200 workers give the bits of one thread even if memory runs out after some twenty stacks."""
     code = """
         import resource
         import numpy as np
@@ -188,7 +188,7 @@ class Dial:
 
 
 def test_settings_seen_before_are_checked_again() -> None:
-    """So are an equal number of another type and an object that has changed."""
+    """This includes an equal number of another type and an object that has changed."""
     scene, dial = rl.scenes.rolling, Dial(1e-4)
     how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
     assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500

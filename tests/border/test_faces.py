@@ -1,4 +1,4 @@
-"""Printed objects show names for codes, tables with units, and HTML without its own colours."""
+"""Printed objects show names for codes, tables with units, and HTML without colours of its own."""
 
 import copy
 import dataclasses

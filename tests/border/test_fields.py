@@ -1,7 +1,7 @@
 """Each field of the core's tables survives every path through the package.
 
-A contact motion has the same bits in all units that are powers of two. So each field has the
-dimension of its unit.
+A contact motion has the same bits in all units that are powers of two, so that each field must have
+the dimension of its unit.
 """
 
 import dataclasses

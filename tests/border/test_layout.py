@@ -210,7 +210,7 @@ def test_results_are_bit_identical_for_every_memory_layout(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name, call in CALLS.items() if call.rows])
 def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None:
-    """Whatever the layout of the row: layouts take turns."""
+    """The rows have all layouts in turn."""
     call, layouts = CALLS[name], list(LAYOUTS.values())
     many = leaves(call.function(**call.given))
     for k in range(COUNT):
@@ -318,7 +318,7 @@ def takes_arrays(function: Any) -> bool:
 
 
 def test_every_function_that_takes_arrays_is_tested() -> None:
-    """Those whose docstrings say array_like or leave the kind of an argument open."""
+    """They say array_like in their docstrings or leave the type of an argument open."""
     found = {name for name, function in public() if takes_arrays(function)}
     assert len(found) > 50
     assert found <= {name.partition(":")[0] for name in CALLS}

@@ -1,4 +1,4 @@
-"""A process ends or forks while one of its threads works, as if the thread did not exist."""
+"""A process can end or fork while one of its threads works, as if the thread did not exist."""
 
 from pathlib import Path
 
@@ -68,9 +68,9 @@ def test_a_daemon_thread_does_not_block_the_end_of_the_process(call: str, tmp_pa
         assert (done.returncode, done.stderr) == (0, "")
 
 
-# A thread is held in a figure. A child is forked meanwhile and draws the figure of another motion.
-# The alarm ends a child that waits for the thread, which it does not have. Properties are read
-# beside a held thread in test_threads.py.
+# A thread is held while it draws a figure. A child, forked meanwhile, draws the figure of another
+# motion. The alarm ends a child that waits for that thread, which it does not have. test_threads.py
+# reads properties beside a held thread.
 FORK = """
 import os, pickle, signal, sys, threading, types, warnings
 import matplotlib.pyplot as plt

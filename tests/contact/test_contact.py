@@ -40,7 +40,7 @@ def random_motions(
 def test_a_body_dropped_without_spin_comes_to_rest(
     a: float, b: float, e: float, friction: float
 ) -> None:
-    """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
+    """Bounces take v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
     v = 1.7
     scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
     meant = v / GRAVITY * (1 + e) / (1 - e)

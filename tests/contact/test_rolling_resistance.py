@@ -147,7 +147,7 @@ def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -
         at = motion.sol(begin + (nodes + 1) / 2 * (end - begin))
         work += 0.03 * (end - begin) / 2 * float(weights @ (at.normal_force * np.abs(at.omega)))
     lost = motion.energy[0] - motion.energy[-1]
-    # 160 nodes leave less than roundings of a half swing, which are those of m g h
+    # 160 nodes err by less than the roundings of a half swing, which are those of m g h
     assert lost == pytest.approx(work, abs=64 * EPS * motion.energy[0] * len(ends))
 
 
@@ -183,7 +183,7 @@ def test_a_small_lever_changes_the_motion_in_proportion() -> None:
         Scene(0.3, 1.0, theta=1.0, omega=0.5, friction=0.8, rolling_resistance=0.01),
     ],
 )
-def test_a_state_of_the_motion_starts_the_rest_of_it(scene: Scene) -> None:
+def test_a_state_of_a_motion_starts_the_rest_of_that_motion(scene: Scene) -> None:
     whole = simulate(scene, np.linspace(0.0, 6.0, 61))
     turns = whole._solution.turns.tolist()
     for begin in (0.4, 1.3, 2.9, *turns[:3], *(event.t for event in whole.events)):

@@ -161,7 +161,7 @@ def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], 
     """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
 
     The numbers come from reference/impulse_clock.py in 45 digits. A start in doubles has their
-    roundings, two by two; some 60 pieces add one each, of random sign."""
+    roundings; each of some 60 pieces adds one of random sign."""
     end = simulate(Scene(**given), 1.0, raise_on_failure=False).events[0]
     assert end.kind is EventKind.STICK
     assert abs(end.t - t) <= 8 * EPS * t
@@ -221,9 +221,9 @@ def test_a_slide_is_smooth_where_its_pieces_meet() -> None:
 
 @pytest.mark.parametrize("theta", [1e-8, 1e-12, 1e-13, 1e-16, 1e-20, 1e-30, 1e-80])
 def test_a_slide_with_almost_no_contact_response_sticks_at_once(theta: float) -> None:
-    """Infinite friction turns a nearly flat body by 1/B, and B is proportional to theta: within a
-    time like theta it sticks, as after an impulse along the ground, J = 1/(1/m + h^2/I) of the
-    slip.
+    """Infinite friction turns a nearly flat body by 1/B, and B is proportional to theta: it sticks
+    within a time proportional to theta, as after an impulse along the ground, J = 1/(1/m + h^2/I)
+    of the slip.
 
     Until then the body turns by less than 2 theta, which changes no velocity by more than that; the
     rest is rounding. The highest powers of 1/theta in the series would overflow.
@@ -288,8 +288,8 @@ def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
 def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
     k2: float, turned: float
 ) -> None:
-    """The slide goes mu g t^2/2 along, at speed mu g t, until a omega equals x': one part in 1 +
-    k^2/a^2 before friction would end the spin alone. The remaining spin is a difference, exact to
+    """The slide covers mu g t^2/2, at speed mu g t, until a omega equals x': one part in 1 +
+    k^2/a^2 before friction alone would end the spin. The remaining spin is a difference, exact to
     its roundings."""
     spin_end = 2.0  # time at which a omega alone would vanish
     omega = 2 * turned / spin_end

@@ -1,7 +1,7 @@
 """The C++ programs, in a second build of the core without optimisation.
 
-It must agree with the installed extension bit for bit: motions of every model and answers of every
-proof (golden.cpp) are compared with those of the extension, and with the committed ones
+This build must agree with the installed extension bit for bit: motions of every model and answers
+of every proof (golden.cpp) are compared with those of the extension, and with the committed ones
 (golden.txt) if the C library is the same. Another version of the library, or the same one on a
 processor without fused multiply-add, rounds sin, cos, exp and log differently; then the bound of
 oracles/golden.py holds.
@@ -48,7 +48,7 @@ def run(*command: str) -> str:
 
 @pytest.fixture(scope="module")
 def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the programs, whose build takes one core a minute."""
+    """Folder of the programs; one core builds them in a minute."""
     cmake, ninja = found("cmake"), found("ninja")
     compiler = os.environ.get("CXX") or found("c++") or found("g++") or found("clang++")
     for name, program in {"CMake": cmake, "C++ compiler": compiler}.items():
@@ -118,7 +118,7 @@ def compare(mine: list[Record], through_python: list[Record], bound: float) -> N
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_motions_computed_through_python_stay_within_the_bound(name: str) -> None:
-    """Motions stay within the bound: without a compiler the bits of this C library are unknown."""
+    """The bound applies, since without a compiler the bits of this C library are unknown."""
     motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
 

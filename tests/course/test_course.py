@@ -1,7 +1,8 @@
 """Marks of the course for right and wrong answers.
 
-Answers are computed here by closed forms, Newton's law, quadratures, roots and least squares of
-SciPy; wrong ones by the same formulas with the mistake made. `pytest -rP -k marks` shows all marks.
+Right answers are computed here by closed forms, Newton's law, and SciPy's quadratures, roots and
+least squares; wrong answers by the same formulas with a mistake in them. `pytest -rP -k marks`
+shows all marks.
 """
 
 import math
@@ -25,7 +26,7 @@ TASKS = {task.number: task for task in course.tasks()}
 TIP, DEGREE = math.pi / 2, 180 / math.pi
 STATE = ("theta", "x_dot", "z_dot", "omega")
 FILMED = {"10.1": "x_dot", "10.2": "omega", "10.3": "restitution", "10.4": "friction"}
-# : What the film of sheet 10 was made of, and its noise.
+# : The numbers from which the film of sheet 10 was made, and its noise.
 THROWN = {
     "x": 0.0, "z": 0.1, "theta": 0.5, "x_dot": 0.317, "z_dot": 0.243, "omega": 11.63,
     "restitution": 0.55, "friction": 0.18,
@@ -39,7 +40,7 @@ PLAIN |= {"torque": False}  # whether I_C omega_dot is taken for the moment abou
 
 
 class Given(SimpleNamespace):
-    """The data of a task, with a scene's values where it gives none."""
+    """The data of a task, completed by a scene's values."""
 
     def __init__(self, number: str, **changes: Any) -> None:
         known: dict[str, Any] = PLAIN | TASKS[number].data | changes
@@ -217,7 +218,7 @@ def film_fit(gyration2: float = SOLID) -> tuple[dict[str, float], dict[str, floa
 
 @cache
 def answer(number: str, made: tuple[str, ...] = ()) -> float:
-    """The answer with mistakes made; DEGREES are those of an answer, degrees those of the data."""
+    """The answer with mistakes; DEGREES marks an answer in degrees, `degrees` data in degrees."""
     if made and made[0].startswith("task"):
         return answer(made[0][5:])
     task, of, factor = TASKS[number], TRUE[number], 1.0
@@ -252,8 +253,9 @@ def allowed(number: str) -> float:
 @pytest.mark.parametrize("number", TASKS)
 def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
     """A mark names the mistakes that were made, and besides them only those that lead to the same
-    number. Mistakes that change nothing are not named. Tolerances are met to 30 %: rolling discs
-    become ellipses there. They are 0.5 % at most, so numbers of one name may differ by 1 %.
+    number. Mistakes that change nothing are not named. Tolerances hold to within 30 %, since
+    ellipses take the place of rolling discs there. They are at most 0.5 %, so numbers of one name
+    may differ by 1 %.
     """
     right, near, task = answer(number), allowed(number), TASKS[number]
     off = min(1.3 * near, near + 4e-3 * abs(right))
@@ -295,8 +297,8 @@ def test_the_time_to_rest_agrees_to_eight_digits() -> None:
 
 
 def test_the_noise_of_the_film_is_as_stated() -> None:
-    """It is made from known numbers; chi^2 is within three standard deviations of its 31 degrees of
-    freedom, and the numbers within two of theirs."""
+    """The film is made from known numbers: chi^2 is within three standard deviations of its 31
+    degrees of freedom, and each fitted number is within two of its own."""
     t, *tracks = course.FILM.values()
     noise = np.random.default_rng(2).normal(0, NOISE, (3, t.size))
     shown = Given("10.1", **THROWN).frames(t) + noise
@@ -323,7 +325,7 @@ def test_marks_state_which_impacts_were_used(
 def test_tables_of_impacts_without_an_answer_are_rejected(
     kept: str, task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rows of zeros, no row, or a NaN are refused by a sentence; a single row has an answer."""
+    """Rows of zeros, no rows, or a NaN are refused with a sentence; a single row has an answer."""
     rows = np.vstack(course.measured_impacts()).T
     table = {"zero": 0 * rows, "none": rows[:0], "unknown": rows * np.nan, "one": rows[:1]}[kept]
     path, names = tmp_path / f"{kept}.csv", ",".join(course._DATA["impacts"])

@@ -116,7 +116,7 @@ WRITERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_whatever_writes_leaves_the_old_file_if_the_disk_is_full(name: str, tmp_path: Path) -> None:
+def test_every_writer_leaves_the_old_file_if_the_disk_is_full(name: str, tmp_path: Path) -> None:
     suffix, write = WRITERS[name]
     path = tmp_path / f"old.{suffix}"
     path.write_bytes(OLD)
@@ -127,7 +127,7 @@ def test_whatever_writes_leaves_the_old_file_if_the_disk_is_full(name: str, tmp_
 
 
 def test_a_picture_without_a_suffix_gets_the_usual_one(tmp_path: Path) -> None:
-    """As in matplotlib, unless the format is given."""
+    """The suffix is that of matplotlib, unless the format is given."""
     shown = rl.plot_phase(MOTION)
     shown.savefig(tmp_path / "one")
     shown.savefig(tmp_path / "two", format="svg")

@@ -1,4 +1,4 @@
-"""`examples` writes what the package carries: notebooks without outputs, and tables."""
+"""`examples` writes the packaged notebooks, without outputs, and tables."""
 
 import os
 from pathlib import Path
@@ -12,7 +12,7 @@ from rolling_ellipse.__main__ import main
 
 
 def test_examples_equal_those_of_the_sources(tmp_path: Path) -> None:
-    """tests/project/test_notebooks.py runs them."""
+    """tests/project/test_notebooks.py runs the notebooks."""
     assert main(["examples", str(tmp_path / "new")]) == 0
     for source, written in {"notebooks": "*.ipynb", "reference": "reference/*.csv"}.items():
         names = {path.name for path in (tmp_path / "new").glob(written)}
@@ -39,8 +39,8 @@ def test_examples_overwrite_nothing(tmp_path: Path) -> None:
 
 
 def test_examples_follow_no_link(tmp_path: Path) -> None:
-    """A link to an equal file, or as a folder, or a file or a pipe in place of a folder;
-    benchmark/test_result_files.py has other links."""
+    """Links to an equal file or to a folder, and a file or a pipe in place of a folder, are
+    refused; benchmark/test_result_files.py has other links."""
     away, empty = tmp_path / "away", tmp_path / "empty"
     rl.examples(away)
     empty.mkdir()

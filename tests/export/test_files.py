@@ -161,7 +161,7 @@ def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) 
 def test_a_file_of_another_schema_is_refused_as_such(
     schema: int, cure: str, contents: Contents, path: Path
 ) -> None:
-    """Whatever names it has besides."""
+    """This holds whatever other names it has."""
     about, arrays = taken_apart(contents["rolling"])
     del about["reason"]
     other = put_together(about | {"schema": schema, "colour": 1}, arrays | {"psi": arrays["x"]})

@@ -1,7 +1,7 @@
 """Files written before bodies had rolling resistance stay readable.
 
-They are of schema 4 and its contemporaries: a folder, a race, answers to a problem, and pickles.
-The tests of the player read the link.
+They have schema 4 or one of its time: a folder, a race, answers to a problem, and pickles. The
+tests of the player read an old link.
 """
 
 import json
@@ -54,8 +54,8 @@ def test_old_pickles_are_read_as_scenes_without_rolling_resistance() -> None:
     assert motion.sol(0.3).theta == rl.simulate(rl.scenes.report, [0.3]).theta
 
 
-def test_old_answers_are_scored_and_an_old_problem_is_told_as_it_was() -> None:
-    """The answers are this package's, so that they are right to a few roundings."""
+def test_old_answers_are_scored_and_an_old_problem_is_described_as_it_was() -> None:
+    """The answers come from this package, so that they are right to a few roundings."""
     told, folder = "hit.drop_slip_e", OLD / "answers"
     (score,) = (each for each in rl.benchmark.score(folder) if each.answer != "not supported")
     assert score.problem == told and score.passed and score.over_condition < 1e-15

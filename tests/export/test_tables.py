@@ -1,4 +1,4 @@
-"""Tables of a trajectory have its numbers, in the stated units, in files and back."""
+"""Tables of a trajectory hold its numbers in the stated units, and survive files."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -63,7 +63,7 @@ def test_no_array_of_a_trajectory_is_missing_from_the_tables(motion: rl.Trajecto
 
 
 def test_the_stated_units_match_the_values() -> None:
-    """Each quantity of a scene scaled in length, time and mass grows as its unit does."""
+    """If a scene is scaled in length, time and mass, each quantity grows as its unit does."""
     factors = (2, 1, 3)  # powers of two: the scaled motion has the same digits
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = scene_in_other_units(small, factors)

@@ -1,4 +1,4 @@
-"""Films of a camera whose scale, ground and clock are unknown: x = s x, z = g + s z, t = t + c."""
+"""Films by a camera whose scale, ground and clock are unknown: x = s x, z = g + s z, t = t + c."""
 
 import math
 import pickle
@@ -41,7 +41,7 @@ def test_fits_of_twenty_films_by_unknown_cameras_have_honest_errors() -> None:
 
 @pytest.mark.parametrize("start", [17.0, -5.0, 1.7e9])
 def test_a_clock_may_have_any_origin(start: float) -> None:
-    """A time of 1.7e9 s is known to 2e-7 s."""
+    """A double near 1.7e9 s resolves 2e-7 s."""
     film = filmed(EXAMPLE, late=0.02)
     here, there = (
         fit_motion(**film | {"t": t}, scene=GUESS, free=("theta", "omega", "clock"), sigma=SIGMA)
@@ -99,7 +99,7 @@ def test_a_wrong_scene_is_not_explained_by_its_camera() -> None:
         assert "the scene does not fit the film" in fit.message
 
 
-def test_of_two_starts_at_one_height_the_guess_decides() -> None:
+def test_the_guess_decides_between_two_starts_at_one_height() -> None:
     """A body passes its height upwards and downwards, and the film begins after both."""
     scene = FLY.replace(z=0.3, z_dot=0.5)
     film = filmed(scene, late=0.12)
@@ -130,7 +130,7 @@ def test_camera_and_scene_are_shown_together() -> None:
 
 
 def test_rolling_resistance_follows_from_the_decay_of_the_swings() -> None:
-    """The guess has none, and so has the second film; errors stay below 0.01 mm."""
+    """The guess has no resistance, nor does the second film; errors stay below 0.01 mm."""
     for lever in (8e-4, 0.0):
         body: dict[str, Any] = {"theta": 0.9, "omega": 0.0, "friction": 0.6}
         scene = Scene(0.035, 0.025, **body | {"rolling_resistance": lever})

@@ -23,7 +23,7 @@ def fitted(tracks: dict[str, Any], **how: Any) -> Fit:
 
 @pytest.mark.parametrize("seed", [6, 7, 14, 23])
 def test_the_fit_is_no_worse_than_one_started_at_the_true_values(seed: int) -> None:
-    """These seeds once led to other minima, 9 to 30 higher."""
+    """These seeds once led to other minima, whose chi2 was 9 to 30 higher."""
     row = judge_films.example(seed)
     assert row["over"] < 0.1 and "cannot tell" not in row["message"]
 
@@ -35,7 +35,7 @@ def test_quarter_turn_outliers_do_not_lead_to_another_minimum(seed: int) -> None
 
 
 def test_sigma_is_estimated_for_each_track() -> None:
-    """The deviation of n numbers is known to 1/sqrt(2n), bounded at five of these."""
+    """The deviation of n numbers is known to 1/sqrt(2n); the bound is five times that."""
     true = {"x": 2e-4, "z": 1e-3, "theta": 0.02}
     fit = fitted(film(1, sigma=true), sigma=None)
     off = fit.sigma / list(true.values()) - 1
@@ -106,7 +106,7 @@ def test_wrong_films_are_rejected_and_their_misreading_is_named(kind: str, sigma
 
 
 def test_no_misreading_explains_the_film_of_a_body_in_thick_air() -> None:
-    """Its residuals are correlated: errors grow by more than the root of 3, that of c = 1/2."""
+    """Residuals are correlated: errors grow by more than the root of 3, the factor for c = 1/2."""
     tracks = film(11)
     fit = fitted(tracks | WRONG["in air"][0](tracks, None), sigma=None)
     assert "does not fit" in fit.message and "it fits" not in fit.message

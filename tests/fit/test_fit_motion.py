@@ -1,4 +1,4 @@
-"""Films made with known parameters and noise give these parameters back, with honest errors."""
+"""Fits to films made with known parameters and noise recover them, with honest errors."""
 
 import math
 import sys
@@ -176,7 +176,7 @@ def test_angles_alone_determine_a_rolling_motion(start: float) -> None:
 
 
 def test_rates_from_sampled_arrays_converge_at_fourth_order(tmp_path: Any) -> None:
-    """Rates of fourth order: halved steps leave 1/16 of their error, within a quarter."""
+    """Halving the steps leaves 1/16 of the error of the rates, to within a quarter."""
     errors = []
     for count in (101, 201):
         motion = simulate(ROLL, np.linspace(0, 0.5, count))
@@ -201,7 +201,7 @@ def test_rates_from_sampled_arrays_converge_at_fourth_order(tmp_path: Any) -> No
 
 
 def test_many_samples_from_arrays_do_not_depend_on_each_other() -> None:
-    """They are computed in pieces of some thousands."""
+    """Samples are computed in pieces of some thousands."""
     t = np.linspace(0.0, 1.0, 10_000)
     mine = Trajectory.from_arrays(t, np.sin(t), 1 + t * t, np.cos(t), scene=ROLL)
     assert np.abs(mine.x_dot - np.cos(t)).max() < 1e-6
@@ -216,9 +216,9 @@ def test_many_samples_from_arrays_do_not_depend_on_each_other() -> None:
 def test_a_rival_widens_errors_by_its_distance_over_the_root_of_its_rise_of_chi2(
     rise: float, away: float, error: float
 ) -> None:
-    """Where chi2 rises by more than 9, a rival beyond 30 sizes is let go; beyond 25, any is.
+    """Where chi2 rises by more than 9, a rival beyond 30 sizes is dropped; above 25, any rival is.
 
-    No film has a rival at a chosen place: the search is a parabola of chi2 with the error 0.1.
+    No film has a rival in a chosen position: the search is a parabola of chi2 with the error 0.1.
     """
     best = SimpleNamespace(x=np.zeros(1), cost=50.0, jac=np.array([[10.0]]))
 

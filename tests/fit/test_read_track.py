@@ -52,7 +52,7 @@ def test_a_data_frame_a_mapping_and_a_file_are_the_same(tmp_path: Path) -> None:
         assert np.allclose([t, x], [ROWS["t"], ROWS["x"]], atol=1e-6) and np.isnan(theta).all()
 
 
-def test_units_and_directions_are_those_that_are_named() -> None:
+def test_units_and_directions_are_the_stated_ones() -> None:
     """Rows or their numbers count frames; pixels count down; angles are degrees or radians."""
     table = {"n": [3, 4, 6], "x": [0, 1, 2], "y": [5, 4, 3], "deg": [10.0, 20.0, 40.0]}
     t, x, z, theta = read_track(
@@ -68,7 +68,7 @@ def test_units_and_directions_are_those_that_are_named() -> None:
 
 @pytest.mark.parametrize(("period", "rate"), [(math.pi, 30.0), (2 * math.pi, 40.0)])
 def test_angles_continue_through_the_ends_of_their_range(period: float, rate: float) -> None:
-    """Fitted ellipses have angles of half a turn, points those of a turn, with gaps."""
+    """Angles of fitted ellipses cover half a turn, angles of points a whole turn, with gaps."""
     true = rate * T - 1.0
     wrapped = np.mod(true, period)
     wrapped[2] = math.nan
@@ -110,7 +110,7 @@ def test_a_table_like_those_of_tracker_becomes_parameters() -> None:
 
 
 def test_two_tracked_points_become_parameters() -> None:
-    """Pixels of 0.4 mm, guessed as 1 mm; the ground is 500 of them below the corner."""
+    """Pixels are 0.4 mm, guessed as 1 mm; the ground is 500 pixels below the corner."""
     points = ("x1", "y1", "x2", "y2")
     track = read_track(
         DATA / "track_points.csv", t="frame", fps=60, points=points, y_up=False, scale=1e-3
@@ -124,7 +124,7 @@ def test_two_tracked_points_become_parameters() -> None:
     assert np.isnan(fit.residuals[30:32]).all() and simulate(fit.scene, 0.1).mode.size
 
 
-def test_the_tracks_are_those_of_their_maker() -> None:
+def test_the_tracks_equal_those_written_by_their_script() -> None:
     maker = runpy.run_path(str(ROOT / "docs" / "makers" / "tracks.py"))
     for name, make in (("track_tracker.txt", "tracker"), ("track_points.csv", "points")):
         assert (DATA / name).read_text(encoding="utf-8") == maker[make]()

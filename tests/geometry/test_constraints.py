@@ -64,7 +64,7 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def random_states(shape: Shape, count: int) -> np.ndarray:
-    """Random (q, q_dot) of the size of the body, which violate all constraints."""
+    """Random (q, q_dot) of the order of the body's size, which violate all constraints."""
     generator = np.random.default_rng(20)
     size = max(shape)
     spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])

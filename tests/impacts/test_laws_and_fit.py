@@ -1,5 +1,5 @@
-"""Single impacts by three laws agree with small steps along the impulse path; a fit finds one pair
-of coefficients from a series of impacts."""
+"""Single impacts by three laws agree with small steps along the impulse path; a fit recovers the
+coefficients of a series of impacts."""
 
 import math
 from typing import Any
@@ -240,7 +240,7 @@ def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
 @pytest.mark.parametrize("minimise", ["median", "rms"])
 @pytest.mark.parametrize("law", LAWS)
 def test_the_fit_recovers_the_coefficients_from_exact_data(law: Any, minimise: Any) -> None:
-    """The fit is exact to its last step, 1/10240 of the range of either coefficient."""
+    """The fit is exact to its smallest step, 1/10240 of the range of either coefficient."""
     fitted = impacts.fit(*series(law, 0.0, 60), **BODY, law=law, minimise=minimise)
     assert fitted.restitution == pytest.approx(E, abs=1 / 10240)
     assert math.atan(fitted.friction) == pytest.approx(math.atan(MU), abs=math.pi / 2 / 10240)

@@ -171,9 +171,9 @@ def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_stages_are_solved_even_next_to_an_equilibrium(name: str, angle: float) -> None:
-    """theta'' nearly vanishes at such angles, and so does every other change of the iteration for
-    the stages: that must not end it. A start moved by d moves the end by a few d, and by
-    rounding."""
+    """theta'' nearly vanishes at such angles, and so does every other change in the iteration for
+    the stages, which must not end because of that. A start moved by d moves the end by a few d, and
+    by rounding."""
     scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
     reference = stepped(scene, [0.03], name, 0.03)
     for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
@@ -327,8 +327,8 @@ def test_the_last_step_ends_exactly_at_the_end_time(
 
 @each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
-    """Samples keep their bits among others: more than a thousand, every third one, and beyond any
-    chunk."""
+    """Samples keep their bits among any others: more than a thousand, every third one, and beyond
+    any chunk."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)

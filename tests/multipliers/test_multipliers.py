@@ -2,7 +2,7 @@
 
 The reference differentiates f1 ... f4 of oracles/constraints.py numerically in mpmath. The solution
 of the linear system is substituted into the system, with a matrix in long double and its rate by
-complex steps. The reference of motions is exact rolling.
+complex steps. The reference for motions is exact rolling.
 """
 
 import math
@@ -96,8 +96,8 @@ def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
 
 @each_shape
 def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
-    """Entries at any state, rolling or not, to 16 ulp of themselves or their terms (products of
-    some ten factors, each with an ulp at most, and sums of few)."""
+    """Entries at any state, rolling or not, agree to 16 ulp of themselves or their terms (products
+    of some ten factors, each with an ulp at most, and sums of few)."""
     a, b = map(mp.mpf, shape)
     q, q_dot = states(shape)
     rows, drift = _core.constraint_system(q, q_dot, *shape)

@@ -24,9 +24,9 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_residuals_and_errors_rank_the_stabilizations() -> None:
-    """Errors of theta from 10 half turns on: largest by drift, smaller with feedback, small with
-    projection, least with the energy too. Residuals: feedback bounds them, projection leaves
-    rounding."""
+    """From 10 half turns on, errors of theta are largest by drift, smaller with feedback, small
+    with projection, and least with the energy too. Feedback bounds the residuals; projection leaves
+    only rounding."""
     exact = simulate(FED_BACK, kept("none").t)
     errors = {name: np.abs(kept(name).theta - exact.theta) for name in KEPT}
     gaps = {name: np.abs(kept(name).constraint_residuals().gap) for name in KEPT}

@@ -38,9 +38,9 @@ def response(scene: Scene, state: InitialState) -> Response:
 
 
 def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
-    """Reaction by Stronge's law. Slip v and gap rate u are linear in the normal impulse p between a
-    stop, a stick and a reversal. The impact ends when restitution has done e^2 of compression's
-    work."""
+    """Reaction according to Stronge's law. Slip v and gap rate u are linear in the normal impulse p
+    between a stop, a stick and a reversal. The impact ends when restitution has done e^2 of
+    compression's work."""
     slip, gap_rate, tangential, normal, coupling = contact
     along = across = work = 0.0
     owed = math.inf  # work of restitution, known when compression ends
@@ -76,7 +76,7 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
 
 
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
-    """Change of x in a slide up to an angle, with F = friction N (signed): the integral of N/m
+    """Change of x in a slide up to an angle, with F = friction N (signed). The integral of N/m
     follows from z'' = N/m - g cos(slope) and z = h."""
     h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
     into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))

@@ -56,7 +56,8 @@ def gyration2_of(a: Floats, b: Floats, mass: Floats, inertia: Floats) -> Long:
 
 def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
     """Columns a, b, mass, gravity, inertia: a/b over six decades, half of ordinary shape, a tenth
-    nearly circular; half of the inertias are discs', the others nearly a point's to a hoop's."""
+    nearly circular; half of the inertias are those of discs, the others from nearly a point's to a
+    hoop's."""
     thin, ordinary = rng.uniform(-2.999, 2.999, count), rng.uniform(-1.1, 1.1, count)
     ratio = 10 ** np.where(rng.random(count) < 0.5, thin, ordinary)
     circular = 1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-8, -1, count)
@@ -105,7 +106,7 @@ def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Flo
 
 
 def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
-    """Unlimited or no friction, values from ice to rubber, and values near the needed (1e-9)."""
+    """Unlimited or no friction, values from ice to rubber, and near the needed one (1e-9)."""
     count = needed.size
     near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-9, -1, count))
     anything = 10 ** rng.uniform(np.log10(0.05), np.log10(2.0), count)

@@ -56,7 +56,7 @@ def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
 
 
 def rate(body: dict[str, float]) -> float:
-    """Rate of falling over, sqrt(g/long) [1/s]."""
+    """Rate at which a body falls over, sqrt(g/long) [1/s]."""
     return math.sqrt(body["gravity"] / max(body["a"], body["b"]))
 
 
@@ -134,5 +134,5 @@ def scenes(**given: Any) -> st.SearchStrategy[Scene]:
 
 
 def clock(scene: Scene) -> float:
-    """Time of falling over [s]."""
+    """Time in which a body falls over [s]."""
     return math.sqrt(max(scene.a, scene.b) / scene.gravity)

@@ -94,8 +94,8 @@ def _energy(scene: Scene, seen: Trajectory) -> float:
 
 
 def _solved(scene: Scene, theta: Floats, omega: Floats, steps: Floats) -> Floats:
-    """Angles at the ends of all steps, by exact rolling from the start of each. A step that no
-    rolling body takes keeps its angle and is not judged."""
+    """Angles at the ends of all steps, by exact rolling from the start of each. A step impossible
+    for a rolling body keeps its angle and is not judged."""
     ends = theta[1:].copy()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)

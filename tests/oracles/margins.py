@@ -1,4 +1,4 @@
-"""Printed figures of a test beside its bounds."""
+"""Figures that a test prints beside its bounds."""
 
 
 def told(*values: object) -> None:

@@ -1,4 +1,4 @@
-"""Methods to pickle and copy, objects for them, and the comparison of the results."""
+"""Ways to pickle and copy objects, objects to try them on, and the comparison of the results."""
 
 import copy
 import dataclasses

@@ -17,7 +17,7 @@ def product(p: Columns, q: Columns, k: int) -> Columns:
 
 
 def quotient(p: Columns, q: Columns, found: Columns, k: int) -> Columns:
-    """The coefficient k of p/q, of which those before are known."""
+    """The coefficient k of p/q, given all earlier ones."""
     return (p - np.sum(q[1 : k + 1] * found[:k][::-1], axis=0)) / q[0]
 
 

@@ -1,5 +1,5 @@
-"""Motions with each stabilization, and a period by quadrature. notebooks/stability_laws.py has the
-other measurements of methods."""
+"""Motions with each stabilization, and a period by quadrature. notebooks/stability_laws.py has
+other measurements of the methods."""
 
 from functools import cache
 from typing import Any

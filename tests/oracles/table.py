@@ -35,7 +35,7 @@ def differences(values: Iterable[Any], exact: Iterable[Any]) -> NDArray[np.float
 
 
 def scene_of(row: dict[str, str]) -> Scene:
-    """The scene of a line, by the columns before its time or event; what is not given is empty."""
+    """The scene of a line, from the columns before its time or event; absent values are empty."""
     inputs = takewhile(lambda column: column[0] not in ("t", "event"), row.items())
     texts = {name.removesuffix("0"): text for name, text in inputs if text}
     names = {field.name for field in fields(Scene)} & texts.keys()

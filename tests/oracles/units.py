@@ -29,7 +29,7 @@ def scaled(value: Any, unit: str, units: Powers) -> Any:
 
 
 def in_other_units(of: Any, kind: str, units: Powers) -> dict[str, Any]:
-    """Numbers of a scene or an impulse that are given."""
+    """The numbers given for a scene or an impulse, in other units."""
     given = {name: (getattr(of, name), unit) for name, unit in UNITS[kind].items()}
     return {n: scaled(value, u, units) for n, (value, u) in given.items() if value is not None}
 

@@ -84,7 +84,7 @@ def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
 
 
 def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
-    """A start near the tip, 1e-15 off equilibrium, would fall in 21 growth times of 0.6 s."""
+    """A start near the tip, 1e-15 off equilibrium, takes 21 growth times of 0.6 s to fall."""
     slope = 1e-3
     incline = math.tan(slope)
     tangent = (3 + math.sqrt(9 - 16 * incline**2)) / (8 * incline)
@@ -94,7 +94,7 @@ def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
     assert outcome(unmoved) in (Outcome.EDGE, Outcome.ROLLS_OVER)
 
 
-def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
+def test_impulses_broadcast_and_replace_the_one_of_the_scene() -> None:
     F, d = np.array([[20.0], [48.0], [70.0]]), np.array([-1.5, 0.3, 1.2, 1.5])
     for scene in (REPORT, replace(REPORT, slope=0.05, friction=2.0)):
         found = outcome(scene, Impulse.press(F, d))
@@ -128,8 +128,8 @@ def test_to_lie_still_a_body_needs_friction_equal_to_the_tangent_of_the_slope(
 
 def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
     """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
-    (1e-12 of the forces). Below it the certificate finds the end of rolling, with a little more it
-    proves rolling: its squared polynomials leave some 1e-6 between these undecided."""
+    (1e-12 of the forces). With less friction the certificate states where rolling ends, with a
+    little more it proves rolling: its squared polynomials leave some 1e-6 in between undecided."""
     by_the_blow = by_the_motion = never = 0
     for scene in random_scenes(400, 11, struck=0.8, slope=0.0):
         found = required_friction(scene)
@@ -159,7 +159,7 @@ def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
 
 @pytest.mark.parametrize("to", ["roll", "rest"])
 def test_required_friction_of_arrays_equals_that_of_scenes_bit_for_bit(to: Any) -> None:
-    """Bodies that roll, slide or fly, struck or not, on slopes or not; any layout and workers."""
+    """Bodies roll, slide or fly, struck or not, on slopes or not; in any layout, by any workers."""
     rng = np.random.default_rng(4)
     for start in ({}, {"x_dot": rng.normal(size=7)}, {"z": 4.0}, {"impulse": 1}):
         given: dict[str, Any] = {

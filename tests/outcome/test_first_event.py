@@ -121,8 +121,8 @@ class Walked(NamedTuple):
 
 @pytest.fixture(scope="module")
 def walked() -> list[Walked]:
-    """The answers of 800 scenes, a fifth of them too near to a threshold to tell, in chunks: 100
-    scenes x 4001 angles of long double are 6.4 MB per intermediate array."""
+    """The answers of 800 scenes, a fifth of them undecided near a threshold, in chunks: 100 scenes
+    x 4001 angles of long double are 6.4 MB per intermediate array."""
     chunks = []
     for seed in range(8):
         sample, _ = random_sample(CHUNK, seed)

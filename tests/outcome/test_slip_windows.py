@@ -1,4 +1,4 @@
-"""`slip_windows` are the speeds at which rolling needs more than the friction: all of them and no
+"""`slip_windows` are all the speeds at which rolling needs more than the given friction, and no
 others.
 
 The oracle samples |F|/N over the angles in long doubles; the package takes ends of windows from a
@@ -124,7 +124,7 @@ def test_a_body_between_its_slip_windows_rolls_forever() -> None:
 
 
 def test_windows_are_right_at_the_limits_of_friction() -> None:
-    """Without friction any moving body slips, a circle, too; a circle needs none if it has some."""
+    """Without friction any moving body slips, even a circle; any friction suffices for a circle."""
     for a, b in ((2.0, 1.0), (1.0, 2.0), (1.3, 1.3)):
         found = thresholds(a, b, friction=0.0)
         assert found.slip_windows == ((0.0, math.inf),)

@@ -32,7 +32,7 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    """Rolling, and two simulations of it in coordinates, whose steps lose the constraints."""
+    """Rolling, and two simulations in coordinates whose steps lose the constraints."""
     how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.StabilityWarning)

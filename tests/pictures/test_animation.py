@@ -180,7 +180,7 @@ def test_a_panel_below_side_by_side_strips_follows_the_motion(
 
 @pytest.mark.parametrize("scene", [rl.scenes.slope, rl.scenes.drop])
 def test_written_frames_equal_those_of_matplotlib(scene: rl.Scene, tmp_path: Path) -> None:
-    """Still parts are drawn once and moving parts over them, with the same pixels."""
+    """Still parts are drawn once and moving parts over them; the pixels are the same."""
     film = rl.animate(rl.simulate(scene, 20.0), forces=True, width=320, fps=10)
     for i, pixels in zip((3, 9), film._pixels((3, 9)), strict=True):
         film.frame(float(film.t[i]) + 1e-3, tmp_path / "frame.png")
@@ -367,7 +367,7 @@ LONG = {
 
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_film_shows_unaltered_excerpts_of_the_motion(name: str) -> None:
-    """Beginning, middle, end, and events, at the time on the clock; never rolling backwards."""
+    """Start, middle, end and events are shown at the time on the clock, never rolling backwards."""
     motion, places = LONG[name]
     film = rl.animate(motion, width=64)
     strip, last, span = only(film), motion.t_end, 12 * film.speed  # of five parts of a minute

@@ -1,4 +1,4 @@
-"""A picture or film that fails leaves no file behind; names of films and their writers."""
+"""A picture or film that fails leaves no file behind; films have any valid name and writer."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Pictures show the motion itself whatever its samples, and state what they leave out."""
+"""Pictures show the motion itself, whatever its samples, and state what they leave out."""
 
 import dataclasses
 from collections.abc import Callable

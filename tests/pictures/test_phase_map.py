@@ -72,7 +72,7 @@ def energy_of(found: rl.Thresholds, speed: float) -> float:
 @pairs
 @pytest.mark.parametrize("swapped", [False, True], ids=["long axis a", "long axis b"])
 def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: bool) -> None:
-    """Cells agree with `classify` of single discs, also with swapped axes from a quarter turn."""
+    """Cells agree with `classify` of single discs, also if the axes are swapped."""
     shown = phase_map(x, y, b=0.7, gravity=3.7)
     columns, rows = (middles_of(n, e) for n, e in zip((x, y), edges_of(shown), strict=True))
     codes = codes_of(shown)

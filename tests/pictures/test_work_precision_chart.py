@@ -197,7 +197,7 @@ def test_each_small_multiple_shows_one_library_on_the_same_axes() -> None:
     for name, line in chart.lines.items():
         title = line.axes.get_title(loc="left")
         assert title == ("rolling_ellipse" if name in OWN else name.split()[0])
-        assert len(line.axes.lines) >= len(FOUND.names)  # the others are there, in grey
+        assert len(line.axes.lines) >= len(FOUND.names)  # other libraries are drawn in grey
     plt.close(chart.ax.figure)
 
 

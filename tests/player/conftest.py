@@ -26,7 +26,7 @@ def chromium() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def blank(chromium: Any) -> Callable[..., Any]:
-    """A page without a network for some options: the same for all tests, as to open one is slow."""
+    """A page without a network for some options; tests share it, since opening one is slow."""
     pages: dict[str, Any] = {}
 
     def page_for(**options: Any) -> Any:
@@ -76,7 +76,7 @@ def opened(blank: Callable[..., Any], tmp_path: Path) -> Iterator[Callable[..., 
 
     yield show
     for page, listeners in used:
-        page.goto("about:blank")  # where nothing plays
+        page.goto("about:blank")  # nothing plays there
         for event, listener in listeners.items():
             page.remove_listener(event, listener)
     assert complaints == []

@@ -204,7 +204,7 @@ def test_keys_work_only_where_the_player_has_the_focus(opened: Opened) -> None:
     page.keyboard.press("Space")
     assert not told(page, "player => player.playing")
     page.keyboard.press("d")
-    assert page.title() == "An ellipse in motion"  # a surrounding notebook would react, too
+    assert page.title() == "An ellipse in motion"  # a key must not reach a notebook around it
     assert page.locator("[data-lm-suppress-shortcuts]").count() == 1
     page.keyboard.press("Home")
     assert told(page, "p => p.canvas.getAttribute('aria-label')") == (
@@ -298,7 +298,7 @@ def drag(page: Page, by: tuple[float, float], steps: int) -> None:
 
 @pytest.mark.parametrize("name", ["report", "slope", "drop", "jump"])
 def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -> None:
-    """Places, turns and forces are drawn within a pixel; a plot has 540 by 168 pixels."""
+    """Positions, turns and forces are drawn within a pixel; a plot has 540 by 168 pixels."""
     scene = SCENES[name]
     explorer = rl.explore(scene)
     page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")

@@ -1,4 +1,4 @@
-"""A page's blows hit the body, its texts are complete tables, and it is a single file."""
+"""An explorer's blows hit the body, its texts are complete, and its page is a single file."""
 
 import json
 import math
@@ -64,7 +64,7 @@ def test_each_language_has_a_complete_table_of_texts() -> None:
             for each in ("en", "de")
         )
         assert list(english) == list(german)
-        for key, text in english.items():  # both say the same numbers
+        for key, text in english.items():  # both state the same numbers
             assert sorted(BRACES.findall(text)) == sorted(BRACES.findall(german[key])), key
 
 

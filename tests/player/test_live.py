@@ -1,4 +1,4 @@
-"""The WebAssembly core against the extension, in node and in a browser, and pages that use it."""
+"""The WebAssembly core equals the extension, in node and in a browser; pages that use the core."""
 
 import gzip
 import json
@@ -105,7 +105,7 @@ def test_the_wasm_file_is_small_and_matches_its_script(tmp_path: Path) -> None:
 
 
 def repeated(page: Any) -> float:
-    """Worst error of the page's motion at its end beside that of its code, over its sizes."""
+    """Largest relative difference at the end between the page's motion and that of its code."""
     ends = f"Object.entries({PLAYER}.columns).map(([name, values]) => [name, values.at(-1)])"
     made: dict[str, Any] = {}
     exec(page.evaluate(f"{PLAYER}.code()"), made)
@@ -205,7 +205,7 @@ LINKED = {
 def test_a_link_of_a_scene_opens_its_motion_and_the_link_of_the_page_its_scene(
     opened: Opened,
 ) -> None:
-    """Heights, inertias and slips of the page are rounded, in a motion before many impacts."""
+    """The page rounds heights, inertias and slips, so only times before many impacts agree."""
     write = runpy.run_path(str(ROOT / "docs" / "makers" / "live.py"))["page"]
     page = opened(write(rl.explore(rl.scenes.report)), reduced_motion="reduce")
     times = [0.0, 0.5, 1.0]

@@ -1,4 +1,4 @@
-"""The player's data, unpacked: as close to the motion as their tolerance promises."""
+"""The player's data, once unpacked, are as close to the motion as their tolerance promises."""
 
 import base64
 import json

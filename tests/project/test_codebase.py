@@ -149,8 +149,8 @@ def test_the_conda_recipe_requires_what_the_package_requires() -> None:
     assert there == ["python", *needed]
 
 
-def test_every_list_of_pythons_is_that_of_the_classifiers() -> None:
-    """CPython works without the GIL since 3.13; wheels of 3.13t are left out by name."""
+def test_every_list_of_python_versions_matches_the_classifiers() -> None:
+    """CPython can run without the GIL since 3.13; wheels for 3.13t are left out by name."""
     workflow = ROOT / ".github" / "workflows" / "test.yml"
     if not workflow.exists():
         pytest.skip("no checkout: the source distribution has no workflows")
@@ -202,7 +202,7 @@ def test_quick_tests_come_from_every_folder() -> None:
     assert {name.partition("/")[0] for name in QUICK} == folders
 
 
-def test_wheels_are_tested_with_existing_tests_of_the_suite() -> None:
+def test_wheels_are_tested_with_existing_tests() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     words = settings["tool"]["cibuildwheel"]["test-command"].split()
     names = [word.partition("}/")[2] for word in words if word.startswith("{project}/")]
@@ -345,7 +345,7 @@ def test_the_compiler_fuses_only_what_is_written_as_fused(
 
 
 def test_the_compiler_fuses_nothing_in_vectorized_sources(fused: Callable[..., list[str]]) -> None:
-    """A compiler would fuse packed numbers; what is fused without vectors is fused in the
+    """A compiler would fuse packed numbers; operations fused without vectors are fused in the
     source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"

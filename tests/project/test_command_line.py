@@ -169,7 +169,7 @@ def test_a_body_with_rolling_resistance_comes_to_rest(command: Any) -> None:
 
 
 def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) -> None:
-    """A lighter body gets the same blow; a speed replaces the blow, and so does another blow."""
+    """A lighter body gets the same blow; a speed or another blow replaces it."""
     lighter = rl.scenes.report.replace(mass=8.0)
     found = strict_json(command("--mass", "8", "--json").out)
     assert found["scene"]["impulse"] == {"jx": 0.0, "jz": -48.0, "dx": 1.5, "dz": 0.0}
@@ -190,7 +190,7 @@ def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) ->
 def test_a_scene_is_read_from_a_file_a_link_or_standard_input(
     command: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Other options change it as they change the report's scene."""
+    """Other options change this scene as they change the report's."""
     scene = rl.scenes.drop.replace(x=3.0, impulse=rl.Impulse(jx=0.5, jz=-0.5, dx=0.1))
     (tmp_path / "scene.json").write_text(scene.to_json())
     x = rl.simulate(scene, 1.0).x

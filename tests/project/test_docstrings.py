@@ -1,4 +1,4 @@
-"""The help of public names: short before the arguments, and with an example that runs."""
+"""The help of public names is short before the arguments, and has an example that runs."""
 
 import doctest
 import enum
@@ -48,7 +48,7 @@ NAMES[rl] = "rolling_ellipse"
 
 
 def test_all_public_names_are_found_and_their_help_soon_says_how_to_call_them() -> None:
-    """A first line of one sentence, and at most eight more before the first heading."""
+    """The first line is a sentence, and at most eight lines precede the first heading."""
     assert len(NAMES) == 151, sorted(NAMES.values())
     for of, name in NAMES.items():
         first, *others = HEADING.split(inspect.getdoc(of) or "")[0].strip().splitlines()
@@ -65,7 +65,7 @@ def test_the_help_of_the_package_places_every_function_at_a_task() -> None:
 def test_an_example_runs_as_it_is_printed(
     of: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each in an empty folder, with only `rl` and `np` known."""
+    """Each example runs in an empty folder, with only `rl` and `np` known."""
     text = inspect.getdoc(of) or ""
     heading, section = text.partition("\nExamples\n--------\n")[1:]
     examples = doctest.DocTestParser().get_examples(text)

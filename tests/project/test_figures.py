@@ -30,7 +30,7 @@ MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTAL
 
 @pytest.fixture(scope="module")
 def make() -> dict[str, Any]:
-    pytest.importorskip("nbclient")  # no wheel of what it needs for Pythons without the GIL
+    pytest.importorskip("nbclient")  # its dependencies have no wheel without the GIL
     return runpy.run_path(str(MAKERS / "make.py"))
 
 

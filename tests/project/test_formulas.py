@@ -1,7 +1,7 @@
 """The numbered formulas are defined and verified in the physics notebook, and cited by the core.
 
 A comment of the core that says ``physics (12)`` means the formula under the heading ``### (12)`` of
-notebooks/02_physics.ipynb; ``physics (23, 24)`` means two of them.
+notebooks/02_physics.ipynb; ``physics (23, 24)`` means two formulas.
 """
 
 import re

@@ -1,8 +1,8 @@
-"""The lists "To add ..." of docs/architecture.md name every file that a new thing of a kind needs.
+"""The lists "To add ..." of docs/architecture.md name every file that an addition of a kind needs.
 
-Existing things of that kind show which: the files in the sources that name all of them must be
-those on the page. A list fails, too, if one of its files moves. PLACES finds the code that depends
-on a law or a processor; these lists may name functions instead of files.
+Existing things of that kind show which files: the sources that name all of them must be those on
+the page. A list fails, too, if one of its files moves. PLACES finds the code that depends on a law
+or a processor; these lists may name functions instead of files.
 """
 
 import ast
@@ -89,8 +89,8 @@ KINDS = {
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
 
-# Patterns of code that depends on a thing. Each file with the pattern is on the list of the thing,
-# or contains a name of that list.
+# Patterns of code that depends on a kind of thing. Each file with the pattern is on the list of
+# that kind, or contains a name of the list.
 PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
@@ -174,6 +174,6 @@ def test_every_name_on_the_page_occurs_in_the_sources() -> None:
 
 
 def test_every_list_is_tested() -> None:
-    """Except lists of things that do not exist yet, and of files that share no word."""
+    """The exceptions are lists of things that do not exist yet, and of files that share no word."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
     assert listed == {*KINDS, *PLACES, *UNTESTED}

@@ -46,7 +46,7 @@ def test_a_notebook_ends_in_an_assertion(path: Path) -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_without_an_error(path: Path, tmp_path: Path) -> None:
-    """In a folder with the files that come with the package, and nothing else."""
+    """The folder has the files that come with the package, and nothing else."""
     rl.examples(tmp_path)
     notebook = nbformat.read(tmp_path / path.name, 4)
     resources = {"metadata": {"path": str(tmp_path)}}

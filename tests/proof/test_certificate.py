@@ -52,7 +52,7 @@ class Judged(NamedTuple):
 
 
 def column(found: list[Any], name: str) -> Floats:
-    """A number of each certificate as a column; nan stands for None."""
+    """A number of each certificate as a column; nan where it is None."""
     values = [getattr(one, name) for one in found]
     return np.array([math.nan if value is None else value for value in values])
 

@@ -1,4 +1,4 @@
-"""Properties of every certificate: effects of more friction, another mass and a mirror."""
+"""Properties of every certificate: effects of more friction, another mass and mirroring."""
 
 import math
 from typing import Any

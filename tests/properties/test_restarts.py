@@ -1,7 +1,7 @@
-"""Whatever a motion returns can be a start, in the mode that follows and with the events to come.
+"""Any state that a motion returns can be a start, in the mode and with the events that follow.
 
-reference/judge_restarts.py draws the motions, and passes their ends, samples, states after events
-and scenes on the way on as starts. Its first lines say what it allows.
+reference/judge_restarts.py draws the motions, and uses their ends, samples, states after events and
+intermediate scenes as starts. Its first lines state the tolerances.
 """
 
 import math
@@ -30,7 +30,7 @@ MET = {  # labels of findings that must occur, by study
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("study", STUDIES)
 def test_a_motion_continues_from_what_it_returns(study: str) -> None:
-    """Its ends, its states at events, and its scenes where `max_events` cuts it."""
+    """It continues from ends, states at events, and scenes where `max_events` stopped it."""
     met = set()
     for block in range(BLOCKS):
         found = judge(study, SEED, block)

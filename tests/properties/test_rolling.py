@@ -33,7 +33,7 @@ def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> 
 
 @given(st.data())
 def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
-    """x -> -x changes no bit: the arithmetic has no side."""
+    """x -> -x changes no bit: the arithmetic prefers no side."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     image = motion | {"theta": -motion["theta"], "omega": -motion["omega"]}
@@ -116,7 +116,7 @@ def test_half_a_turn_gives_the_same_body(data: Any) -> None:
 
 
 @given(st.data())
-def test_two_successive_time_spans_equal_their_sum(data: Any) -> None:
+def test_two_successive_moves_equal_a_single_one(data: Any) -> None:
     """A move by t1, then by t2, equals one by t1 + t2, to the errors of the intermediate state, as
     t2 changes them, and of both results."""
     motion = data.draw(motions())
@@ -160,8 +160,8 @@ def test_phase_space_volume_is_conserved(data: Any) -> None:
     """det d(theta, D omega)/d(theta0, D0 omega0) = 1, with D the inertia about the contact.
 
     The derivatives are central differences over s and 2s: one Richardson step leaves errors of the
-    order s^4. The change by this step is a fivefold overestimate of them where s^2 is small beside
-    1; where the two differ by much, s is too large for this motion.
+    order s^4. The change by this step is a fivefold overestimate of them where s^2 is small
+    compared with 1; where the two differ by much, s is too large for this motion.
     """
     motion = data.draw(motions(thinnest=1.5))
     t = data.draw(spans(motion, 20.0))

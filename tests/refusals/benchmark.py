@@ -1,4 +1,4 @@
-"""Refusals of `benchmark`: unknown names, and results that are not as they must be."""
+"""Refusals of `benchmark`: unknown names, and malformed results."""
 
 import os
 import sys
@@ -53,7 +53,7 @@ def written(
 
 
 def scored_pipe(folder: Path) -> Any:
-    """A pipe that nobody writes to would be waited for."""
+    """A pipe that nobody writes to, on which a reader would wait forever."""
     os.mkfifo(folder / "slide.stick.csv")
     return benchmark.score(folder)
 

@@ -37,7 +37,7 @@ def reads(content: bytes) -> Callable[[Path], Any]:
 
 
 def pipe(load: Callable[[Path], Any]) -> Callable[[Path], Any]:
-    """Load a pipe that nobody writes to, which would be waited for."""
+    """Load a pipe that nobody writes to, on which a reader would wait forever."""
 
     def call(folder: Path) -> Any:
         os.mkfifo(folder / "pipe")
@@ -59,7 +59,7 @@ def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
 
 
 def facts(motion: rl.Trajectory = CONTACT, **given: Any) -> Iterator[Row]:
-    """Rows that replace one fact of the JSON each; double underscores join the parts of a name."""
+    """Rows that each replace one fact of the JSON; double underscores join the parts of a name."""
 
     def put(name: str, value: Any) -> Change:
         *road, last = (int(key) if key.isdigit() else key for key in name.split("__"))
@@ -91,7 +91,7 @@ def text(content: str) -> Row:
 def members(
     compression: int = zipfile.ZIP_STORED, *, text: str | None = '{"schema": 4}', **contents: bytes
 ) -> Row:
-    """A row for an archive of these members, after that with the text."""
+    """A row for an archive of the text, if any, and these members."""
     file = io.BytesIO()
     if text is not None:
         contents = {"about": npy(text), **contents}

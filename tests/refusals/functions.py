@@ -29,7 +29,7 @@ HIT: dict[str, Any] = {
     "theta": 0.3, "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5,
     **AXES,
 }  # fmt: skip
-# : Four columns measured before an impact.
+# : Quantities measured before an impact, in four rows.
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
@@ -67,7 +67,7 @@ def written(folder: Path, content: bytes) -> Path:
 
 
 def marked_by(folder: Path, scale: float) -> Any:
-    """A mark of sheet 8 by scaled impacts."""
+    """The mark of sheet 8 for scaled impacts."""
     rows = scale * np.vstack(course.measured_impacts()).T
     np.savetxt(folder / "seen.csv", rows, delimiter=",", header=IMPACTS, comments="")
     with patch.dict("os.environ", {TABLE: str(folder / "seen.csv")}):

@@ -38,7 +38,7 @@ PAIRS = (rl.plot_forces, rl.plot_constraints)  # pictures with two axes
 
 
 class Lying:
-    """An object that claims to be an array and is none."""
+    """An object that claims to be an array but is not one."""
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         return "no array"

@@ -34,7 +34,7 @@ def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
 
 
 def damaged(road: str, value: Any) -> Callable[[Path], Any]:
-    """Load a file of a race with another value at a place of its text."""
+    """Load a race from a file with one value of its text replaced."""
 
     def change(text: str) -> str:
         known = part = json.loads(text)
@@ -48,7 +48,7 @@ def damaged(road: str, value: Any) -> Callable[[Path], Any]:
 
 
 def changed(change: Callable[..., str]) -> Callable[[Path], Any]:
-    """Load a file of a race whose text is changed."""
+    """Load a race from a file whose text is changed."""
 
     def call(folder: Path) -> Any:
         path = folder / "race.json"

@@ -1,8 +1,8 @@
 """Every refusal is provoked, names its argument and shows the value; none is unreachable.
 
-The sources show that none is missing: every `raise` of the package must be in the traceback of some
-exception, and every text of the core in some message. Refusals that no call can reach are listed
-here, each with its reason.
+The sources show that no refusal is missing: every `raise` of the package must be in the traceback
+of some exception, and every text of the core in some message. Refusals that no call can reach are
+listed here, each with its reason.
 """
 
 import ast

@@ -215,8 +215,8 @@ def test_numbers_of_every_type_are_converted_to_doubles() -> None:
 def test_conversion_in_pieces_equals_conversion_at_once(
     value: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pieces of 16 numbers give the result of pieces of 131072. No call of NumPy takes more of a
-    list than a piece, so that Ctrl-C works in between."""
+    """Pieces of 16 numbers give the result of pieces of 131072. No call of NumPy takes more than a
+    piece of a list, so that Ctrl-C works in between."""
 
     def found() -> Any:
         try:

@@ -71,7 +71,7 @@ REFUSALS: list[Row] = [
     *wrong(DROPPED.sensitivity, {"wrt": "theta"}, side=[2, 0.5, [1], None, True]),
     *wrong(MOTION.sensitivity, {}, wrt=["x_dot", "z"]),  # which follow rolling
     *(("wrt", lambda _, motion=motion, wrt=wrt: motion.sensitivity(wrt)) for motion, wrt in (
-        (rl.simulate(FLAT, 2.0), "theta"),  # settles on its side: what would it do beside it?
+        (rl.simulate(FLAT, 2.0), "theta"),  # settles on its side; no motion beside it is known
         (rl.simulate(DROPPED.scene, DROPPED.events[0].t), "theta"),  # ends in an impact
         (rl.simulate(scenes.bounce, BOUNCED.events[5].t), "theta"),  # the last part does
         (rl.simulate(CHAOS, 20.0), "theta"),  # changes grow too much

@@ -125,7 +125,7 @@ def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
 
 
 def test_a_motion_that_starts_off_the_constraints_is_never_valid() -> None:
-    """Not even if it leaves the ground at only 1e-6 m/s, with forces that the ground can give."""
+    """This holds even at 1e-6 m/s off the ground, with forces that the ground can give."""
     motion = lifted(0.5)
     assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
     assert motion.message == "the start violates the constraints, as no body on the ground does"
@@ -162,7 +162,7 @@ def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
 def test_corrected_equals_the_multipliers_model(method: Any, stabilization: Any) -> None:
-    """From the same start, bit for bit; tests/multipliers holds that model to exact rolling."""
+    """They agree bit for bit; tests/multipliers compares that model with exact rolling."""
     times = np.linspace(0, 3, 31)
     scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
     how: dict[str, Any] = {"method": method, "stabilization": stabilization}

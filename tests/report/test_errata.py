@@ -1,4 +1,4 @@
-"""The errata of the report: each row by two numbers, then the equations one by one.
+"""The errata of the report: two numbers for each row, then the equations one by one.
 
 The right numbers are compared with closed forms written out again here, from h and its derivatives
 (oracles/geometry.py), with psi and r by r cos(psi - theta) = h and r sin(psi - theta) = h'.
@@ -140,7 +140,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
 
 
 def rolled(first: float, last: float) -> float:
-    """The way of the centre of the 2:1 body from an angle to another, the integral of h."""
+    """The path of the centre of the 2:1 body between two angles, the integral of h."""
     return float(mp.quad(lambda angle: support(angle, 2.0, 1.0).h, mp.linspace(first, last, 9)))
 
 
@@ -212,12 +212,12 @@ def test_lambda3_divides_by_zero() -> None:
 
 
 def test_the_correct_lambda4_vanishes() -> None:
-    """It is printed with an extra b^2 in the divisor, and with the wrong sign of g; on the exact
+    """Lambda4 is printed with an extra b^2 in the divisor and the wrong sign of g; on the exact
     motion it vanishes."""
     found, at = numbers("eq 39, λ4"), Exact(ANGLE, b=0.8)
     assert found.printed == close(-at.couple * math.cos(ANGLE) ** 2 / (4 * 0.8**2))
     assert found.right == zero(abs(found.printed))
-    # consequence of eq 35 with df4's sign, and of lambda1 and lambda2 of eq 39
+    # it follows from eq 35 with df4's sign, and from lambda1 and lambda2 of eq 39
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
@@ -303,7 +303,7 @@ def test_back_substitution_does_not_detect_the_misprints() -> None:
 
 
 def test_back_substitution_detects_a_changed_solution() -> None:
-    """Back substitution notices a solution that was changed."""
+    """Back substitution detects a solution that was changed."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
     assert isinstance(motion, report.PrintedMotion)
@@ -341,7 +341,7 @@ def test_every_erratum_is_in_the_table() -> None:
     assert len({e.where for e in errata}) == len(errata)
     assert lines[1] == "|---|---|---|---|---:|---:|" and len(lines) == 2 + len(errata)
     for line, erratum in zip(lines[2:], errata, strict=True):
-        assert line.count("|") == 7  # no text contains one, which would end a cell
+        assert line.count("|") == 7  # no text contains "|", which would end a cell
         cells = [cell.strip() for cell in line.strip("|").split(" | ")]
         assert cells[:4] == [erratum.where, erratum.printed, erratum.finding, erratum.quantity]
         found = erratum.evaluate()

@@ -34,7 +34,7 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 def test_wrong_equations_lift_the_body_off_the_ground(
     printed: tuple[str, ...], gap: float, mass: float
 ) -> None:
-    """Cause (a): wrong equations lift the body off, from their own start, at any tolerance."""
+    """Cause (a): wrong equations, from their own consistent start, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     loose, tight = (
         run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
@@ -153,7 +153,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
 def test_the_reports_own_start_is_rejected_naming_its_violations() -> None:
     """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit.
 
-    test_corrected.py shows what the right rows make of it.
+    test_corrected.py shows how the right rows treat this start.
     """
     q, q_dot = [0, 1, 0, 0, 1], [0, 1, 1, 1.5, 0]
     code = "f1 as printed = 0.5 m/s; rate of f2 as printed = 1 m/s; rate of f4 as printed = 5.5"
@@ -168,7 +168,7 @@ def test_the_repr_of_a_motion_states_its_equations() -> None:
 
 
 def test_leading_axes_of_states_broadcast_or_are_rejected() -> None:
-    """Leading axes of states broadcast, or a refusal names all shapes."""
+    """Leading axes of states broadcast, or the error names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
     of_body = (report.eq_39, report.eq_40, report.eq_41, report.eq_42, report.lambda4_numerator,
                report.multipliers, report.complete_f)  # fmt: skip

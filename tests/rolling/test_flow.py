@@ -91,7 +91,7 @@ def test_the_period_is_infinite_at_rest_and_one_full_turn_for_a_circle() -> None
 
 @each_motion
 def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: Motion) -> None:
-    """By a power series, by a move that needs no quarter turn, and by one that needs it."""
+    """It follows from a power series, a move without a quarter turn, or a move with one."""
     scene, half = reference.Scene(*motion), float(exact_period(motion, 12)) / 2
     exact, changes = reference.motion(scene, rule(28)), reference.sensitivities(scene, rule(12))
     worst = 0.0
@@ -149,7 +149,8 @@ def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> No
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
 def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], quarter: int) -> None:
     """Rest lasts forever where the double next to the quarter turn is an equilibrium: |h'| within 8
-    ulp of h. At pi or 5 pi/2 it may be none: the body rocks by the rounding of the angle."""
+    ulp of h. At pi or 5 pi/2 it may not be one: the body then rocks by the rounding of the
+    angle."""
     theta = quarter * math.pi / 2
     a, b = shape
     slope = geometry.support_slope(theta, a=a, b=b)
@@ -180,8 +181,8 @@ def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None
 
 
 def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
-    """Doubles near the roll-over speed whose energy is the tip's for the package: they neither
-    return nor pass in a million seconds (the nearest others take 50 s)."""
+    """Doubles near the roll-over speed for which the package's energy equals that of the tip: these
+    motions neither return nor pass in a million seconds (the next ones take 50 s)."""
     speed = thresholds(a, b).roll_over_speed
     around = [speed + k * math.ulp(speed) for k in range(-6, 7)]
     resting = math.pi / 2 if a > b else math.pi

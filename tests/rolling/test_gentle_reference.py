@@ -1,8 +1,8 @@
 """Gentle slopes and slowly passed tips against 40 digits (reference/make_gentle_reference.py).
 
-Slopes from 1e-18 to 1e-3, starts on and beside a tip, a tip passed or just not passed. Every number
-has a unit: what a relative change of 2.2e-16 of each input, and of 2.2e-16 rad of theta0, does to
-it, and two ulp of the number itself.
+The slopes range from 1e-18 to 1e-3; starts are on and beside a tip, which is just passed or not.
+Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and of 2.2e-16
+rad of theta0, plus two ulp of the number itself.
 """
 
 from typing import Any
@@ -58,10 +58,10 @@ def test_the_table_covers_all_slopes_and_shapes() -> None:
 
 @each_row
 def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
-    """Four units, alone and as the last of many times.
+    """The bound is four units, for one time and for the last of many.
 
     W beside a tip has the rounding of W where the motion started, of the size of a rounded input;
-    then come some roundings of the time and of each answer. The largest error was 1.6. With W
+    some roundings of the time and of each answer add to it. The largest error was 1.6. With W
     counted from the start alone, by sin^2, 31 cases exceeded this, by up to 5e5 units.
     """
     start, t = start_of(row), float(row["t"])
@@ -72,7 +72,7 @@ def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
 
 
 def test_the_flow_of_many_bodies_equals_single_flows() -> None:
-    """So do past times of the reversed start; mirror images have opposite signs."""
+    """Past times equal those of the reversed start; mirror images have opposite signs."""
     starts = [start_of(row) for row in ROWS]
     columns = {name: np.array([start[name] for start in starts]) for name in starts[0]}
     t = np.array([float(row["t"]) for row in ROWS])
@@ -86,7 +86,7 @@ def test_the_flow_of_many_bodies_equals_single_flows() -> None:
 
 @each_row
 def test_simulate_and_ends_are_accurate_to_a_few_rounding_units(row: Row) -> None:
-    """Four units, by the model of rolling and, while the body rolls, that of contact."""
+    """The bound is four units for the rolling model and, while the body rolls, for contact."""
     scene, t = table.scene_of(row), float(row["t"])
     motion = rolled(scene, [0.5 * t, t])
     assert errors(row, [motion.theta[1], motion.omega[1], motion.x[1]]) < 4
@@ -109,7 +109,7 @@ def rounding_of_forces(scene: rl.Scene, theta: float, omega: float) -> Any:
 
 @each_row
 def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
-    """Four units; the forces belong to the angle of the sample, which is rounded.
+    """The bound is four units; the forces belong to the rounded angle of the sample.
 
     The largest error was 3.2, where the terms of N of a thin body nearly cancel.
     """

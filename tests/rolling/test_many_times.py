@@ -1,6 +1,6 @@
 """`flow` at many times of one motion: answers from a table, for any order and number of times.
 
-The bits may depend only on whether the times are enough for a table (40): the result of
+The bits may depend only on whether there are enough times for a table (40): the result of
 test_flow_reference.py for 151 times in 40 digits then holds for any number of them.
 """
 

@@ -1,4 +1,4 @@
-"""The path of the centre: motions that start nearly at rest on the tip or beside it, and steps.
+"""The path of the centre in motions that start nearly at rest near the tip, and in steps.
 
 The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
 alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.

@@ -24,7 +24,7 @@ FAR_ANGLES = (333.3, -99_999.9, 100_000.1, 3e15)
 
 
 class Motion(NamedTuple):
-    """theta'' and its derivatives by theta and by omega."""
+    """theta'' and its derivatives with respect to theta and omega."""
 
     acceleration: Any
     by_theta: Any

@@ -1,4 +1,4 @@
-"""`flow` of plain floats: a short way through C++ that nobody can tell from the Python function."""
+"""`flow` of plain floats: a shortcut through C++, indistinguishable from the Python function."""
 
 import copy
 import inspect
@@ -17,7 +17,7 @@ import rolling_ellipse as rl
 from rolling_ellipse import _core
 
 START: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
-# The same function without a short way
+# The same function without the shortcut
 LONG = types.FunctionType(rl.flow.__code__, rl.flow.__globals__, "flow", rl.flow.__defaults__)
 LONG.__kwdefaults__ = rl.flow.__kwdefaults__
 
@@ -37,7 +37,7 @@ def answer(function: Callable[..., Any], *given: Any, **named: Any) -> Any:
 
 @_core.takes_floats
 def probe(t, *, a, b, theta, omega, gravity=9.81, gyration2=None, slope=0.0, workers=1):  # type: ignore[no-untyped-def]
-    """A function in the place of `flow` that tells that it was called."""
+    """A function in place of `flow` that records its calls."""
     return ("the long way",)
 
 
@@ -54,7 +54,7 @@ TIMES = (0.0, -0.0, 1.3, -2.7, 1e5, 5e-324)
 
 @pytest.mark.parametrize("case", SHORT)
 @pytest.mark.parametrize("t", TIMES)
-def test_plain_floats_take_the_short_way_to_the_same_bits(case: str, t: float) -> None:
+def test_plain_floats_take_the_shortcut_to_the_same_bits(case: str, t: float) -> None:
     assert probe(t, **SHORT[case]) != ("the long way",)
     assert answer(rl.flow, t, **SHORT[case]) == answer(LONG, t, **SHORT[case])
 
@@ -103,14 +103,14 @@ def test_all_other_calls_have_the_answers_of_the_python_function(case: str) -> N
 
 @pytest.mark.parametrize("value", [Own(1.5), 1, True, np.float64(1.5), 2.0j, "1", None])
 @pytest.mark.parametrize("name", ["t", *START, "gravity", "slope"])
-def test_other_numbers_take_the_long_way(name: str, value: Any) -> None:
+def test_other_numbers_do_not_take_the_shortcut(name: str, value: Any) -> None:
     named = START | {name: value} if name != "t" else START
     assert probe(value if name == "t" else 1.3, **named) == ("the long way",)
     for more in ({"workers": 2}, {"workers": True}, {"workers": 1.0}, {"gyration2": 1}):
         assert probe(1.3, **START, **more) == ("the long way",)
 
 
-def test_what_asks_for_the_function_finds_it() -> None:
+def test_attributes_and_signature_are_those_of_the_function() -> None:
     assert inspect.isfunction(rl.flow) and inspect.isroutine(rl.flow) and callable(rl.flow)
     for name in ("__name__", "__qualname__", "__module__", "__code__", "__kwdefaults__"):
         assert getattr(rl.flow, name) == getattr(LONG, name)
@@ -128,7 +128,7 @@ def test_what_asks_for_the_function_finds_it() -> None:
     assert not hasattr(rl.flow, "no_such_attribute")
 
 
-def test_it_pickles_by_name_copies_to_itself_and_binds() -> None:
+def test_the_function_pickles_by_name_copies_to_itself_and_binds() -> None:
     for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
         written = pickle.dumps(rl.flow, protocol)
         assert pickle.loads(written) is rl.flow and len(written) < 100

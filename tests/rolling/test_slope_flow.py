@@ -130,7 +130,7 @@ def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) ->
 
 
 def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point() -> None:
-    """There the mirror image of the way up ends: each double beside that time has its stretch."""
+    """The mirror image of the way up ends there; neighbouring doubles lie in either stretch."""
     for omega in np.linspace(-6.0, -1.0, 41):
         scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
         back = 2 * rolled(scene, [0.0, 30.0]).when(omega=0.0)[0]
@@ -169,8 +169,8 @@ def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
 
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
 def test_no_circle_rests_on_a_slope(slope: float) -> None:
-    """A circle's contact is never right below its centre: it rolls from rest if friction holds a
-    third of the pull, and slides otherwise."""
+    """On a slope no circle has its contact right below its centre: it rolls from rest if friction
+    holds a third of the pull, and slides otherwise."""
     needed = abs(slope) / 3
     scene = rl.Scene(1.0, 1.0, slope=slope, friction=needed * (1 + 1e-9))
     less = scene.replace(friction=needed * (1 - 1e-9))
@@ -284,8 +284,8 @@ def test_a_nearly_round_body_is_not_driven_by_rounding() -> None:
     ids=["tall", "flat"],
 )
 def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
-    """Roundings of the height alone drive the body: its motion is a single piece all the same, and
-    omega changes by no more than gravity and all of its height differences give."""
+    """Only roundings of the height drive the body. Its motion is still a single piece, and omega
+    changes by no more than gravity and the height differences allow."""
     t = 0.1 / abs(scene.omega)
     motion = rl.simulate(scene, t, model="rolling")
     fall = 2 * scene.gravity * abs(scene.a - scene.b) / min(scene.a, scene.b) ** 2
@@ -296,7 +296,7 @@ def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
 
 @pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
 def test_the_flow_on_a_slope_equals_simulate(omega: float) -> None:
-    """It equals `simulate` bit for bit; test_gentle_reference.py has the past."""
+    """They agree bit for bit; test_gentle_reference.py tests past times."""
     scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
     motion, asked = rolled(scene, times), {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": omega}
     found = rl.flow(times, **asked, slope=0.1)
@@ -335,7 +335,7 @@ def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
 
 
 def test_the_flow_at_many_times_equals_that_at_single_times_bit_for_bit() -> None:
-    """Also between the end of the first piece and the mirror image of the start."""
+    """Times between the end of the first piece and the mirror image of the start are included."""
     rng = np.random.default_rng(5)
     for _ in range(120):
         a, b = np.exp(rng.uniform(-1, 1, 2)).tolist()

@@ -1,8 +1,8 @@
 """Rolling on a slope against 30 digits (reference/make_slope_reference.py).
 
-Every scene has three times and a unit for each value: what a relative change of 2.2e-16 of each
-input does to the value. A method is judged by errors in these units: by the smallest change of the
-inputs that would explain its answer.
+Every scene has three times and a unit for each value: the effect of a relative change of 2.2e-16 of
+each input. A method is judged by errors in these units: by the smallest change of the inputs that
+would explain its answer.
 """
 
 import math

@@ -73,7 +73,7 @@ def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> No
 def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     scene: rl.Scene, distance: float, share: float
 ) -> None:
-    """A start that moves to the rim or away from it swings like a rest somewhat further in.
+    """A start that moves towards or away from the rim swings like a start at rest further inside.
 
     The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
     d (1 - share^2)^(1/2), up to its square and an ulp of theta: so far the period, 2 log(1/d)/rate

@@ -95,7 +95,7 @@ def scene_stiffness(contact: Response) -> mp.mpf:
 
 
 @pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
-def test_the_impulses_determine_the_velocities_and_these_the_mode(scene: Scene) -> None:
+def test_impulses_determine_the_velocities_and_velocities_the_mode(scene: Scene) -> None:
     assert scene.impulse is not None
     impulse, found = scene.impulse, scene.initial_state
     h, slope, _ = (

@@ -1,4 +1,4 @@
-"""A motion may reach states beyond the limits of input: they can be continued, saved and read."""
+"""States that motions reach beyond the limits of input can be continued, saved and read."""
 
 import copy
 import math
@@ -42,7 +42,7 @@ def inertial_time(scene: Scene, turned: float) -> float:
 def test_a_state_after_very_many_half_turns_can_be_continued(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
-    """Bits agree from the state itself, a file, a table of scenes and a folder."""
+    """The bits agree whether the state comes from memory, a file, a table of scenes or a folder."""
     motion = rolled(scene, [0.0, t / 2, t])
     assert motion.theta[-1] > 0.99e14 * math.pi
     reached = motion.scene_at(motion.t_end)

@@ -1,4 +1,4 @@
-"""Scenes as JSON, in files and in links of the live page."""
+"""Scenes as JSON, in files and in links to the live page."""
 
 import json
 import math
@@ -29,11 +29,11 @@ LINKS = [
 
 
 def bits(scene: Scene) -> str:
-    """All arguments, of which -0.0 is not 0.0."""
+    """All arguments, with -0.0 distinct from 0.0."""
     return repr([getattr(scene, field.name) for field in fields(scene)])
 
 
-def test_300_scenes_return_from_json_and_links_with_their_bits() -> None:
+def test_300_scenes_survive_json_and_links_bit_for_bit() -> None:
     scenes = [*random_scenes(200, 41), *random_scenes(98, 42, struck=1.0), FULL, rl.scenes.report]
     for scene in scenes:
         text = scene.to_json()
@@ -63,7 +63,7 @@ def test_the_text_is_standard_json_with_the_names_of_scene() -> None:
     )
 
 
-def test_a_state_that_only_a_motion_can_reach_returns_from_json() -> None:
+def test_a_state_that_only_a_motion_can_reach_survives_json() -> None:
     """Just before it hits the ground a body moves into it, which the constructor refuses."""
     motion = rl.simulate(rl.scenes.drop, 1.0)
     (hit, *_) = motion.events
@@ -83,7 +83,7 @@ def test_a_path_is_a_file_with_json_or_a_link(prefix: bytes, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("link", "given"), LINKS)
-def test_an_older_link_is_the_scene_of_the_page(link: str, given: dict[str, float]) -> None:
+def test_an_older_link_gives_the_scene_of_the_page(link: str, given: dict[str, float]) -> None:
     scene = Scene(2.0, 1.0, mass=10.0, **given)  # type: ignore[arg-type]
     for page in ("", "https://pages.example/live/index.html", "file:///pages/live.html"):
         assert Scene.from_json(f"{page}{OLDER}&{link}&t=6&lang=de") == scene

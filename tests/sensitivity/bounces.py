@@ -81,7 +81,7 @@ def bounces(motion: Trajectory, wrt: list[str], *, own: bool) -> tuple[Any, Any]
 
 
 def _jacobian(of: Any, y: list[Any], p: dict[str, Any], moved: Any, wrt: list[str]) -> Any:
-    """Derivatives of a function of state and numbers by inputs that have moved the state."""
+    """Derivatives of a function of state and numbers with respect to inputs that move the state."""
     found = mp.matrix(len(of(y, p)), len(wrt))
     for k, name in enumerate(wrt):
         size = max(1, *(abs(each) for each in moved[:, k]))

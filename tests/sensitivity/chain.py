@@ -72,7 +72,7 @@ def guard(kind: str, side: int, y: Any, p: Mapping[str, Any]) -> Any:
 
 
 def by_complex_steps(function: Any, y: Any, p: dict[str, Any], wrt: list[str]) -> tuple[Any, Any]:
-    """Derivatives of function(y, p) by y, and by the inputs of p (0 for those of the start)."""
+    """Derivatives of function(y, p) with respect to y and the inputs of p (0 for the start's)."""
     columns = []
     for k in range(6):
         moved = y.astype(complex)

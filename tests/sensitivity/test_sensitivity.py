@@ -85,9 +85,9 @@ def test_random_scenes_agree_with_the_variational_chain(seed: int) -> None:
 def test_reference_motions_have_accurate_derivatives() -> None:
     """95 of 106 motions are within 1e-10; the others magnify roundings, as `error` reports.
 
-    The errors that are stated cover 99 of 100 columns, and are mostly within a factor of 100: one
-    of the two steps beside the best is farther off by 4 to 64 times, and a value is allowed eight
-    units. Derivatives at bounds have one side. A table that just holds its body has no derivative.
+    The stated errors cover 99 of 100 columns, and are mostly within a factor of 100: one of the two
+    steps beside the best is farther off by 4 to 64 times, and a value is allowed eight units.
+    Derivatives at bounds are one-sided. A table that only just holds its body has no derivative.
     """
     last = {row["name"]: row for row in table.rows("contact_reference")}
     good, refused, ratios = {name for name in last if name[:3] != "jam"}, [], []
@@ -189,7 +189,7 @@ def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
 
 
 def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
-    """In all modes and by all inputs, they agree within the sum of both errors."""
+    """In all modes and for all inputs, they agree within the sum of both errors."""
     modes, seen = set(), 0
     for seed in range(40):
         motion, wrt = drawn(np.random.default_rng(seed))
@@ -237,7 +237,7 @@ def test_growing_derivatives_are_accurate_until_they_are_rejected() -> None:
 
 
 def test_stated_errors_cover_the_true_errors_of_bounces() -> None:
-    """Of random bodies without friction, elastic or not, against 60 digits from the start."""
+    """Bodies bounce without friction, elastic or not; references have 60 digits."""
     rng = np.random.default_rng(6)
     shares: list[float] = []
     while len(shares) < 40:
@@ -260,7 +260,7 @@ def test_stated_errors_cover_the_true_errors_of_bounces() -> None:
 
 
 def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
-    """A body that slides on ice, where a slope makes and ends slips; in 40 digits the first REVERSE
+    """The body slides on ice, where a slope starts and ends slips; in 40 digits the first REVERSE
     moves by -0.00998485024303 per radian of slope."""
     ice = Scene(
         5.588108666592639, 1.0, inertia=8.05673961741194, friction=5.463150523067873e-09,
@@ -337,7 +337,7 @@ def test_a_forecast_is_accurate_to_second_order() -> None:
 
 
 def test_derivatives_hold_at_any_time_at_bounds_and_with_steps() -> None:
-    """At a bound there is one side; a method's error counts; x moves with x, and t by the rates."""
+    """Bounds have one-sided derivatives; method errors count; dx/dx is 1, d/dt gives rates."""
     motion = simulate(DROP, np.sort([0.0, 1.0, *(e.t for e in simulate(DROP, 1.0).events)]))
     known = motion.sensitivity(("x", "t", "theta"))
     assert np.abs(known.state[:, :, 0] - [1, 0, 0, 0, 0, 0]).max() < 1e-12
@@ -397,7 +397,7 @@ def test_derivatives_hold_across_turns_of_rolling_resistance(
 
 @pytest.mark.parametrize("package", ["numpy", "jax", "torch"])
 def test_the_code_on_the_page_gives_the_same_gradient(package: str) -> None:
-    """Its recipes have the gradient of `sensitivity`."""
+    """The recipes on the page have the gradient of `sensitivity`."""
     pytest.importorskip(package)
     page = (ROOT / "docs" / "sensitivity.md").read_text(encoding="utf-8")
     names: dict[str, Any] = {}

@@ -48,9 +48,9 @@ def growth(method: str, alpha: float, beta: float, step: float) -> float:
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> None:
     """The constraints of a circle are linear in the errors: each step multiplies f1 by R(-2 alpha
-    h) and (f2, f2') by R of their matrix. From an error of 1e-6, 100 ulp of the coordinates are
-    2e-14, times the growth in the steps (and 1/h for a rate); gains are below and above the
-    limit."""
+    h) and (f2, f2') by R of their matrix. The error is 1e-6; the bound is 100 ulp of the
+    coordinates, 2e-14, times the growth in the steps (and 1/h for a rate). Gains are below and
+    above the limit."""
     step, steps = 0.01, 10
     scene = Scene(1.0, 1.0, omega=2.0)
     q, q_dot = rl.kinematics(0.0, 2.0, a=1.0, b=1.0)
@@ -76,9 +76,9 @@ def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> Non
 
 
 def test_the_package_knows_the_stability_function() -> None:
-    """The package's factor of a step (complex arithmetic on the stages) agrees with this suite's
-    (polynomial and numpy's roots) to 1e-7 of the largest of their terms: 12 stages, and double
-    roots that numpy finds to half the digits only."""
+    """The package's factor of a step (complex arithmetic on the stages) agrees with this suite's (a
+    polynomial and numpy's roots) to 1e-7 of the largest of their terms: there are 12 stages, and
+    numpy finds double roots to half the digits only."""
     random = np.random.default_rng(4)
     worst = 0.0
     for method in EXPLICIT:
@@ -107,8 +107,8 @@ LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.39365152
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> None:
-    """Runs are lost at the end of the stability interval of 2 alpha h, by bisection: within 1 %. On
-    the ellipse 600 steps must raise 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and the
+    """Bisection shows that runs are lost within 1 % of the end of the stability interval of 2 alpha
+    h. On the ellipse 600 steps must raise 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and the
     constraints change as it turns."""
     limit = interval(method, -1)
     assert limit == pytest.approx(LIMITS[method], rel=1e-9)
@@ -120,8 +120,8 @@ def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> N
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("mix", [(1.0, 0.5), (0.2, 1.0), (1.0, 3.0)])
 def test_gains_above_their_limit_ruin_the_motion(method: str, mix: tuple[float, float]) -> None:
-    """Gains grow in a fixed proportion until a step multiplies constraint errors by more than 1: 5
-    % below the limit residuals stay small for 600 steps, 5 % above the motion is lost."""
+    """The limit of gains in a fixed proportion is where a step multiplies constraint errors by 1: 5
+    % below it residuals stay small for 600 steps, 5 % above it the motion is lost."""
     limit = largest(
         lambda gain: growth(method, mix[0] * gain, mix[1] * gain, 2.0**-7) <= 1 + 1e-12,
         1.0,
@@ -164,8 +164,8 @@ def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float
 
 
 def test_controlled_steps_find_the_stability_limit_by_themselves() -> None:
-    """Gains of 200 1/s with dop853 at its default tolerances keep steps near the limit (at most
-    twice it on average, since errors are known only after a step), without a loss or a warning."""
+    """With gains of 200/s, dop853 at its default tolerances keeps steps near the limit (on average
+    at most twice it, since errors are known only after a step), without a loss or a warning."""
     how = kept_by("baumgarte", method="dop853", baumgarte=(200.0, 200.0))
     found = simulate(SLOW, [2.0], **how)
     mean = 2.0 / found.stats["steps"]

@@ -35,8 +35,8 @@ def end_of_all(scene: Scene) -> float:
 
 
 def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
-    """In a loop of parabolas and collisions time stands still from the bounce on that takes less
-    than half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, for any number of events."""
+    """In a loop over parabolas and collisions, time stands still from the first bounce that takes
+    less than half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, however many follow."""
     end = end_of_all(dropped())
     stood, t = event_loop(SPEED, E, 2000)
     told(f"after 2000 events t = {t!r} of {end!r} s; stands still from event {stood} on")
@@ -46,8 +46,8 @@ def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-4])
 def test_equal_steps_let_the_body_sink_into_the_ground(step: float) -> None:
-    """Symplectic Euler steps turn the speed to -e times it where the body is in the ground and
-    falls: the speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) a second."""
+    """Symplectic Euler steps multiply the speed by -e where the body is in the ground and falls:
+    the speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) a second."""
     t, z = sinking(SPEED, E, step, 6.0)
     half = t.size // 2
     rate = (z[half] - z[-1]) / (t[-1] - t[half])
@@ -57,11 +57,11 @@ def test_equal_steps_let_the_body_sink_into_the_ground(step: float) -> None:
 
 @pytest.mark.parametrize("theta", [0.1, 0.3])
 def test_errors_of_a_tilted_body_scale_with_the_square_of_the_rest_speed(theta: float) -> None:
-    """Bounces turn a tilted body, so that the summed ones differ: they last in proportion to the
-    speed of rest, and the body turns in proportion to it meanwhile: slope 2. Whole bounces scatter
-    the errors by e^-2 at most: six speeds a decade over four decades, so 0.1 of a slope. The errors
-    are of the order of the square of rest_speed/sqrt(g b), as `simulate` says: at most 10 times it,
-    as they grow during the next three seconds, ten natural times."""
+    """A tilted body turns as it bounces, which the sum neglects. The duration of the summed bounces
+    and the turn meanwhile are both proportional to the rest speed, so the slope is 2. Whole bounces
+    scatter the errors by at most e^-2; for six speeds a decade over four decades that is 0.1 of a
+    slope. Errors may be 10 times the square of rest_speed/sqrt(g b), their order according to
+    `simulate`, since they grow during the next three seconds, ten natural times."""
     speeds = np.geomspace(1e-2, 1e-6, 25)
     scene = dropped(theta)
     exact = simulate(scene, [3.0], rest_speed=1e-10 * UNIT)

@@ -1,4 +1,4 @@
-"""Friction a hair above or below the need of rolling: the grip holds or is lost for an instant.
+"""Friction just above or below what rolling needs: the grip holds or is lost for an instant.
 
 The need has a smooth maximum on the way up: it exceeds a friction that falls short by 10^-k over
 10^(-k/2) of the path. From some k on, neither samples nor the ends of steps show this; the
@@ -52,8 +52,8 @@ def friction(k: int, side: int) -> float:
 
 
 def test_samples_miss_shortfalls_of_friction_up_to_the_square_of_their_spacing() -> None:
-    """A maximum is flat: slope -2, up to the scatter of the rms of 64 draws, a tenth of it, over
-    two decades: 0.05. So a grid finds a lack of friction only above this shortfall."""
+    """A maximum is flat, so the slope is -2, to within 0.05: the rms of 64 draws scatters by a
+    tenth, over two decades. A grid thus finds a lack of friction only above this shortfall."""
     counts = [30, 100, 300, 1000, 3000]
     places = np.random.default_rng(0).uniform(0, 1, 64)
     short = [rms(shortfall(count, places)) for count in counts]

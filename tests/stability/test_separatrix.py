@@ -70,9 +70,9 @@ def test_the_separatrix_error_of_rk4_follows_its_order() -> None:
 
 @pytest.mark.parametrize("name", ["dop853", "dopri5"])
 def test_the_separatrix_error_of_embedded_pairs_follows_their_tolerance(name: str) -> None:
-    """The step follows rtol^(1/p), the error its power p: slope 1 over seven decades. The distances
-    are sums of errors of either sign, which scatter by half a decade; over 8 points whose spread is
-    2.3 decades that is 0.08 of a slope, and twice that is allowed."""
+    """The step is proportional to rtol^(1/p) and the error to its power p, so the slope is 1 over
+    seven decades. The distances are sums of errors of either sign, which scatter by half a decade;
+    over 8 points whose spread is 2.3 decades that is 0.08 of a slope, and twice that is allowed."""
     tolerances = 10.0 ** -np.arange(5, 13)
     shifts = [own_separatrix(method=name, rtol=rtol, atol=rtol / 100) for rtol in tolerances]
     slope = exponent(tolerances, shifts)

@@ -18,8 +18,9 @@ CONTROLLED: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("how", CONTROLLED.values(), ids=CONTROLLED)
 def test_the_number_of_controlled_steps_grows_only_logarithmically(how: dict[str, Any]) -> None:
-    """Each decade of a/b adds as many steps or fewer: near the flat position the motion is similar
-    to itself, so that each factor in a/b adds a number of steps. As a power of a/b: below 0.2."""
+    """No decade of a/b adds more steps than the one before: near the flat position the motion is
+    self-similar, so that each factor in a/b adds a fixed number of steps. As a power of a/b, the
+    growth is below 0.2."""
     counts = [steps_taken(ratio, **how) for ratio in RATIOS]
     told(", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))
@@ -40,9 +41,9 @@ def test_the_cost_of_five_coordinates_grows_slower_than_the_root_of_a_over_b(nam
 
 @pytest.mark.parametrize(("method", "last"), [("rk4", 6), ("gauss", 6), ("radau", 5)])
 def test_the_number_of_equal_steps_grows_like_a_over_b(method: str, last: int) -> None:
-    """The passage of the flat side is b/a of the swing, and the step a part of it: slope 1, except
-    for terms of the next order, 1/10 at a/b = 10, and the factors of 2^(1/4), which at both ends of
-    a fit over a factor of 30 are 0.05 each."""
+    """Passing the flat side takes b/a of the swing, and the step is a fraction of that: slope 1,
+    except for terms of the next order, 1/10 at a/b = 10, and factors of 2^(1/4), which at both ends
+    of a fit over a factor of 30 are 0.05 each."""
     counts = [steps_needed(ratio, method) for ratio in RATIOS[2:last]]
     slope = exponent(RATIOS[2:last], counts)
     told(f"{method}: {', '.join(f'{count:.0f}' for count in counts)}: slope {slope:.3f} (1)")

@@ -1,4 +1,4 @@
-"""More work beyond rounding improves no answer: its errors stay there or rise again.
+"""Once errors reach rounding, more work improves no answer: they stay there or rise again.
 
 Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
 sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated
@@ -103,9 +103,9 @@ ASKED: dict[str, tuple[range, range, float]] = {
 
 @pytest.mark.parametrize("method", ASKED)
 def test_tolerances_below_rounding_gain_nothing(method: Any) -> None:
-    """Down to rounding the error is evaluations to the power of minus the order (a third of it
-    either way: steps change with the tolerance); below, each digit requested costs a fifth more or
-    half as much again, and the error stays within 16 ulp of the angle, some 32 rad after ten half
+    """Down to rounding the error falls as the number of evaluations to the power of minus the order
+    (to within a third, since steps change with the tolerance); below, each further digit costs a
+    fifth to a half more, and the error stays within 16 ulp of the angle, some 32 rad after ten half
     turns."""
     falling, asked, order = ASKED[method]
     end = 10.37 * period(SPUN) / 2

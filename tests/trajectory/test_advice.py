@@ -1,4 +1,4 @@
-"""A StabilityWarning comes exactly where a motion has lost what it must keep, and how much."""
+"""A StabilityWarning is issued for every motion that loses what it must keep, and no other."""
 
 import math
 import warnings
@@ -53,8 +53,8 @@ def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, 
 @pytest.mark.parametrize("how", [{"model": "rolling", "method": "rk4"}, DRIFTING])
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_reported_losses_agree_with_the_samples(how: dict[str, Any], slope: float) -> None:
-    """Losses agree with the energies and constraints of the trajectory, which are computed
-    differently, to some roundings of the largest term of the energy."""
+    """Losses agree with the energies and constraints of the trajectory, which are computed in
+    another way, to some roundings of the largest term of the energy."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=0.2, omega=3.2, slope=slope)
     motion, seen = eight_steps(scene, 2.0, **how)
     found = lost(motion)
@@ -187,7 +187,7 @@ def test_a_warning_states_the_loss_and_a_remedy() -> None:
     assert "or method 'exact'" in said and motion.success
 
 
-def test_loose_tolerances_are_taken_at_their_word() -> None:
+def test_losses_within_a_loose_tolerance_give_no_warning() -> None:
     """Energy losses up to ten times a requested rtol give no warning; larger ones do."""
     motion, said = advice(SCENE, 3.0, model="rolling", method="dop853", rtol=5e-3)
     assert 1e-2 < lost(motion).energy < 5e-2 and said == []

@@ -1,4 +1,4 @@
-"""Tables of events have the bits of the objects, for one motion and for many."""
+"""Tables of events equal the objects bit for bit, for one motion and for many."""
 
 import copy
 import pickle
@@ -42,7 +42,7 @@ def size(table: rl.EventTable) -> int:
 
 
 def require_bits(one: rl.EventTable, other: rl.EventTable) -> None:
-    """All columns that both have; equal zeros have equal signs."""
+    """Require equal bits in all columns that both have, including the signs of zeros."""
     assert size(one) == size(other)
     for name in other.keys() & one.keys():
         mine, its = one[name], other[name]
@@ -53,7 +53,7 @@ def require_bits(one: rl.EventTable, other: rl.EventTable) -> None:
             assert mine.tobytes() == its.tobytes(), name
 
 
-def test_a_table_has_the_bits_of_the_objects() -> None:
+def test_a_table_equals_the_objects_bit_for_bit() -> None:
     """Objects compute their values one by one, in the core and in plain floats."""
     for motion in motions():
         objects = Events(tuple(motion.events))  # of unknown origin: their table reads them
@@ -77,7 +77,7 @@ def test_the_motions_have_events_of_all_kinds() -> None:
 
 
 def test_an_impact_changes_the_motion_by_its_impulse() -> None:
-    """Newton's second law, and the energies of the states; others have no impulse."""
+    """Newton's second law holds, and the energies of the states; other events have no impulse."""
     for motion in motions():
         table, mass = motion.events.table, motion.scene.mass
         hit = table["kind"] == EventKind.IMPACT
@@ -92,7 +92,7 @@ def test_an_impact_changes_the_motion_by_its_impulse() -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2, ThreadPoolExecutor(2)])
-def test_tables_of_many_motions_are_those_of_each(workers: Any) -> None:
+def test_the_table_of_many_motions_joins_the_tables_of_each(workers: Any) -> None:
     found, each = many(workers=workers), [motion.events.table for motion in motions()]
     assert np.array_equal(found["scene"], np.repeat(np.arange(len(each)), [*map(size, each)]))
     for place in range(len(each)):
@@ -131,7 +131,7 @@ def test_a_folder_has_the_same_table(tmp_path: Path) -> None:
             require_bits(motion.events.table, alone.events.table)
 
 
-def test_copies_and_files_keep_the_table_and_nobody_can_change_it(tmp_path: Path) -> None:
+def test_copies_and_files_keep_the_table_read_only(tmp_path: Path) -> None:
     motion = motions()[0]
     table = motion.events.table
     motion.save(tmp_path / "motion.npz")

@@ -1,6 +1,6 @@
 """The methods bound to a motion from other modules behave as if they were written in its class.
 
-Tests of their modules check their results; these check their presence for people and programs.
+Tests of their modules check their results; these check that people and programs can find them.
 """
 
 import ast
@@ -45,7 +45,7 @@ def test_type_checkers_know_every_bound_method() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_each_bound_method_has_its_name(name: str) -> None:
-    """help, Jupyter and pickles of bound methods find each method by the name of its calls."""
+    """help, Jupyter and pickles of bound methods find each method by its name."""
     method, motion = getattr(Trajectory, name), rl.simulate(rl.scenes.drop, 1.0)
     assert name in dir(motion) and inspect.isroutine(method) and method.__name__ == name
     assert inspect.getdoc(method) or name.startswith("_")
@@ -92,7 +92,7 @@ def test_nothing_is_loaded_before_it_is_needed() -> None:
     subprocess.run([sys.executable, "-c", script], check=True, timeout=300)
 
 
-def test_the_cause_of_a_value_that_cannot_be_had_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cause_of_an_unavailable_value_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     """A broken matplotlib, or an error in a derived array, is not a missing attribute."""
     motion = rl.simulate(rl.scenes.rolling, 1.0)
     monkeypatch.setattr(methods, "import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""The samples of a Trajectory: every array by its definition, and the residuals of a million.
+"""The samples of a Trajectory: each array equals its definition; residuals of a million samples.
 
 The tests compute forces by Newton's law and the geometry in long double. tests/multipliers judges
 the multipliers.
@@ -59,7 +59,7 @@ def test_close_detects_a_difference_of_ten_ulp() -> None:
 
 
 class Own(list[float]):
-    """A list that may answer otherwise than one."""
+    """A list whose methods may behave otherwise."""
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ class Own(list[float]):
     ids=repr,
 )  # fmt: skip
 def test_times_of_every_kind_become_the_same_doubles(t: Any) -> None:
-    """A list of floats and an array of doubles by a short way, which returns such an array."""
+    """A list of floats and an array of doubles take a shortcut, which returns such an array."""
     expected = np.asarray(t, float)
     if expected.ndim == 0:
         expected = np.linspace(0.0, 2.0, 1001)
@@ -94,7 +94,7 @@ def test_times_of_every_kind_become_the_same_doubles(t: Any) -> None:
     + [None, "1.0", (0.0, 1.0), 2**2000, [2**2000], np.ma.masked, np.datetime64("2020-01-01")],
     ids=repr,
 )  # fmt: skip
-def test_the_short_way_takes_no_wrong_times(t: Any) -> None:
+def test_the_shortcut_accepts_no_wrong_times(t: Any) -> None:
     assert _core.sample_times(t) is None
     with pytest.raises((ValueError, TypeError), match=r"^t must"):
         sample_times(t)

@@ -24,7 +24,7 @@ STEPPED: list[dict[str, Any]] = [
 
 
 def every_law() -> Iterator[Trajectory]:
-    """Motions by every law: slides, flights, bounces, rest, rolling; on slopes; with steps."""
+    """Motions of every kind: slides, flights, bounces, rest, rolling; on slopes; with steps."""
     for slope, seed in [(0.0, 5), (0.3, 6)]:
         for scene in random_scenes(30, seed, slope=slope):
             yield simulate(scene, 5.0, model="contact", raise_on_failure=False)

@@ -55,7 +55,7 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
 
 @pytest.mark.parametrize("first", range(1000, 1200, 20))
 def test_passages_of_many_values_agree_with_brute_force(first: int) -> None:
-    """Tables of seven values, with the first, last and extreme samples among them, are found in two
+    """Seven values, with the first, last and extreme samples among them, are searched for in two
     hundred motions of all kinds, for all quantities."""
     passages = 0
     for seed in range(first, first + 20):
@@ -148,7 +148,7 @@ def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() ->
         motion.when(function=lambda m: np.sin(m.theta))
 
 
-def test_a_constant_value_counts_only_where_it_begins() -> None:
+def test_a_constant_value_counts_only_where_it_starts() -> None:
     still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
     for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
         assert still.when(**given).tolist() == [0.0]  # type: ignore[call-overload]
@@ -284,7 +284,7 @@ def test_the_largest_double_is_never_passed() -> None:
 
 
 def test_too_little_memory_for_the_times_is_a_memory_error() -> None:
-    """With room for none, some and all of a hundred thousand arrays of times."""
+    """There is room for none, some or all of a hundred thousand arrays of times."""
     program = """
         import resource, numpy as np, rolling_ellipse as rl
         motion = rl.simulate(rl.scenes.rolling, 1.0)

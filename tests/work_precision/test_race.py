@@ -74,7 +74,7 @@ def only(found: WorkPrecision, name: str) -> Any:
 
 @pytest.mark.parametrize("off", [1e-3, 1e-7])
 def test_an_error_is_measured_at_its_true_size(off: float) -> None:
-    """A constant error of theta is measured at the end, in the mean and at worst."""
+    """A constant error of theta has its size at the end, in the mean and at its largest."""
     run = only(raced(Peer(off=off)), "toy")
     for name in ("largest", "final", "l2", "linf"):
         assert run.value(name) == pytest.approx(off, rel=1e-6)
@@ -82,7 +82,7 @@ def test_an_error_is_measured_at_its_true_size(off: float) -> None:
 
 
 def test_each_component_counts_in_its_own_unit() -> None:
-    """omega is judged relative to the motion's fastest, x relative to the long semi-axis."""
+    """omega is judged relative to its largest value, x relative to the long semi-axis."""
     exact = simulate(ROTATION, np.linspace(0, END, 4001))
 
     def reference(t: Any) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Answers of a WorkPrecision, judged by hand-made tables of hand-made runs."""
+"""Answers of a WorkPrecision equal hand-made tables of hand-made runs."""
 
 import json
 import math
@@ -107,7 +107,7 @@ def test_the_verdict_agrees_with_the_table() -> None:
 
 
 def test_the_verdict_begins_with_peers_that_are_ahead() -> None:
-    """Only of the best of the package's methods, and at the errors that both have reached."""
+    """Peers must beat the best of the package's methods, at errors that both have reached."""
     exact = [replace(each, steps=0) if each.name == "sure" else each for each in RUNS]
     few = run("few", 1e-2, 2e-6, tags=("peer",), steps=3)
     near = run("near", 1e-14, 1e-6, tags=("peer",), steps=0)

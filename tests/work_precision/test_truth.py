@@ -46,8 +46,8 @@ def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
 
 
 def test_less_accuracy_is_attainable_near_the_separatrix() -> None:
-    """Near the tip differences grow as e^(lambda t), and a half turn takes ln(1/d)/lambda and a
-    little, at a part d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
+    """Near the tip differences grow as e^(lambda t), and a half turn takes just over ln(1/d)/lambda
+    at a relative distance d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
     speed = math.sqrt(2 * 9.81 / 2.25)  # roll-over speed of uniform discs, 2:1, physics (44)
     found = []
     for k in (3, 6, 9, 12):
