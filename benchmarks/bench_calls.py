@@ -180,14 +180,14 @@ def flows() -> dict[str, dict[str, Case]]:
     kept: dict[str, Any] = {}
 
     def into_known_memory(case: Case) -> Case:
-        """The same call while its last answer is kept, whose memory the next but one takes."""
+        """The same call while its last answer is kept; the call after next reuses its memory."""
         return Case(lambda: kept.update(answer=case.call()), case.count)
 
     of_many = {
         "R: 1e6 samples of 100 half turns": into_known_memory(samples(100)),
         "R: 1e6 samples of 1 half turn": into_known_memory(samples(1)),
         "R: as the first, into fresh memory": samples(100),
-        # what the system takes to give and clear the memory of an answer
+        # time in which the system allocates and clears the memory of an answer
         "filling as much fresh memory": Case(
             lambda: [np.full(SAMPLES, 1.0) for _ in COLUMNS], SAMPLES
         ),

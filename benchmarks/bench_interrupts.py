@@ -5,9 +5,9 @@
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
 table has the median, the 95th percentile and the longest time from the signal to the
 KeyboardInterrupt. A call afterwards must give the same result bit for bit. The exit code is 1 if it
-differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line:
-Jupyter takes longer to draw the source. The last line has the time with the source and is not
-judged. Run it on an otherwise idle machine.
+differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line,
+since Jupyter takes longer to show the source. The last line of the table has the time with the
+source and is not judged. Run it on an otherwise idle machine.
 """
 
 import argparse

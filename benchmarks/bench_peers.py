@@ -1,6 +1,6 @@
 """The package compared with third-party integrators: python benchmarks/bench_peers.py
 
-Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers), missing
+Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers); missing
 ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
 tolerances or steps, in turn (`rolling_ellipse.work_precision`). The largest error at samples and at
 the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is timed

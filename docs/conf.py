@@ -30,7 +30,7 @@ copybutton_selector = (
 )
 copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True  # examples
 default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
-autodoc_default_options = {  # xp is a module, whose text is not ours
+autodoc_default_options = {  # xp is a module with a docstring of its own
     "members": True, "member-order": "bysource", "exclude-members": "xp"
 }  # fmt: skip
 numpydoc_show_class_members = False
@@ -43,7 +43,7 @@ html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
 html_logo = html_favicon = "_static/logo.svg"
 templates_path, html_static_path = ["_templates"], ["_static"]
 html_css_files, html_js_files = ["site.css"], ["site.js"]
-html_show_search_summary = False  # it reads pages, which a browser forbids from files
+html_show_search_summary = False  # browsers forbid it to read pages from files
 
 
 def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
@@ -68,7 +68,7 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-signature", name_modules, priority=400)  # before numpydoc
     app.connect("source-read", lead_to_copies)
     app.connect("builder-inited", keep_pictures_in_the_site)
-    files = Path(app.doctreedir) / "examples"  # which examples write
+    files = Path(app.doctreedir) / "examples"  # written by examples
     files.mkdir(parents=True, exist_ok=True)
     app.config.plot_working_directory = str(files)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows

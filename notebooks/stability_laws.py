@@ -1,6 +1,6 @@
 """Measurements of notebook 07, section by section; tests/stability asserts their laws.
 
-A measurement is a short run, or a few, and gives numbers: it draws nothing and judges nothing.
+A measurement is one short run or a few and returns numbers; it draws and judges nothing.
 """
 
 import math
@@ -23,7 +23,7 @@ EXPLICIT = ("rk4", "dopri5", "dop853")
 
 
 def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
-    """A simulation with any outcome, without the warnings that the notebook is about."""
+    """A simulation with any outcome, without the warnings that the notebook discusses."""
     with warnings.catch_warnings():
         for shown_here in (rl.StabilityWarning, rl.ValidityWarning):
             warnings.simplefilter("ignore", shown_here)
@@ -66,7 +66,7 @@ def growth(errors: Floats) -> float:
 
 
 def largest(holds: Callable[[float], bool], low: float, high: float, width: float = 1e-12) -> float:
-    """Largest value at which a property holds that holds at low and not at high, by bisection."""
+    """Largest value at which a property holds, by bisection; it holds at low and not at high."""
     assert holds(low) and not holds(high), (low, high)
     while high - low > width * high:
         middle = (low + high) / 2
@@ -285,7 +285,7 @@ def rolls_over(omega: float, half: float, **how: Any) -> bool:
 
 
 def own_separatrix(**how: Any) -> float:
-    """Relative distance from omega_R at which a method begins to roll over, by bisection."""
+    """Relative distance from omega_R at which a method starts to roll over, by bisection."""
     times, speed = np.arange(0.0, 60.0, 0.25), rl.thresholds(A, B).roll_over_speed
     low, high = -0.2, 0.2
     for _ in range(60):
@@ -403,7 +403,7 @@ def shortfall(samples: int, places: ArrayLike) -> Floats:
 
 
 def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
-    """Loop over impacts: the event from which on the clock stands still, and its time."""
+    """Loop over impacts: the first event at which the clock stands still, and its time."""
     clock, speed, stands = v / GRAVITY, v * e, 0
     for event in range(1, events):
         later = clock + 2 * speed / GRAVITY
@@ -473,7 +473,7 @@ SMALL = Scene(A, B, omega=1e-6 * OMEGA)
 
 def amplitude(method: str, y: float, steps: int, **how: Any) -> Floats:
     """Amplitude of small rocking after each step of y/Omega, relative to the start; inf at the end
-    of a motion that was given up."""
+    of a motion that was abandoned."""
     size = {} if method == "exact" else {"step": y / OMEGA}
     found = run(SMALL, np.arange(steps + 1) * (y / OMEGA), method=method, **size, **how)
     grown = np.hypot(found.theta, found.omega / OMEGA) / 1e-6
@@ -489,7 +489,7 @@ def rocked_to(method: str) -> float:
 
 
 def given_up_from(stages: int) -> float:
-    """Least Omega h at which the stages of Gauss's method are not found in one of 300 steps."""
+    """Least Omega h at which Gauss's method fails to solve the stages of one of 300 steps."""
     return largest(
         lambda y: math.isfinite(amplitude("gauss", y, 300, stages=stages)[-1]), 1.0, 20.0, 1e-3
     )
@@ -512,7 +512,7 @@ for _method in ("dop853", "dopri5"):
 
 
 class Loose(NamedTuple):
-    """Losses of a motion of a minute with a tolerance of 1e-2."""
+    """Losses of a motion that lasts a minute, with a tolerance of 1e-2."""
 
     motion: Trajectory
     missed: Floats  # constraint errors at each sample, in long semi-axes and rad

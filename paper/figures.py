@@ -27,7 +27,7 @@ def motion() -> Figure:
 
 
 def conditions() -> Figure:
-    """Condition numbers of four problems, and what three engines make of all of them."""
+    """Condition numbers of four problems, and the errors of three engines in all problems."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.4), layout="constrained")
     for name, colour in CURVES.items():
         one = benchmark.problem(name)

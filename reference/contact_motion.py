@@ -30,12 +30,12 @@ of rolling and sliding:
     held      omega = 0 for a time, N = g cos alpha: at rest with F = -g sin alpha for ever, or
               sliding with F = -mu s N; s v
 
-Where slip, turning or both are zero, each is tried without and to both sides. A mode is possible
+Where slip, turning or both are zero, each is tried as absent and to both sides. A mode is possible
 if its N and B are above 0, the slip and the turning that start grow to their sides, and neither
 friction nor the couple is larger than available. Where none is possible, the body flies if c <= 0
-and jams if not, as a slide does with B < 0 < c; where several are, the motion is undecided.
-F and N jump where omega changes its sign, so slip may start there. The change of sign is no event,
-but rest is. Without friction slip has no side, and changes its sign without an event.
+and jams if not, as a slide does with B < 0 < c; where several are, the motion is undecided. F and N
+jump where omega changes its sign, so slip may start there. The change of sign is no event, but rest
+is. Without friction slip has no side, and changes its sign without an event.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
@@ -70,7 +70,7 @@ LEAST_REBOUND = 1e-3  # least rebound speed / sqrt(g min(a, b)) in all other sce
 
 
 class Undecided(Exception):
-    """The scene is too close to one of another kind, or is not modelled here."""
+    """The scene is too close to a scene of another kind, or is not modelled here."""
 
 
 class Scene(NamedTuple):
@@ -352,8 +352,8 @@ def sign_of(number: Any) -> int:
 
 
 def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
-    """How the next arc may turn, in fields of `Arc`: these have no meaning without a couple, and
-    from omega = 0 there are three ways."""
+    """How the next arc may turn, in fields of `Arc`: they have no meaning without a couple, and
+    from omega = 0 there are three possibilities."""
     if body.lever == 0:
         return [{}]
     if omega != 0:
@@ -362,8 +362,8 @@ def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
 
 
 def is_possible(body: Body, state: State, arc: Arc) -> bool:
-    """Whether the forces of an arc that rolls or slides are available, and what starts in it grows
-    to its side."""
+    """Whether the forces of an arc that rolls or slides are available, and its slip and turning
+    grow to the right side."""
     found = motion(body, state, arc, 2)
     h, o = body.touch(state.phi)[:2]
     normal, friction = found.normal[0], found.friction[0]

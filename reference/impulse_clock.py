@@ -2,9 +2,9 @@
 
     python reference/impulse_clock.py
 
-The clock is the impulse of the normal force: rates by it stay finite where B vanishes, at which
-contact_motion.py, whose clock is time, stops. Extrapolated midpoint rules (W. Gragg) integrate the
-motion. Prints the numbers in tests/contact/test_slides.py.
+The clock is the impulse of the normal force. Rates with respect to it stay finite where B vanishes,
+where contact_motion.py, whose clock is time, stops. Extrapolated midpoint rules (W. Gragg)
+integrate the motion. Prints the numbers in tests/contact/test_slides.py.
 """
 
 from typing import Any
@@ -25,7 +25,7 @@ SCENES = (
 
 
 def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
-    """Rates of the state y, named in NAMES, by the impulse per mass; and the slip."""
+    """Rates of the state y, named in NAMES, per impulse per mass; and the slip."""
     theta, omega, x_dot, _, _ = y
     a, b, k2 = mp.mpf(scene.a), mp.mpf(scene.b), mp.mpf(scene.inertia) / mp.mpf(scene.mass)
     sine, cosine, c2 = mp.sin(theta), mp.cos(theta), (a - b) * (a + b)
@@ -61,7 +61,7 @@ def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[A
 
 
 def end_of_slide(scene: rl.Scene) -> list[Any]:
-    """The state in which the slip of a sliding start vanishes."""
+    """The state in which the slip vanishes, from a sliding start."""
     y = [mp.mpf(getattr(scene, name, 0.0)) for name in NAMES]
     slip = rates(scene, 1, y)[1]
     side, step = (1 if slip > 0 else -1), mp.mpf("1e-3")

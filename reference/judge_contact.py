@@ -83,7 +83,7 @@ MOST_SECONDS = 60.0  # processor time for one scene [s]
 ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
 SHORTEST = 1e-6  # least interval with samples / natural time: a hop may be lower than tolerances
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
-NEARBY = 12  # number of slightly changed scenes that tell a limit from a fault
+NEARBY = 12  # number of slightly changed scenes that distinguish a limit from a fault
 NEARBY_INPUTS = (
     "a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope", "rolling_resistance"
 )  # fmt: skip

@@ -80,7 +80,7 @@ def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, 
 
 
 def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
-    """Scene with the guesses of somebody who has seen the film once."""
+    """Scene with the guesses of a person who has watched the film once."""
     guess = {name: 1.2 * value_of(scene, name) for name in free}
     for name, off in {"x": 0.1 * scene.a, "z_dot": 0.1 * math.sqrt(9.81 * scene.a)}.items():
         guess |= {name: guess[name] + off} if name in free else {}
@@ -117,7 +117,7 @@ def right(seed: int) -> dict[str, Any]:
 
 
 def camera(seed: int) -> dict[str, Any]:
-    """The centre is out of scale by 0.2 to 5, the ground off by three bodies; the first frame is up
+    """The scale is wrong by 0.2 to 5 times, the ground by up to three bodies; the first frame is up
     to 1.5 sqrt(a/g) after the start, and the clock of the film may have run for long before."""
     random, kind = np.random.default_rng([7, seed]), KINDS[seed % 5]
     scene, free, sigma, t = drawn(kind, random)
@@ -131,7 +131,7 @@ def camera(seed: int) -> dict[str, Any]:
         for name in TRACKS:
             film[name][random.random(t.size) < 0.1] = np.nan
     film["t"] = film["t"] - clock
-    free = tuple(name for name in free if name != "z")  # which the clock tells
+    free = tuple(name for name in free if name != "z")  # the clock determines it
     guess = guessed(scene, free)
     true = {name: value_of(scene, name) for name in free}
     true |= {"scale": scale, "ground": ground, "clock": clock}
@@ -180,7 +180,7 @@ def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], An
             continue
         rate, last = random.choice([60, 240]), ends[0] * random.uniform(0.7, 1.1)
         t = np.arange(1, max(20, int(rate * last)) + 1) / rate
-        t = t[:: math.ceil(t.size / 300)]  # as of a slower camera
+        t = t[:: math.ceil(t.size / 300)]  # like a slower camera's
         if scene.rolling_resistance > 5 * _error(scene, free, sigma, t):
             return scene, free, sigma, t
 
@@ -267,7 +267,7 @@ def wrong(seed: int) -> dict[str, Any]:
 
 
 def _over_truth(film: Tracks, loss: str) -> dict[str, Any]:
-    """How far the cost of the minimum is above that of the one downhill from the truth."""
+    """Cost of the minimum, minus that of the minimum downhill from the truth."""
     start = time.process_time()
     fit = rl.fit_motion(**film, scene=GUESS, free=FREE, sigma=SIGMA, loss=loss)
     seconds, cost = time.process_time() - start, _cost(fit, loss)

@@ -137,7 +137,7 @@ def scene_of(v: Values, i: int) -> rl.Scene | None:
 
 def ends(v: Values, t: Any) -> tuple[Any, Any]:
     """States and codes (mode, events, first, ending) of `rl.ends`; nan, -1 for refused starts."""
-    columns = [  # what is not drawn has the default of a scene; NumPy makes None a NaN
+    columns = [  # values not drawn have a scene's defaults; NumPy turns None into NaN
         v[name] if name in v else np.full(len(t), getattr(rl.Scene, name), float)
         for name in _core.FIELDS["Scene"]
     ]

@@ -317,10 +317,10 @@ def tags(scene: Scene, found: Sampler) -> list[str]:
 
 
 def answer(name: str, found: Sampler) -> dict[str, Any]:
-    """What a simulator must answer, depending on the question of the problem.
+    """The answer that a simulator must give, depending on the question of the problem.
 
     For settling bounces: those after a flight higher than `LEAST_GAP`, and the time of their end.
-    For a body that comes to rest: the place where it rests, and the number of half swings.
+    For a body that comes to rest: its position at rest, and the number of half swings.
     """
     family, last = name.split(".")[0], found.samples[-1]
     if found.kinds[-1:] == ["REST"]:

@@ -54,7 +54,7 @@ MOST_EVENTS = 6
 
 
 def is_flat_drop(scene: Scene) -> bool:
-    """Whether a body drops on its flat side without spin or slip: no other angle moves alike."""
+    """Whether a body drops on its flat side without spin or slip: other angles move differently."""
     moving = scene.theta or scene.omega or scene.x_dot or scene.slope
     return scene.z is not None and not moving
 

@@ -2,7 +2,7 @@
 
     python make_resistance_reference.py         makes and checks the table (8 minutes, one core)
 
-As make_contact_reference.py, with the column `rolling_resistance` and two more states of a scene,
+Like make_contact_reference.py, with the column `rolling_resistance` and two more states of a scene,
 at times between. Named scenes come first: rocking and rolling that ends, in the flat position and
 on the tip, a slide that holds the body or stops turning, and turns where slip starts.
 """

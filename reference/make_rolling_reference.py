@@ -317,7 +317,7 @@ class Body(NamedTuple):
         return math.hypot(self.a * math.sin(theta), self.b * math.cos(theta))
 
     def speed(self, theta: float, level: Any) -> float:
-        """omega of the energy E = g * level at an angle."""
+        """omega at an angle for the energy E = g * level."""
         s, c = mp.sin(theta), mp.cos(theta)
         h2 = (self.a * s) ** 2 + (self.b * c) ** 2
         if level <= mp.sqrt(h2):

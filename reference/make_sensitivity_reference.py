@@ -2,10 +2,10 @@
 
     python make_sensitivity_reference.py        makes the table (10 minutes, one core)
 
-A row has the derivatives of x, z, theta, x_dot, z_dot, omega by one input, all others as given:
-differences of 1e-15 (relative, where the input is above 1e-6) in motions of 42 digits, towards
-larger values. An input has no row if it is infinite or not given, if the changed motion has other
-events, or if its effect is known: x, and mass where it changes nothing.
+A row has the derivatives of x, z, theta, x_dot, z_dot, omega with respect to one input: differences
+of 1e-15 (relative, where the input is above 1e-6) in motions of 42 digits, towards larger values.
+An input has no row if it is infinite or not given, if the changed motion has other events, or if
+its effect is known: x, and mass where it changes nothing.
 """
 
 import csv

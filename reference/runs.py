@@ -1,4 +1,4 @@
-"""What the makers of tables and the judges of random scenes share: drawn numbers and files."""
+"""Drawn numbers and files, shared by the makers of tables and the judges of random scenes."""
 
 import csv
 import json

@@ -33,7 +33,7 @@ PACKAGE = "python/rolling_ellipse/"
 
 
 def new_folder(name: str) -> Path:
-    """An argument: a folder that does not exist, which is made."""
+    """A folder that does not exist yet, from an argument; it is created."""
     folder = Path(name).absolute()
     if folder.exists():
         raise argparse.ArgumentTypeError(f"it must be a new one, got {folder}")

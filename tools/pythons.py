@@ -4,11 +4,11 @@
 
 makes FOLDER, which must not exist. PYTHON is a version (3.14, or 3.14t without the GIL) or the path
 of an interpreter; by default it is every version in the classifiers of pyproject.toml, and those
-that can be had without the GIL. Versions come from the PATH or else, if the script runs as root,
+that are available without the GIL. Versions come from the PATH or else, if the script runs as root,
 from Debian: mmdebstrap makes a system in FOLDER (nothing of the host is mounted in it) with g++ and
-that Python, which is built from Debian's source if it has no GIL (ten minutes). All that has a
-wheel is installed in a new environment. Each Python gets a line: versions, requirements without a
-wheel, counts of pytest, and reasons for skipped tests. FOLDER/VERSION.log has the output.
+that Python, which is built from Debian's source if it has no GIL (ten minutes). Packages that have
+a wheel are installed in a new environment. Each Python gets a line with versions, requirements
+without a wheel, counts of pytest, and reasons for skipped tests. FOLDER/VERSION.log has the output.
 """
 
 import argparse
@@ -46,7 +46,7 @@ make --silent -j "$(nproc)" && make --silent install
 
 
 def chroot(version: str, folder: Path) -> list[str]:
-    """The words that run a command in a new Debian system with a Python of this version."""
+    """The words that start a command in a new Debian system with a Python of this version."""
     number = version.rstrip("t")
     if os.geteuid() != 0 or shutil.which("mmdebstrap") is None:
         sys.exit(f"no python{version} on the PATH: install it, or run this as root with mmdebstrap")
@@ -64,7 +64,7 @@ def chroot(version: str, folder: Path) -> list[str]:
     else:
         why = re.search(r"^E: .*", said, re.MULTILINE) or [said[-60:]]
         sys.exit(f"not in Debian's {' and '.join(SUITES)} ({why[0]}): give the path of one")
-    shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # pip trusts whom the host trusts
+    shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # authorities for pip
     for name in run("git", "ls-files", cwd=ROOT).splitlines():
         (system / "project" / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, system / "project" / name)

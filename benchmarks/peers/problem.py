@@ -5,9 +5,9 @@ D = S - AB/u, so that the equation of motion needs neither h' nor the radius of 
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
-where sigma and gamma are gravity along the ground and into it. It is the equation of the notebook
-with fewer products, which makes the peers faster: heyoka takes half the time. S u - AB loses a
-factor A/(k^2 + B) of the last place near the flat: at most 4 for a uniform disc, however thin.
+where sigma and gamma are gravity along the ground and into it. This is the notebook's equation with
+fewer products, which makes the peers faster: heyoka takes half the time. S u - AB magnifies a
+rounding by A/(k^2 + B) near the flat position: at most 4 times for a uniform disc, however thin.
 """
 
 import math

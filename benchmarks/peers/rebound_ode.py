@@ -1,4 +1,4 @@
-"""REBOUND's own interface for ODEs, which its Gragg-Bulirsch-Stoer integrator carries.
+"""REBOUND's own interface for ODEs, solved by its Gragg-Bulirsch-Stoer integrator.
 
 The right-hand side is a C function made by numba; it finds the body behind `ref` of the ODE.
 """

@@ -1,9 +1,9 @@
 """Make the pictures and the tasks of the sheets in docs/course: python docs/makers/course.py
 
     pictures   01.png to 10.png
-    tasks      the marked parts of the sheets, from the questions and data that `course` marks by
+    tasks      the marked parts of the sheets, from the questions and data of `course`
 
-Named steps are made alone.
+With steps named, only these are made.
 """
 
 import math
@@ -44,7 +44,7 @@ K2 = (A * A + B * B) / 4
 
 
 def with_tasks(path: Path) -> str:
-    """The text of a sheet with its tasks made anew."""
+    """The text of a sheet with its tasks made again."""
     text = path.read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     _, closed, after = rest.partition(END)

@@ -46,7 +46,7 @@ def solver(library: str):
 
 
 def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tuple[str, str]:
-    """The largest error of a solution that reached its end, and what became of it."""
+    """The largest error of a solution that reached its end, and how its run ended."""
     if not found.success:
         reached = max(found.t, default=0.0)  # of the given times
         return "", f"t = {reached:.2g} s: {found.message}"

@@ -1,7 +1,7 @@
 """Write the page with the core itself: python docs/makers/live.py [page.html]
 
 It is the page of `explore(scenes.report)` with sliders for the whole scene, a map of half turns and
-the energies, by the files of docs/live. It needs no other file and no network.
+the energies, from the files of docs/live. The page needs no other file and no network.
 """
 
 import json
@@ -42,7 +42,7 @@ def page(explorer: Explorer) -> str:
 
 
 def numbers(explorer: Explorer) -> dict[str, Any]:
-    """The numbers that a reader moves, or a link holds; infinite friction is None."""
+    """The numbers that a reader can change or a link contains; infinite friction is None."""
     scene, start = explorer.scene, explorer.scene.replace(impulse=None).initial_state
     height = geometry.support(scene.theta, a=scene.a, b=scene.b)
     flies = start.z > height
@@ -63,7 +63,7 @@ def numbers(explorer: Explorer) -> dict[str, Any]:
 
 
 def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
-    """Group, name, unit, range and step of each slider, in sizes of the body."""
+    """Group, name, unit, range and step of each slider, relative to the size of the body."""
     size = max(given["a"], given["b"])
     rate = math.sqrt(given["gravity"] / size)
     _, strength = axes(explorer.scene)

@@ -1,7 +1,7 @@
 """Make all measurements, pictures and the text that quotes them: python docs/makers/make.py
 
 On a quiet machine, with `pip install '.[test,peers,engines]'`, gfortran (for numbalsoda), g++ and
-Boost's headers; it takes about an hour, and everything is then of one commit and one machine:
+Boost's headers; it takes about an hour, and all results then come from one commit and one machine:
 
     races      docs/data/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/data/batches.json, by benchmarks/bench_batches.py
@@ -13,8 +13,8 @@ Boost's headers; it takes about an hour, and everything is then of one commit an
     text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by dae_table.py
 
-Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
-works; its figures are not for keeping.
+With steps named, only these are made. --quick takes seconds instead of minutes and shows that
+everything works; its figures are not to be kept.
 """
 
 import argparse
@@ -41,7 +41,7 @@ from rolling_ellipse.benchmark.adapters import engine
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent
 DATA, ROOT = DOCS / "data", DOCS.parent
-PAGES = ("README", "docs/speed", "docs/many", "docs/benchmark")  # that quote measurements
+PAGES = ("README", "docs/speed", "docs/many", "docs/benchmark")  # pages that quote measurements
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
@@ -88,7 +88,7 @@ def engines(quick: bool) -> None:
 
 
 def added(quick: bool) -> None:
-    """Run the engines on problems without a score. One that is not installed may refuse them."""
+    """Run the engines on problems without a score. A missing engine may refuse them."""
     from pictures import restored
 
     path = DATA / "engines.json"
@@ -114,7 +114,7 @@ def added(quick: bool) -> None:
 
 
 def refuses(scene: Scene, step: float) -> Any:
-    """Refuse, as any engine, what its file cannot say."""
+    """Refuse, like any engine, a scene that its file cannot express."""
     scene.to_sdf()
     raise ModuleNotFoundError("the engine must be installed for a problem that it may support")
 
@@ -125,7 +125,7 @@ def described(module: Any, name: str) -> dict[str, str]:
 
 
 def keep(found: dict[str, Any]) -> None:
-    plain = json.dumps(found)  # has NaN, which JSON does not know
+    plain = json.dumps(found)  # contains NaN, which JSON lacks
     known = json.loads(plain, parse_constant=lambda name: None)
     (DATA / "engines.json").write_text(in_lines(known, SCORES), encoding="utf-8")
 
@@ -186,7 +186,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 
 def quoted(page: str) -> str:
-    """A page with its marked parts made anew."""
+    """A page with its marked parts made again."""
     parts = {"speed": speed, "batches": throughput, "engines": engine_table, "others": others}
     found = [name for name in parts if f"<!-- {name}: made by docs/makers/make.py -->\n" in page]
     if not found:
@@ -197,7 +197,7 @@ def quoted(page: str) -> str:
 
 
 def with_part(page: str, name: str, made: str) -> str:
-    """A page with another text between the marks of a part."""
+    """A page with the text between the marks of a part replaced."""
     begin, end = f"<!-- {name}: made by docs/makers/make.py -->\n", f"<!-- end of {name} -->\n"
     before, _, rest = page.partition(begin)
     _, closed, after = rest.partition(end)
@@ -256,7 +256,7 @@ def calls() -> list[str]:
 
 
 def others() -> str:
-    """Table of what other programs do, with a figure for each."""
+    """Table of the answers of other programs, with a figure for each."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     rows = [["others", "what they do", "beside this package"]]

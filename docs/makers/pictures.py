@@ -92,7 +92,7 @@ def engines() -> dict[str, Figure]:
 
 
 def restored(rows: list[dict[str, Any]]) -> Scores:
-    """Scores from their records, whose missing numbers are None in files."""
+    """Scores from their records; missing numbers are None in files."""
     scores = []
     for row in rows:
         known = {key: np.nan if value is None else value for key, value in row.items()}

@@ -1,7 +1,7 @@
 """Make a page for each problem of `benchmark`, and their table; a step of `make.py`.
 
 Pages are docs/problems/<id>.md with a picture each; `listed` is a marked part of benchmark.md.
-All numbers are those of the files in python/rolling_ellipse/benchmark/problems, digit by digit.
+All numbers are copied digit by digit from python/rolling_ellipse/benchmark/problems.
 """
 
 import json
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def problems() -> dict[str, Any]:
-    """The files of all problems, by family; numbers are kept as they are written."""
+    """The files of all problems, by family; numbers keep their digits."""
     found = {
         path.stem: json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
         for path in sorted(DATA.glob("*.json"))

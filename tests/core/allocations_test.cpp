@@ -1,4 +1,4 @@
-// Steps and samples allocate nothing: twice as many of them make no more allocations.
+// Steps and samples allocate nothing: twice as many cause no more allocations.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -86,7 +86,7 @@ const Job sampled[] = {
 };
 
 // The knots and the dense output are in two vectors that double their size, so that twice as many
-// steps make one more allocation for each.
+// steps cause one more allocation in each.
 void steps_allocate_nothing() {
     constexpr long vectors = 2;
     for (const Job& job : stepped) {

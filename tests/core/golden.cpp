@@ -1,5 +1,5 @@
 // Prints the bits of motions of every model and of the answers of every proof.
-// tests/core/test_core.py and tools/same_bits.py compare those of several builds.
+// tests/core/test_core.py and tools/same_bits.py compare the output of several builds.
 //
 //     golden > tests/core/golden.txt
 //

@@ -12,7 +12,7 @@ namespace {
 
 int failures = 0;
 
-// Checks the largest error of a function, in ulp of the exact value, at places from low to high in
+// Checks the largest error of a function, in ulp of the exact value, at points from low to high in
 // geometric progression.
 template <class Function, class Exact>
 void within(double ulps, const char* what, double low, double high, const Function& function,

@@ -1,6 +1,6 @@
-// Several threads in the core at once give the same bits as one thread. (A lock of Python, where it
-// has one, separates them in much of the package.) ThreadSanitizer (preset tsan) shows that they
-// share no mutable state.
+// Several threads in the core at once give the same bits as one thread. (In much of the package
+// Python's lock, where there is one, keeps threads apart.) ThreadSanitizer (preset tsan) shows that
+// they share no mutable state.
 //
 //     cmake --preset tsan && cmake --build --preset tsan && ctest --preset tsan
 

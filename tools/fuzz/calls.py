@@ -30,7 +30,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
-#: Functions of files or of seconds per call; tests/refusals has their arguments.
+#: Functions of files, or that take seconds per call; tests/refusals has their arguments.
 SLOW = (
     "rl.examples", "rl.explore", "rl.fit_motion", "rl.read_track", "rl.work_precision",
     "rl.report.errata", "rl.report.errata_table",
@@ -329,7 +329,7 @@ CONTENTS = (
     f"b'{_TABLE}'.replace(b',', b';')", f"b'{_TABLE}'.replace(b'0', b'\"')",
     "b'{{}}'", "b'PK\x03\x04'",
 )  # fmt: skip
-#: Readers and writers, each with a path at which a hostile thing may be.
+#: Readers and writers, each with a path that may hold a hostile object.
 ON_FILES = (
     *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
     *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,
@@ -348,7 +348,7 @@ NAMES_OF = {
 
 
 def files(draw: Draw, of: Body) -> list[str]:
-    """A file, or something else in its place, and a function that reads or writes there."""
+    """A file, or another object in its place, and a function that reads or writes there."""
     line, kind = draw.pick(*ON_FILES), draw.pick(*["file"] * 8, *damage.THINGS)
     names = next((each for part, each in NAMES_OF.items() if f".{part}" in line), ("a",))
     content = filled(draw, of, draw.pick(*CONTENTS))

@@ -1,4 +1,4 @@
-"""Damage to the package's files; a place is given as a fraction of the whole.
+"""Damage to the package's files; positions are fractions of the whole.
 
 `tests/refusals/files.py` has the individual kinds of broken archives.
 """
@@ -13,7 +13,7 @@ from typing import Any
 
 from oracles.files import put_together, taken_apart
 
-#: Things that can be in the place of a file.
+#: Objects that can stand in place of a file.
 THINGS: dict[str, Callable[[Path], Any]] = {
     "pipe": os.mkfifo,
     "folder": os.mkdir,
@@ -25,7 +25,7 @@ THINGS: dict[str, Callable[[Path], Any]] = {
 
 
 def put(kind: str, path: str, content: bytes = b"") -> str:
-    """Put a file or another thing alone into the folder of a path; return the path."""
+    """Put a file or another object alone into the folder of a path; return the path."""
     place = Path(path)
     shutil.rmtree(place.parts[0], ignore_errors=True)
     place.parent.mkdir(parents=True)

@@ -42,7 +42,7 @@ def keeps(write: Any, folder: str) -> Any:
 
 
 def _seen(folder: str) -> dict[str, Any]:
-    """The status of all things in a folder, and the content of regular files."""
+    """The status of all entries of a folder, and the content of regular files."""
     found = [*Path(folder).rglob("*"), Path("mine")]
     return {
         str(each): (os.lstat(each)[:4], each.read_bytes() if each.is_file() else None)
