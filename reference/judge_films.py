@@ -147,7 +147,7 @@ def camera(seed: int) -> dict[str, Any]:
 
 
 def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """As `drawn`: a body that comes to rest, and whose lever is at least five errors from 0.
+    """Like `drawn`, for a body that comes to rest and whose lever is at least five errors from 0.
 
     A rolling body before a camera with a clock of its own has a known spin: where x alone is known,
     it passes a start again with each swing.

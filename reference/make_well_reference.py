@@ -202,8 +202,7 @@ def random_start(rng: random.Random, body: Scene) -> Scene:
 
 
 def is_told_from_rest(scene: Scene) -> bool:
-    """Whether doubles distinguish a start from rest: it is over 8 ulp of h from h' = h tan
-    alpha."""
+    """Whether doubles distinguish a start from rest, well over 8 ulp of h from h' = h tan alpha."""
     short, at = min(scene.a, scene.b), well(scene)
     room = 32 * ROUNDING * short / (max(scene.a, scene.b) - short)
     far = min(abs(math.sin(scene.theta0 - each)) for each in (at.lying, at.rim))

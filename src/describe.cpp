@@ -28,7 +28,7 @@ std::optional<Outcome> outcome_of(EventKind kind) {
     return {};
 }
 
-// What happens to a body with rolling resistance: how it starts, and the first event that ends its
+// The course of a body with rolling resistance: its start, and the first event that ends its
 // rolling, or its rest.
 Sentences course_of(const Scene& scene, const Solution& solution, const Start& start,
                     double begin) {

@@ -87,8 +87,8 @@ const double* read(Struct& to, const Field<Struct> (&table)[N], const double* fr
     return from;
 }
 
-// What the energies and impulses of a body depend on: mass, moment of inertia and its k^2, gravity,
-// cosine and sine of the slope, friction.
+// The numbers that determine a body's energies and impulses: mass, moment of inertia and its k^2,
+// gravity, cosine and sine of the slope, friction.
 inline std::array<double, 7> body_of(const Scene& scene) {
     const double cosine = std::cos(scene.slope), sine = std::sin(scene.slope);
     const double k2 = scene.body().gyration2;

@@ -22,7 +22,7 @@ Coordinates rolling_direction(const ConstraintMatrix& a) {
 
 // The second derivatives of all coordinates, and the multipliers equivalent to a contact force.
 //
-// Of the multipliers of f1 ... f4, lambda1 = F and lambda2 = N. The rows of psi and r carry no
+// The multipliers of f1 and f2 are lambda1 = F and lambda2 = N. The rows of psi and r carry no
 // mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the contact r
 // cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
 MultiplierSolution contact_solution(const Axes& axes, const Geometry& at,

@@ -10,7 +10,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// What users of a body with rolling resistance can call instead.
+// The alternative named where a body with rolling resistance is refused.
 constexpr const char* instead = "the events of simulate tell how the body moves with it";
 
 // A slip after rolling never starts inside the Painleve region. Where |F| exceeds mu N > 0, with

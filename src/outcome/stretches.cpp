@@ -36,7 +36,7 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// What the search for turning points needs to know about a law. Times are measured from the start
+// The facts about a law that the search for turning points needs. Times are measured from the start
 // of the segment, in units of the motion.
 struct Course {
     const char* where;

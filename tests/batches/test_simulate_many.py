@@ -110,7 +110,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
 def test_motions_are_read_when_they_are_first_used(way: str) -> None:
-    """They are read in any order, one at a time; then nothing holds the tables of their chunk."""
+    """Motions are read in any order, one by one; then nothing holds the tables of their chunk."""
     motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
     assert type(motions) is list and len(motions) == len(expected)
     unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}

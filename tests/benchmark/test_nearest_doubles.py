@@ -107,7 +107,7 @@ def test_a_disc_slides_down_a_slope_under_constant_forces() -> None:
 
 
 def test_bounces_of_a_flat_body_are_equally_spaced_in_time() -> None:
-    """From rest at z: the first after sqrt(2 (z - b)/g), the others after twice that."""
+    """From rest at z, the first bounce is after sqrt(2 (z - b)/g), the others after twice that."""
     data = problem("hit.bounce_flat")
     with mp.workdps(DIGITS):
         z, b, g = (mpf(data["scene"][key]) for key in ("z", "b", "gravity"))

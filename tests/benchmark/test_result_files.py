@@ -55,7 +55,7 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
 
 
 def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
-    """They are the sides of a jump; here the first row of each pair is wrong."""
+    """Two such rows are the sides of a jump; here the first row of each pair is wrong."""
     one = benchmark.problem("slide.stick")
     rows = np.repeat(np.column_stack([one.output_times, one.exact(one.output_times)]), 2, axis=0)
     rows[::2, 1:] += 1.0

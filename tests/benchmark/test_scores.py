@@ -130,7 +130,7 @@ def rolls_only(one: Any, t: Any, h: Any) -> Any:
 
 
 def test_the_exact_motion_gets_a_perfect_score() -> None:
-    """At least twelve digits: an error of 2.2e-16 of all inputs grows by the condition number.
+    """Twelve digits are correct: an error of 2.2e-16 of all inputs grows by the condition number.
 
     Two such units are allowed for the rounding of the motion and of the known answer.
     """

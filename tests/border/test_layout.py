@@ -318,7 +318,7 @@ def takes_arrays(function: Any) -> bool:
 
 
 def test_every_function_that_takes_arrays_is_tested() -> None:
-    """They say array_like in their docstrings or leave the type of an argument open."""
+    """Their docstrings say array_like, or leave the type of an argument open."""
     found = {name for name, function in public() if takes_arrays(function)}
     assert len(found) > 50
     assert found <= {name.partition(":")[0] for name in CALLS}

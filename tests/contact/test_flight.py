@@ -218,9 +218,9 @@ def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) ->
 def test_elastic_impacts_neither_gain_nor_lose_energy(
     a: float, b: float, theta: float, omega: float, z: float
 ) -> None:
-    """At most 2e-17 of the energy per impact, a tenth of a rounding: the time of contact is the
-    nearest double, early as often as late. Taking the next double instead would gain 5e-17 to 2e-16
-    at each."""
+    """An impact changes the energy by at most 2e-17, a tenth of a rounding: the time of contact is
+    the nearest double, early as often as late. Taking the next double instead would gain 5e-17 to
+    2e-16 at each."""
     impacts = 50_000
     scene = Scene(a, b, theta=theta, omega=omega, z=z, friction=0.0, restitution=1.0)
     motion = simulate(scene, 1e9, model="contact", max_events=impacts, raise_on_failure=False)

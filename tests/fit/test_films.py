@@ -1,4 +1,4 @@
-"""What a film reveals: its noise, whether its scene fits, and which reading fits instead."""
+"""A fit reveals the noise of a film, whether the scene fits, and which reading fits instead."""
 
 import math
 from typing import Any
@@ -23,7 +23,7 @@ def fitted(tracks: dict[str, Any], **how: Any) -> Fit:
 
 @pytest.mark.parametrize("seed", [6, 7, 14, 23])
 def test_the_fit_is_no_worse_than_one_started_at_the_true_values(seed: int) -> None:
-    """These seeds once led to other minima, whose chi2 was 9 to 30 higher."""
+    """The seeds of these films once led to other minima, whose chi2 was 9 to 30 higher."""
     row = judge_films.example(seed)
     assert row["over"] < 0.1 and "cannot tell" not in row["message"]
 

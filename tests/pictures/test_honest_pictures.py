@@ -162,7 +162,7 @@ def test_overlapping_bodies_do_not_add_up_to_an_opaque_blot() -> None:
 
 
 def test_errors_from_rounding_the_angle_lie_below_the_line_for_this_rounding() -> None:
-    """Within two roundings: psi is a sum of two angles; the energy changes less with the angle."""
+    """Two roundings are allowed: psi is a sum of two angles, and the energy changes less."""
     later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
     panel = figure_of(later.ax).axes[-1]
     (limit,) = (line for line in panel.lines if line.get_label() == "rounding of θ")

@@ -51,7 +51,7 @@ def test_the_code_of_a_page_runs(
 def test_the_residuals_in_a_guide_agree_with_its_printed_output(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """They agree within a factor of 2, by which other C libraries may change a rounding."""
+    """A factor of 2 is allowed, by which other C libraries may change a rounding."""
     page = (ROOT / "docs" / "constraints.md").read_text(encoding="utf-8")
     exec("".join(re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)), {})
     plt.close("all")

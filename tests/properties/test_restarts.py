@@ -30,7 +30,7 @@ MET = {  # labels of findings that must occur, by study
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("study", STUDIES)
 def test_a_motion_continues_from_what_it_returns(study: str) -> None:
-    """It continues from ends, states at events, and scenes where `max_events` stopped it."""
+    """A motion continues from its ends, its events, and scenes where `max_events` stopped it."""
     met = set()
     for block in range(BLOCKS):
         found = judge(study, SEED, block)

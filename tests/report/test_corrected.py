@@ -162,7 +162,7 @@ def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
 def test_corrected_equals_the_multipliers_model(method: Any, stabilization: Any) -> None:
-    """They agree bit for bit; tests/multipliers compares that model with exact rolling."""
+    """Motions agree bit for bit; tests/multipliers compares the model with exact rolling."""
     times = np.linspace(0, 3, 31)
     scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
     how: dict[str, Any] = {"method": method, "stabilization": stabilization}

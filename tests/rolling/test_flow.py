@@ -91,7 +91,7 @@ def test_the_period_is_infinite_at_rest_and_one_full_turn_for_a_circle() -> None
 
 @each_motion
 def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: Motion) -> None:
-    """It follows from a power series, a move without a quarter turn, or a move with one."""
+    """The state comes from a power series, or from a move without or with a quarter turn."""
     scene, half = reference.Scene(*motion), float(exact_period(motion, 12)) / 2
     exact, changes = reference.motion(scene, rule(28)), reference.sensitivities(scene, rule(12))
     worst = 0.0

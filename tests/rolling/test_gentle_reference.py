@@ -43,7 +43,7 @@ def errors(row: Row, values: Any, names: tuple[str, ...] = STATE) -> float:
 
 
 def test_the_table_covers_all_slopes_and_shapes() -> None:
-    """At least 300 cases, of all slopes, aspects, directions and names of the axes."""
+    """There are at least 300 cases, with all slopes, aspects, directions and names of the axes."""
     scenes = [table.scene_of(row) for row in ROWS]
     assert len(scenes) >= 300
     for low in range(-18, -3):

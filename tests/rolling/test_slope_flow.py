@@ -296,7 +296,7 @@ def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
 
 @pytest.mark.parametrize("omega", [3.2, 0.4, 0.0, -2.0])
 def test_the_flow_on_a_slope_equals_simulate(omega: float) -> None:
-    """They agree bit for bit; test_gentle_reference.py tests past times."""
+    """States agree bit for bit; test_gentle_reference.py tests past times."""
     scene, times = rl.Scene(2.0, 1.0, theta=0.2, omega=omega, slope=0.1), np.linspace(0.0, 3.0, 7)
     motion, asked = rolled(scene, times), {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": omega}
     found = rl.flow(times, **asked, slope=0.1)

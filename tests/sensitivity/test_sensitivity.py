@@ -189,7 +189,7 @@ def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
 
 
 def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
-    """In all modes and for all inputs, they agree within the sum of both errors."""
+    """Both derivatives agree, in all modes and for all inputs, within the sum of their errors."""
     modes, seen = set(), 0
     for seed in range(40):
         motion, wrt = drawn(np.random.default_rng(seed))
@@ -208,8 +208,8 @@ def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
 
 
 def test_growing_derivatives_are_accurate_until_they_are_rejected() -> None:
-    """They agree with the motion's own arcs in 60 digits up to a growth of 1e12, and are refused
-    beyond; the exact motion departs by growing roundings, which the error covers.
+    """Derivatives agree with the motion's own arcs in 60 digits up to a growth of 1e12, and are
+    refused beyond; the exact motion departs by growing roundings, which the error covers.
 
     At 14 s the exact motion has dtheta/dtheta0 = -8.851e8. The product of six parts, each with
     an error of some 1e-12, is within 1e-10.

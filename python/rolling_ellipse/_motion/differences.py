@@ -26,7 +26,7 @@ _UNITS = 8  # error bound of states and times that the package promises
 _LEAST_LEVER = 1e-200  # [m]; stands for a rolling resistance of 0
 _END = "no event"  # stands for a missing event
 
-# By side: offsets in steps, and weights of sixth order (Fornberg [1])
+# For each side: offsets in steps, and weights of sixth order (Fornberg [1])
 _FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
 RULES = {
     0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),

@@ -51,7 +51,7 @@ COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.EDGE: GREY,
 }
 TIP_ASPECT = math.sqrt(3)
-"""Up to this a/b of a uniform disc, the N of rolling vanishes first at the tip.
+"""The a/b of a uniform disc up to which N of rolling vanishes first at the tip.
 
 This is exact: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
 k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: for larger a/b, N is least before the tip.

@@ -24,7 +24,7 @@ _COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: beyo
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the residuals show about the scene.
+    """The verdict of the residuals on the scene.
 
     Attributes
     ----------
