@@ -207,7 +207,7 @@ def flows() -> dict[str, dict[str, Case]]:
 ROCKING = Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=1.0)
 TURNING = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 HALF_SWINGS = 400.37  # span so long that the overhead of a call is negligible
-STEPS = 4000  # a call takes milliseconds: its overhead and its one sample are a hundredth of it
+STEPS = 4000  # a call takes milliseconds; overhead and one sample are 1 % of that
 STEP = 2.0**-8  # fixed step [s]; 422 steps in half a turn
 EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
 METHODS = {"rk4": EXPLICIT, "dopri5": EXPLICIT, "dop853": EXPLICIT, "radau": ("ggl",)}

@@ -71,7 +71,7 @@ def compared(one: benchmark.Problem, found: Found) -> str:
 
 
 def compare(one: benchmark.Problem, rounds: int) -> None:
-    """Print the table of a problem; ratios are of least times to that of the first line."""
+    """Print the table of a problem; ratios compare least times with the first line."""
     cases: dict[str, Callable[[], Any]] = {
         f"simulate, {SAMPLES} samples": lambda: by_package(one, one.t_end),
         "simulate, 1 sample": lambda: by_package(one, [one.t_end]),

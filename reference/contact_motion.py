@@ -39,7 +39,7 @@ is. Without friction slip has no side, and changes its sign without an event.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
-that taken before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first ends
+the work taken before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first ends
 the slip, as far as possible without a pull. Rebounds below 1e-6 sqrt(g min(a, b)) of a body dropped
 flat are summed, after which it rests; other scenes end before rebounds fall to a thousand times
 that.

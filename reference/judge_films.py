@@ -1,4 +1,4 @@
-"""Judge `fit_motion` by films made of known scenes, right ones and wrong ones.
+"""Judge `fit_motion` by films of known scenes, right ones and wrong ones.
 
     python reference/judge_films.py judged.jsonl --study right --films 300
 
@@ -12,7 +12,7 @@ resistance  films of bodies that come to rest by rolling resistance, every secon
          camera, with given sigma: chi2, parameters as for right films, and the time of a fit
 wrong    films that do not fit their scene, of the kinds below in turn: how many are called wrong,
          and for how many the reading that makes them fit is named
-example  the film of docs/film.md: cost of the minimum above that of the one downhill from the truth
+example  the film of docs/film.md: cost of the minimum above the minimum downhill from the truth
 wild     the same with 4 of 80 angles off by a quarter turn, by "soft_l1" and "cauchy" in turn
 """
 

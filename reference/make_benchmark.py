@@ -303,7 +303,7 @@ def doubles(row: list[Any]) -> list[float]:
 
 
 def tags(scene: Scene, found: Sampler) -> list[str]:
-    """Abilities that a simulator needs; "spin" is a spin that differs from that of rolling."""
+    """Abilities that a simulator needs; "spin" is a spin that differs from the spin of rolling."""
     has = {
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
         "non-round": scene.a != scene.b,

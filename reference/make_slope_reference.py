@@ -274,7 +274,7 @@ def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
 
 
 def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
-    """Moment of inertia: that of a uniform disc, much less or much more."""
+    """Moment of inertia: a uniform disc's, much less or much more."""
     if kind == "light":
         return 0.01 * disc
     if kind == "heavy":

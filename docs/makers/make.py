@@ -6,10 +6,10 @@ Boost's headers; it takes about an hour, and all results then come from one comm
     races      docs/data/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/data/batches.json, by benchmarks/bench_batches.py
     engines    docs/data/engines.json, by the adapters of rolling_ellipse.benchmark
-    added      the same for problems that the file lacks; all other scores in it stay
+    added      scores of problems that the file lacks; all other scores stay
     pictures   docs/*.png and *.gif, by pictures.py; paper/*.png, by paper/figures.py
     problems   docs/problems/* and the table in docs/benchmark.md, by problems.py
-    notebooks  the outputs of all notebooks, 06 with the races and beside the peers
+    notebooks  the outputs of all notebooks; 06 needs the races and the peers
     text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by dae_table.py
 

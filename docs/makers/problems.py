@@ -176,7 +176,7 @@ def compared(data: Any) -> list[tuple[Any, float]]:
 
 
 def last_state(data: Any) -> str:
-    """The last state that is compared, with all digits."""
+    """The last compared state, to all digits."""
     (row, _), count = compared(data)[-1], len(compared(data))
     named = zip((f"`{name}`" for name in data["columns"][1:]), row[1:], strict=True)
     said = f"The state at t = {row[0]} s, the last of {count} that are compared:"

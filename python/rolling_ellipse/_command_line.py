@@ -216,7 +216,7 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a function; an error in it becomes a sentence that names the line."""
+    """Run an engine or a function; errors in the function become sentences that name the line."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:

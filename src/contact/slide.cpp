@@ -214,7 +214,7 @@ class SlideIntegration {
 
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
-    // 1 + the rate of turning + the rate at which the force changes B, if that is large. In units
+    // A rate: 1 + the rate of turning + the rate at which the force changes B, if large. In units
     // of this rate no power overflows.
     double rate() const {
         constexpr double stiff = 0x1p20;

@@ -154,7 +154,7 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// The state of a scene with its angle measured anew, for the new axes, so that h and h' change by
+// The state of a scene with its angle measured again, for new axes, so that h and h' change by
 // rounding. A gap of that order is kept, and so are the slip and the rate of the gap on the ground:
 // a contact remains a contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);

@@ -247,8 +247,8 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
     return points;
 }
 
-// J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f'' + 2 alpha f' + beta^2 f = 0 for
-// the position constraints, f1' + 2 alpha f1 = 0 for the velocity.
+// Baumgarte's feedback (J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1): f'' + 2 alpha
+// f' + beta^2 f = 0 for the position constraints, f1' + 2 alpha f1 = 0 for the velocity.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state) {
     if (settings.stabilization != Stabilization::baumgarte) return body.solve(state);

@@ -45,7 +45,7 @@ void sample(const SteppedMultipliers& motion, const double* times, std::size_t n
 // `evaluations` is the number of evaluations of f that the motion took.
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
-// Accelerations and multipliers of a state, with Baumgarte's feedback if the settings ask for it.
+// Accelerations and multipliers of a state, with Baumgarte's feedback if the settings request it.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state);
 

@@ -82,8 +82,8 @@ def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
-    """Shape and names are those of the arrays, in memory and in a folder; a single argument along
-    an axis names it; several, or scenes of an iterable, become coordinates of "scene"."""
+    """Tables have the shape and names of the arrays, in memory and in a folder; a single argument
+    along an axis names it; several, or scenes of an iterable, become coordinates of "scene"."""
     b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
     grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
     data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()

@@ -57,7 +57,7 @@ def wrapped(one: Any, states: Any) -> Any:
 
 
 def gap(one: Any, states: Any) -> Any:
-    """The height of the lowest point, which is 0 on the ground, in place of that of the centre."""
+    """Report the height of the lowest point, which is 0 on the ground, instead of the centre's."""
     height = support(states[:, 2], a=one.scene.a, b=one.scene.b)
     return states - np.outer(height, [0, 1, 0, 0, 0, 0])
 

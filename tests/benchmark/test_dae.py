@@ -61,7 +61,7 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
     rows, n, numbers = list(zip(y, yp, strict=True)), y.shape[1], range(1, k + 2)
 
     def fitted(cj: float) -> Any:
-        """Coefficients of F_y + cj F_y'; those of negative number, from the end, are 0."""
+        """Coefficients of F_y + cj F_y'; negative indices, from the end, give zeros."""
         values = [dae.jacobian(0.0, *row, cj).ravel() for row in rows]
         found = polyfit(nodes, np.array(values), 12)[: k + 2]
         return np.vstack([found, np.zeros((k + 2, n * n))]).reshape(-1, n, n)

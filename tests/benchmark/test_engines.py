@@ -94,7 +94,7 @@ def test_through_each_adapter_a_body_falls_and_rests_correctly(name: str) -> Non
 
 
 def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
-    """The error of stiff contacts falls with the step, that of MuJoCo's own contacts does not."""
+    """The error of stiff contacts falls with the step; with MuJoCo's own contacts it does not."""
     scene = Scene(2.0, 1.0, friction=1.0, theta=0.2, omega=3.2)
 
     def error(dt: float, contact_steps: float | None = 2.0) -> float:

@@ -243,7 +243,7 @@ def test_unsupported_problems_do_not_count_as_wrong() -> None:
 
 
 def test_the_picture_shows_which_answers_are_right(tmp_path: Path) -> None:
-    """Marks have the shape of their answers; digits or the answer stand beside each row."""
+    """Marks have the shape of their answers; digits or the answer stand next to each row."""
     scores = benchmark.run(rolls_only, ladder=[0.1, 1e-5])
     chart = scores.plot(tmp_path / "scores.png")
     assert (tmp_path / "scores.png").stat().st_size > 1e4 and plt.get_fignums() == []

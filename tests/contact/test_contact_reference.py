@@ -48,7 +48,7 @@ class Motion(NamedTuple):
 
 
 def read_table() -> list[Motion]:
-    """The scenes of the tables with their references, in their order."""
+    """All scenes with their references, in the order of the tables."""
     lines = [*table.rows("contact_reference"), *table.rows("resistance_reference")]
     return [
         Motion(

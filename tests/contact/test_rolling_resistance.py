@@ -1,7 +1,7 @@
 """Bodies whose normal force acts a lever ahead of the contact: its couple opposes the rotation.
 
 The laws are checked against all modes that a contact could have, and against the work of the
-couple. test_contact_reference.py judges whole motions in 30 digits, turns and discs among them.
+couple. test_contact_reference.py judges whole motions in 30 digits, including turns and discs.
 """
 
 import itertools

@@ -107,8 +107,8 @@ THIN = (
          "x_dot": (-0.2339955212093542957774162, 3.66e-16),
          "z_dot": (3.670624592798674701299433, 5.69e-15)},
     ),
-    # its slip had been a thousand times larger than x_dot and h omega are where it vanishes; one
-    # that keeps the roundings of its largest value is off by 1.4e-14
+    # the slip was once a thousand times larger than x_dot and h omega are where it vanishes; a slip
+    # with the roundings of its largest value is off by 1.4e-14
     (
         Scene(1.0, 0.0016, inertia=0.0044, friction=0.0037, theta=0.63, omega=-3e-4),
         0.36, ["REVERSE", "REVERSE"], 2,
@@ -288,8 +288,8 @@ def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
 def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
     k2: float, turned: float
 ) -> None:
-    """The slide covers mu g t^2/2, at speed mu g t, until a omega equals x': one part in 1 +
-    k^2/a^2 before friction alone would end the spin. The remaining spin is a difference, exact to
+    """The slide covers mu g t^2/2, at speed mu g t, until a omega equals x', earlier by one part in
+    1 + k^2/a^2 than friction alone would end the spin. The remaining spin is a difference, exact to
     its roundings."""
     spin_end = 2.0  # time at which a omega alone would vanish
     omega = 2 * turned / spin_end

@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """Path of a program beside the interpreter (from the test extra), else the system's."""
+    """Path of a program next to the interpreter (from the test extra), else the system's."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 

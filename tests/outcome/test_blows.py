@@ -29,8 +29,8 @@ REPORT = rl.scenes.report
 
 
 def test_the_reports_blow_rolls_the_body_over() -> None:
-    """A press 1.5 m beside the centre rolls the body over from F = m (k^2 + b^2) omega_R/d = 44.3 N
-    s on. The blow needs a friction of 2/3, and N vanishes from 4.8432 rad/s, 72.65 N s, on."""
+    """A press 1.5 m from the centre rolls the body over from F = m (k^2 + b^2) omega_R/d = 44.3 N s
+    on. The blow needs a friction of 2/3, and N vanishes from 4.8432 rad/s, 72.65 N s, on."""
     assert outcome(REPORT) is Outcome.ROLLS_OVER
     assert outcome(replace(REPORT, impulse=None)) is Outcome.RESTS
     F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
@@ -94,7 +94,7 @@ def test_an_outcome_on_an_almost_level_slope_may_remain_undecided() -> None:
     assert outcome(unmoved) in (Outcome.EDGE, Outcome.ROLLS_OVER)
 
 
-def test_impulses_broadcast_and_replace_the_one_of_the_scene() -> None:
+def test_impulses_broadcast_and_replace_the_scenes_own() -> None:
     F, d = np.array([[20.0], [48.0], [70.0]]), np.array([-1.5, 0.3, 1.2, 1.5])
     for scene in (REPORT, replace(REPORT, slope=0.05, friction=2.0)):
         found = outcome(scene, Impulse.press(F, d))

@@ -89,7 +89,7 @@ def test_windows_agree_with_samples_of_the_needed_friction() -> None:
 
 
 def test_windows_agree_with_certify_and_outcome() -> None:
-    """Rolling is proved invalid inside windows, and valid outside; undecided beside an end only.
+    """Rolling is proved invalid inside windows and valid outside, and undecided only near an end.
     There are at most two windows, and the last is unbounded."""
     rng = np.random.default_rng(12)
     two = 0

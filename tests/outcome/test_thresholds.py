@@ -340,7 +340,7 @@ def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction()
         speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
         gyration2 = (ratio * ratio + 1) / 4
         flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
-        # closed forms; rolling ends some 1e-7 beside the tip, and c changes by the square of this
+        # closed forms; rolling ends some 1e-7 from the tip, and c changes by the square of this
         # distance
         assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
         assert known(found.slip_speed) <= found.lift_off_speed

@@ -310,8 +310,8 @@ def test_ends_at_is_the_first_violation_of_the_law(judged: list[Judged]) -> None
 
 
 def test_ends_at_is_right_near_a_nearly_weightless_tip() -> None:
-    """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad beside the tip, already needs
-    more friction than there is: the angle resolves this distance, h does not."""
+    """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad from the tip, already needs more
+    friction than there is: the angle resolves this distance, h does not."""
     scene = Scene(
         2.239752036298014,
         2.87251997990579,

@@ -378,7 +378,7 @@ def test_the_right_equations_hold_on_an_exact_motion() -> None:
 
 
 def test_multipliers_equal_those_of_the_package() -> None:
-    """F, N, lambda3 of rows equal to 2 (...)^(3/2) times grad f3, and lambda4 = 0 are found."""
+    """The multipliers are F, N, lambda3 for rows 2 (...)^(3/2) times grad f3, and lambda4 = 0."""
     motion = trajectory()
     forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
     polar = (0.7 * np.sin(motion.psi)) ** 2 + (2.0 * np.cos(motion.psi)) ** 2

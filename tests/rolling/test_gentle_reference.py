@@ -1,6 +1,6 @@
 """Gentle slopes and slowly passed tips against 40 digits (reference/make_gentle_reference.py).
 
-The slopes range from 1e-18 to 1e-3; starts are on and beside a tip, which is just passed or not.
+The slopes range from 1e-18 to 1e-3; starts are on and near a tip, which is just passed or not.
 Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and of 2.2e-16
 rad of theta0, plus two ulp of the number itself.
 """
@@ -60,7 +60,7 @@ def test_the_table_covers_all_slopes_and_shapes() -> None:
 def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
     """The bound is four units, for one time and for the last of many.
 
-    W beside a tip has the rounding of W where the motion started, of the size of a rounded input;
+    W near a tip has the rounding of W where the motion started, of the size of a rounded input;
     some roundings of the time and of each answer add to it. The largest error was 1.6. With W
     counted from the start alone, by sin^2, 31 cases exceeded this, by up to 5e5 units.
     """

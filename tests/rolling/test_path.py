@@ -46,7 +46,7 @@ def excess(start: Start, t: float, state: State) -> float:
 
 
 def starts(count: int) -> Iterator[Start]:
-    """Starts with either axis longer, on the tip or beside it, at 1e-300 to 1 rad/s each way."""
+    """Starts with either axis longer, on the tip or near it, at 1e-300 to 1 rad/s each way."""
     rng = random.Random(30)
     for i in range(count):
         a = 10 ** rng.uniform(-1, 1)

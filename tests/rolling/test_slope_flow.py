@@ -163,7 +163,7 @@ def test_a_short_path_stays_accurate(way: float, omega: float) -> None:
         assert abs(found.theta[0] - end) < EPS + 4 * EPS * way
         assert abs(found.x[0] - path) < 4 * EPS * abs(path)
         assert abs(flow[0] - end) < EPS + 4 * EPS * way
-        # from a tenth of a radian on it is the difference of two paths from the flat position
+        # from a tenth of a radian on the path is a difference of two paths from the flat position
         assert abs(flow[2] - path) < 4 * EPS * abs(path) + (EPS / 2 if way == 0.1 else 0)
 
 

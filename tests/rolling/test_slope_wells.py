@@ -48,7 +48,7 @@ def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
 
 @pytest.mark.parametrize("row", ROWS, ids=[str(i) for i in range(len(ROWS))])
 def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> None:
-    """Rocking errs by eight units and two ulp of each answer.
+    """Rocking errs by at most eight units and two ulp of each answer.
 
     A half swing is a few series, each with a few roundings of its own in the time, the angle and
     omega; the phase after any number of swings has the period's roundings. The largest error was

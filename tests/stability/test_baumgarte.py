@@ -156,7 +156,7 @@ def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float
     assert growth(method, *gains, suggested) <= 1 + 1e-12
     assert growth(method, *gains, 1.01 * suggested) > 1
     assert suggested == pytest.approx(limit, rel=1e-4)
-    # Steps of this size may miss the constraints in between; another sentence warns of that.
+    # Steps of this size may violate the constraints in between; another sentence warns of this.
     with warnings.catch_warnings(record=True) as then:
         warnings.simplefilter("always", rl.StabilityWarning)
         simulate(SLOW, [2 * suggested], step=suggested, **how)

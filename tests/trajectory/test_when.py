@@ -34,7 +34,7 @@ def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Float
 
 
 def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float]) -> int:
-    """Assert that no time is missed or invented beside dense samples; return their number."""
+    """Assert that no time is missed or invented, by dense samples; return their number."""
     tables = [all_times(motion, name, values, direction) for direction in (0, 1, -1)]
     for value, found, rising, falling in zip(values, *tables, strict=True):
         assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))

@@ -100,7 +100,7 @@ def test_each_component_counts_in_its_own_unit() -> None:
 
 
 def test_a_reference_may_be_more_precise_than_doubles() -> None:
-    """A reference may consist of objects that can be subtracted, as those of mpmath or decimal."""
+    """A reference may consist of objects that can be subtracted, such as mpmath's or decimal's."""
     import mpmath
 
     def reference(t: Any) -> Any:

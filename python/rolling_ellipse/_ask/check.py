@@ -303,7 +303,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
     """Return the result of a core function for arguments that broadcast, in their common shape.
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
-    settings. A ``gyration2`` of None is that of uniform discs of semi-axes ``a`` and ``b``. An
+    settings. A ``gyration2`` of None stands for uniform discs of semi-axes ``a`` and ``b``. An
     error names an array element by its indices: ``a[3] must be ...``. A wrong number is rejected
     even if another argument is empty.
     """

@@ -26,7 +26,7 @@ _Found = TypeVar("_Found")
 
 
 def meant(word: str, names: Iterable[str]) -> str:
-    """Return the end of a message about an unknown name: the names that may be meant.
+    """Return the end of a message about an unknown name: the names that were probably intended.
 
     These are our names for a habitual one, or else the name with the most similar spelling, or else
     those that share a part with it.
@@ -41,7 +41,7 @@ def meant(word: str, names: Iterable[str]) -> str:
 
 
 def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Make the TypeError of a wrong call name the arguments meant, or show the signature."""
+    """Make the TypeError of a wrong call name the intended arguments, or show the signature."""
 
     @wraps(function)
     def call(*given: _Given.args, **named: _Given.kwargs) -> _Found:

@@ -138,7 +138,7 @@ class Impulse:
 
 
 def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
-    """Warn about unnamed components, which may be meant as the arguments of `press`."""
+    """Warn about unnamed components, which may be intended as the arguments of `press`."""
 
     @wraps(make)
     def init(*given: _Given.args, **named: _Given.kwargs) -> None:

@@ -109,7 +109,7 @@ class Scene(FieldsOnly, Listed):
         An initial slip does not follow that limit: where a large coefficient would press the body
         into the ground until it jams, an impulse of the ground removes the slip at t = 0, which
         costs energy (`initial_state.energy_lost`). A slip the other way continues with N = 0.
-        Without friction a moving contact is SLIDING, even that of a circle.
+        Without friction a moving contact is SLIDING, even under a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     rolling_resistance : float
@@ -125,8 +125,9 @@ class Scene(FieldsOnly, Listed):
     z : float, optional
         Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
     x_dot, z_dot : float, optional
-        Velocity of the centre [m/s]. On the ground the default is that of rolling, and x_dot within
-        32 ulp and z_dot within 8 ulp of it count as rolling; in the air the default is 0.
+        Velocity of the centre [m/s]. On the ground the default is the velocity of rolling, and
+        x_dot within 32 ulp and z_dot within 8 ulp of it count as rolling; in the air the default is
+        0.
     impulse : Impulse, optional
         Blow received at t = 0; its line of action must meet the body.
 

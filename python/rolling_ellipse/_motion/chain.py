@@ -30,8 +30,8 @@ _ROUNDINGS = 64
 class Chained(NamedTuple):
     """Vectors like those of `neighbours`, for k inputs, and their errors.
 
-    The errors are those of the derivatives along the computed arcs; `parted` is the distance of
-    these from the derivatives of the exact motion.
+    `error` belongs to the derivatives along the computed arcs; `parted` is their distance from the
+    derivatives of the exact motion.
     """
 
     value: FloatArray  # (6, n + m, k)

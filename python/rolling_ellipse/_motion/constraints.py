@@ -167,8 +167,8 @@ def losses(motion: Trajectory) -> dict[str, FloatArray]:
     """Return the energies lost in rolling, in slides and in impacts [J] up to each sample, (n,).
 
     There is a sample at every event, so energy lost after a sample in flight is lost in an impact.
-    Where rolling resistance and friction take energy together, the work of the former is that of
-    its couple by the trapezoidal rule between samples.
+    Where rolling resistance and friction take energy together, the work of rolling resistance is
+    computed from its couple by the trapezoidal rule between samples.
     """
     t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
     lost = -np.diff(motion.energy, prepend=motion.energy[:1])
@@ -186,9 +186,9 @@ def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
     E0 is the energy of the first sample. Losses by impacts and friction are not errors: after an
-    event that may take energy, E0 is that of the next sample, and in a slide, or while the body
-    rolls with resistance, the error is NaN.
-    Heights are measured from the ground at the first sample: the origin of x does not matter.
+    event that may take energy, E0 is the energy of the next sample, and in a slide, or while the
+    body rolls with resistance, the error is NaN. Heights are measured from the ground at the first
+    sample: the origin of x does not matter.
     """
     scene = motion.scene
     along = motion.x - motion.x[0]

@@ -100,8 +100,8 @@ class Best:
 def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueError | None]:
     """Return derivatives of n sampled states and of m event times with respect to an input.
 
-    They are vectors in natural units, shape (6, n + m); those of times are (dt, 0, ...). The
-    exception states the reason for an infinite error.
+    The derivatives are vectors in natural units, shape (6, n + m); for times they are (dt, 0, ...).
+    The exception states the reason for an infinite error.
     """
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)

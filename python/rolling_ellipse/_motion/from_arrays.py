@@ -50,8 +50,8 @@ def from_arrays(
     t : array_like, shape (n,)
         Increasing times since the start of the scene, n >= 5 [s].
     x, z, theta : array_like, shape (n,)
-        Centre [m] and angle [rad], unwrapped. If x and z are missing, they are those of rolling
-        from the scene's start, as for the angles of an equation of motion.
+        Centre [m] and angle [rad], unwrapped. If x and z are missing, they follow from rolling from
+        the scene's start, as for angles from an equation of motion.
     scene : Scene
         Body and ground; its start is what `plot_error` compares with.
 

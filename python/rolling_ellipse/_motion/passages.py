@@ -46,7 +46,7 @@ def when(
 ) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    The times are those of the motion itself, accurate to the last bits; they do not depend on its
+    The times belong to the motion itself, accurate to the last bits; they do not depend on its
     samples. A `CompletenessWarning` is issued where some may be missed, as for every `function`.
 
     Parameters

@@ -56,8 +56,8 @@ class Sensitivity(FieldsOnly):
     error, event_times_error : ndarray, shape (k,)
         Estimated error of each column of `state` and of `event_times`, relative to its largest
         entry (or to one unit per natural size of the input, if larger). Units of the state are L,
-        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b); that of time is sqrt(L/g).
-        It includes the errors of a stepped method, and the growth of rounding errors in the motion.
+        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b); the unit of time is sqrt(L/g). It
+        includes the errors of a stepped method, and the growth of rounding errors in the motion.
 
     Examples
     --------
@@ -128,8 +128,8 @@ class Sensitivity(FieldsOnly):
     def distance(self) -> FloatArray:
         """Change of each input at which the kinds or the order of events change, shape (k,).
 
-        It is found by doubling from a millionth of the input's natural size up to that size, and by
-        bisection. For "t": the least time from a sample to the next event. The impacts of a body
+        The search doubles a change from a millionth of the input's natural size up to that size,
+        and bisects. For "t": the least time from a sample to the next event. The impacts of a body
         that settles are counted down to those at the `rest_speed`.
         """
         return np.array([_distance(self.trajectory, name, self.side) for name in self.wrt])
@@ -184,12 +184,12 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     Notes
     -----
     The motion is solved again at six or seven values of each input, and differences of sixth order
-    [1]_ are taken. The time between two events is stretched to that of the motion, so that states
-    of the same arc are compared; the change of the motion during that shift is subtracted. Of 23
-    steps, each half the one before, each state uses the one whose result agrees best with those of
-    the steps before and after it, at the least rounding error. Where a motion of many events needs
-    more than that, parts of three events are differentiated with respect to the states at their
-    starts, and combined by the chain rule along the computed arcs of the motion.
+    [1]_ are taken. The time between two events is stretched to its length in the motion, so that
+    states of the same arc are compared; the change of the motion during that shift is subtracted.
+    Of 23 steps, each half the one before, each state uses the one whose result agrees best with
+    those of the steps before and after it, at the least rounding error. Where a motion of many
+    events needs more than that, parts of three events are differentiated with respect to the states
+    at their starts, and combined by the chain rule along the computed arcs of the motion.
 
     References
     ----------
@@ -232,7 +232,7 @@ def _derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives for k inputs, (6, n + m, k), and their errors, (n + m, k).
 
-    They are like those of `neighbours`, which has one input.
+    The arrays are like those of `neighbours`, which has one input.
 
     Whether the motion is split into parts depends on its events and its end, not on its samples.
     """

@@ -231,7 +231,7 @@ def write(drawn: Artists, name: str | None) -> None:
 def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
     """Write the figure around a figure to an object with `write`, or to a file; return its name.
 
-    A name without a suffix gets that of matplotlib's usual format.
+    A name without a suffix gets the suffix of matplotlib's usual format.
     """
     whole: Any = figure.get_figure(root=True)
     if hasattr(path, "write"):

@@ -101,7 +101,7 @@ def plot_energy(
 
     The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
     a logarithmic scale, which cannot show exact zeros; E0 is the energy of the first sample. Losses
-    by friction and impacts are not errors: then E0 is that of the first sample after the last
+    by friction and impacts are not errors: then E0 is the energy of the first sample after the last
     event, and a slide, or rolling with resistance, has no error. Losses are split into those by
     rolling resistance, by sliding friction and by impacts, summed from the first sample on.
 

@@ -65,7 +65,7 @@ def plot_forces(
     The upper panel shows N and F [N], F over the band +-friction N; if a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
     impacts, as mean forces over the time that the legend states. The lower panel shows ``|F|/N``
-    and the coefficient of friction; the former is infinite where N <= 0.
+    and the coefficient of friction; ``|F|/N`` is infinite where N <= 0.
 
     Parameters
     ----------
@@ -85,9 +85,9 @@ def plot_forces(
     for a single motion if there is room, else counted. Where the model is not valid, the whole
     background is grey.
 
-    The curves are those of the motion itself, whatever samples the trajectory has. If there are too
-    many half turns to distinguish, ranges are drawn: from the least to the largest value in each of
-    800 equal intervals; the title then states the number of half turns.
+    The curves show the motion itself, whatever samples the trajectory has. If there are too many
+    half turns to distinguish, ranges are drawn: from the least to the largest value in each of 800
+    equal intervals; the title then states the number of half turns.
 
     Examples
     --------

@@ -82,9 +82,9 @@ def plot_phase(
 
     Notes
     -----
-    The lines are those of the motions themselves, whatever samples the trajectories have. If there
-    are many turns, only one turn of exact rolling is drawn, as all its turns are alike, and only
-    the first 1000 half turns of other motions; the title then says so.
+    The lines show the motions themselves, whatever samples the trajectories have. If there are many
+    turns, only one turn of exact rolling is drawn, as all its turns are alike, and only the first
+    1000 half turns of other motions; the title then says so.
 
     Examples
     --------

@@ -329,7 +329,7 @@ class Plane:
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def caption(self) -> str:
-        """Return the fixed quantities as text: "μ = 0.5"; with b if speeds depend on it."""
+        """Return the fixed quantities as text: "μ = 0.5"; with b if speeds depend on b."""
         values = [
             f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
             + " rad/s" * (name == "speed")

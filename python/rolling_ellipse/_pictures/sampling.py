@@ -113,7 +113,7 @@ def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the middle time of each part, and the least and largest value in it."""
+    """Return the middle time of each part, and the least and largest value in that part."""
     starts = np.linspace(0, t.size, min(PARTS, t.size) + 1).astype(int)[:-1]
     ends = np.append(starts[1:], t.size) - 1
     middles: FloatArray = 0.5 * (t[starts] + t[ends])

@@ -46,7 +46,7 @@ class Strobe(Artists):
     """Artists of `plot_strobe`; bodies[i], hands[i] and point i of `contacts` belong together.
 
     All data are in ground axes: x along the ground, z normal to it [m]. Points of `contacts` and
-    `contact_path` are NaN in flight, those of `slides` and `skid_path` unless the body slides.
+    `contact_path` are NaN in flight, points of `slides` and `skid_path` unless the body slides.
     """
 
     bodies: tuple[Ellipse, ...]

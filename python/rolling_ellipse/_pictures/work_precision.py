@@ -1,4 +1,4 @@
-"""The work-precision diagram: the front of some contenders compared with that of all others."""
+"""The work-precision diagram: the front of some contenders beside that of all others."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
 
 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
-    """Set the axes, with errors from 10 to the attainable limit; mark the latter."""
+    """Set the axes, with errors from 10 to the attainable limit; mark this limit."""
     palette, x, y = palette_of(ax), race.x, race.y
     across, up = f"{_NAMES.get(x, x)} (smaller →)", _NAMES.get(y, y)
     ax.set(xscale="log", yscale="log", xlabel=across, ylabel=up)

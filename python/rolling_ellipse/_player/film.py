@@ -95,7 +95,7 @@ def sample_times(
 
     If there are more than `most`, the result is None. Parabolas through the forces at the times and
     midway between them are also close to the forces, provided that takes at most half of `most`.
-    The times include those of events, and the doubles just before them.
+    The times include all events, and the doubles just before them.
     """
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
@@ -114,7 +114,7 @@ def sample_times(
 def _misses(
     motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
 ) -> FloatArray:
-    """Return the errors of cubics, and of parabolas for forces, over the allowed ones."""
+    """Return the errors of cubics, and of parabolas for forces, divided by the allowed errors."""
     size = max(motion.scene.a, motion.scene.b)
     first, last = motion.sol(left), motion.sol(right)
     span = (right - left)[:, None]

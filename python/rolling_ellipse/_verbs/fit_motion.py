@@ -182,13 +182,12 @@ def fit_motion(
     replaces the error; this happens beyond a friction threshold, or where another scene fits
     equally well. A parameter that the film does not determine keeps its guess.
 
-    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over
-    that of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above
-    3.5 in a track of eight pairs or more, or if chi2 for given deviations is five deviations above
-    its mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the
-    largest of those ratios of sums, which is only an estimate, and the conventions of other
-    trackers are tried. A film whose free fall is not that of the scene is not fitted if other units
-    fit.
+    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over the
+    sum of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above 3.5
+    in a track of eight pairs or more, or if chi2 for given deviations is five deviations above its
+    mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the largest
+    of those ratios of sums, which is only an estimate, and the conventions of other trackers are
+    tried. A film whose free fall is not that of the scene is not fitted if other units fit.
 
     References
     ----------

@@ -40,7 +40,7 @@ def read_track(
         semi-axis a. Without `t`, rows are the frames of a film with `fps`.
     points : four of str, optional
         Instead of `x`, `z` and `theta`: columns of x and z of one point and of another, both on the
-        long axis and as far from the centre. The angle is that of the line to the second one.
+        long axis and as far from the centre. The line to the second point gives the angle.
     fps : float, optional
         Units of `t` per second, as for numbers of frames, or 1000 for milliseconds.
     delimiter, decimal : str, optional
@@ -110,7 +110,7 @@ def read_track(
 
 
 def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -> dict[str, Any]:
-    """Return the columns of a table by their names; `name` is that of the argument `path`."""
+    """Return the columns of a table by their names; `name` describes the argument `path`."""
     if hasattr(path, "keys"):
         return {str(key): path[key] for key in path}
     text = Path(readable(name, path)).read_text(encoding="utf-8-sig", errors="replace")

@@ -34,8 +34,8 @@ _Event = tuple[str, float]
 class Answer(NamedTuple):
     """Whether the answer is right, why or why not, and the differences of the events.
 
-    `errors` are those of the compared rows in units of their scales, shape (n, 6), by the nearest
-    law.
+    `errors` are the errors of the compared rows in units of their scales, shape (n, 6), by the
+    nearest law.
     """
 
     right: bool

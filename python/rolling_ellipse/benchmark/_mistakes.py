@@ -106,7 +106,7 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
 def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
     """Return what the values of a variable look like; zeros look the same in any unit.
 
-    `height` is that of the centre of a body on the ground.
+    `height` is the height of the centre of a body on the ground.
     """
     name, right, units = STATE[k], known.states[:, k], known.units[:, k]
     error, size = _largest((values - right) / units), _largest(right / units)

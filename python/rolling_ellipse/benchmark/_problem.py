@@ -73,7 +73,7 @@ class Problem(FieldsOnly):
     ----------
     id, title, question : str
     tags : tuple of str
-        Abilities that a simulator needs beside sliding: "flight", "non-round", "restitution",
+        Abilities that a simulator needs besides sliding: "flight", "non-round", "restitution",
         "rolling-resistance", "slope", "spin" (a start whose spin is not that of rolling),
         "stiction" (a contact that does not slip).
     scored : bool

@@ -81,7 +81,7 @@ def _compared(
 ) -> Comparison:  # fmt: skip
     """Compare an entry of the results of two functions, called with the arguments that they take.
 
-    A function that takes any arguments gets those of the equations of motion.
+    A function that takes any arguments gets all arguments of the equations of motion.
     """
     known = _rolling(theta, **other)
     values = []

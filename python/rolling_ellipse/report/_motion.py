@@ -102,9 +102,9 @@ class PrintedMotion:
     def back_substitution(self) -> FloatArray:
         """Return the residuals of the equations that were solved, printed rows included, (n, 9).
 
-        They are those of the five equations of motion [N, N m] and the four constraints on the
-        rates: the report's own test (Figure 11). Small values show that the equations were solved,
-        not that they are right.
+        Residuals of the five equations of motion [N, N m] and of the four constraints on the rates
+        are the report's own test (Figure 11). Small values show that the equations were solved, not
+        that they are right.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         motion = masses(body) * self.q_ddot - _weight(body) - pull(matrix, self.multipliers)

@@ -148,9 +148,9 @@ class SlopeReader {
 
 // --------------------------------------------------------------------------------- growth
 
-// Appends what follows a turning point, which itself belongs to the series: after the first one the
-// motion is mirrored, after the second one it repeats itself. Near the rim of a well, further
-// series would miss the reversed start.
+// Appends the stretches after a turning point, which itself belongs to the series: after the first
+// one the motion is mirrored, after the second one it repeats itself. Near the rim of a well,
+// further series would miss the reversed start.
 void append_turning(SlopeFlow& flow, DoubleDouble turning) {
     const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
     if (flow.turning) {

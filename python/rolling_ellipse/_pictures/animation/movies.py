@@ -162,7 +162,7 @@ def pace(
 ) -> Pace:  # fmt: skip
     """Return the frames that show motions up to a `last` time [s], as `animate` documents.
 
-    Without a path the frames per second are those of a GIF, since every format supports them.
+    Without a path the frame rate is that of a GIF, which every format supports.
     """
     video = path is not None and not file_name("path", path).lower().endswith(".gif")
     fps = (VIDEO_FPS if video else GIF_FPS) if fps is None else within("fps", fps, *FPS)
@@ -216,7 +216,7 @@ def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[floa
 
 
 def _decimals(step: float) -> int:
-    """Return how many decimals show multiples of a step [s] exactly, or else two digits of it."""
+    """Return how many decimals show multiples of a step [s] exactly, or else to two digits."""
     own = max(0, 1 - math.floor(math.log10(step)))
     sizes = ((digits, step * 10**digits) for digits in range(own + 3))
     return next((k for k, n in sizes if math.isclose(n, max(1, round(n)), rel_tol=1e-9)), own)

@@ -159,7 +159,7 @@ class SceneGrid:
         return table
 
     def _require_arguments(self) -> None:
-        """Reject wrong arguments if there are no scenes: each alone, those of the body together."""
+        """Reject wrong arguments if there are no scenes: each alone, and the body's together."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))
@@ -227,7 +227,7 @@ def scenes_of(table: FloatArray) -> list[Scene]:
 
 
 def scene_of(given: Scene | FloatArray) -> Scene:
-    """Return a scene that is given as a Scene or as a row of such a table."""
+    """Return a scene that is given as a Scene or as a row of a validated table."""
     return given if isinstance(given, Scene) else _scene(given.tolist())
 
 

@@ -215,11 +215,10 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     Returns
     -------
     sequence of Trajectory or exception
-        Bit for bit as computed; ``events`` are those of the machine that computed them. Only one
+        Bit for bit as computed, with the ``events`` of the machine that computed them. Only one
         file, of at most 2048 scenes, is in memory at a time. ``arrays(("theta", "x"))``,
-        ``to_xarray(…)`` and ``to_dataframe(…)`` return the named quantities (default: theta,
-        omega, x) in the shape of the scenes, with the axes of `MotionArrays`; of "events", all
-        events.
+        ``to_xarray(…)`` and ``to_dataframe(…)`` return the named quantities (default: theta, omega,
+        x) in the shape of the scenes, with the axes of `MotionArrays`; of "events", all events.
 
     Raises
     ------

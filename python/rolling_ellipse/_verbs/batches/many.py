@@ -76,7 +76,7 @@ def simulate_many(
         Number of threads, up to 1024, -1 for all cores; or an object with `submit`, or a pool with
         `map`: an executor of concurrent.futures or mpi4py.futures, dask.distributed's Client. A
         task holds up to 2048 scenes, or fewer if they have many samples. Process executors share
-        the work in Python as well, threads only that of the core.
+        the work in Python as well, threads only the core's work.
     progress : bool or callable
         True: a bar, by tqdm if it is installed. A function is called after each chunk with the
         numbers of scenes done and in total (None for an iterable without a length).

@@ -45,14 +45,14 @@ def require_told(scene: Scene, names: tuple[str, ...], film: Film) -> None:
 
 
 def unit_of(film: Film, scene: Scene) -> float:
-    """Return the order of magnitude of the film's lengths over those of the scene."""
+    """Return the order of magnitude of the film's lengths over the scene's."""
     places = film.data[:, :2][:, film.known[:, :2].any(axis=0)]
     far = np.nanmedian(np.abs(places - np.nanmedian(places, axis=0))) / max(scene.a, scene.b)
     return float(far) if far > _FAR else 1.0
 
 
 def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], Film]]:
-    """Yield guesses of the camera, each with the film converted to the scene's tracks by it."""
+    """Yield guesses of the camera, and the film that each converts to the scene's tracks."""
     scene, own = unknowns.scene, unknowns.named(unknowns.own)
     grid: dict[str, set[float]] = {}
     if "scale" in own:

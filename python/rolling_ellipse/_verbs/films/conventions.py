@@ -27,7 +27,7 @@ _QUICK, _RUN = 6, 2  # starts per try, and number of tries run to the end
 
 
 def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
-    """Return readings in other units of time or length, or none if those of the film may be right.
+    """Return readings in other units of time or length, or none if the film's own may be right.
 
     Without a flight, frames may be too far apart to decide.
     """

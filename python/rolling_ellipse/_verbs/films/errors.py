@@ -22,7 +22,7 @@ _AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # fractions of the distan
 def standard_errors(
     search: Search, best: Any, rivals: list[Any]
 ) -> tuple[FloatArray, FloatArray, list[Any]]:
-    """Return standard errors and covariance of the unknowns, and all solutions found meanwhile.
+    """Return standard errors and covariance of the unknowns, and all solutions found on the way.
 
     Each parameter is moved by three standard errors, and further, with the others refitted: its
     error becomes the change divided by the root of the rise of chi2, if that is larger. Rivals are

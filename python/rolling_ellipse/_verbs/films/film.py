@@ -68,7 +68,7 @@ def film_of(t: FloatArray, tracks: dict[str, Any], *, clock: bool = False) -> Fi
 
 
 def sizes_of(scene: Scene) -> FloatArray:
-    """Return the natural size of each track: that of the body [m], and one radian."""
+    """Return the natural size of each track: the size of the body [m], and one radian."""
     length = max(scene.a, scene.b)
     return np.array([length, length, 1.0])
 
@@ -135,7 +135,7 @@ class Unknowns:
         return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
 
     def turned(self, u: FloatArray) -> FloatArray:
-        """Return changes of the unknowns; that of theta is reduced by half turns."""
+        """Return changes of the unknowns; the change of theta is reduced by half turns."""
         half = math.pi / self.sizes
         whole = np.where(np.array(self.names) == "theta", np.round(u / half), 0.0)
         return u - half * whole

@@ -70,9 +70,9 @@ class WorkPrecision:
     """Runs of many methods and peers for one motion; made by `work_precision`.
 
     In its methods `x` is the name of an error: "largest", "final", "l2", "linf", "energy", "gap" or
-    "slip"; `y` that of a cost: "time", "samples_time", "setup", "spread", "steps", "rejected",
-    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; any
-    other raises ValueError.
+    "slip"; `y` is the name of a cost: "time", "samples_time", "setup", "spread", "steps",
+    "rejected", "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the
+    last; any other raises ValueError.
 
     Attributes
     ----------

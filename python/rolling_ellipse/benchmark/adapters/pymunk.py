@@ -3,7 +3,7 @@
 It has no ellipse: the body is a polygon of 2048 vertices, or pymunk's circle. The number of
 iterations is the default, since one contact needs no more; the allowed overlap is 0.001 max(a, b),
 since the default of 0.1 is meant for pixels. The ground has friction and restitution 1, by which
-pymunk multiplies those of the body.
+pymunk multiplies the body's values.
 """
 
 import math
