@@ -118,7 +118,7 @@ def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> Non
 
 
 def test_an_executor_gets_128_tasks_before_its_first_result_is_requested() -> None:
-    """Only the scenes of these tasks are taken."""
+    """Only the scenes of these tasks are taken from the iterable."""
     taken, executor = itertools.count(), Here()
 
     def look(done: int, of: int | None) -> None:
@@ -175,7 +175,7 @@ def test_pending_results_stay_within_the_byte_limit(
     samples: int, bytes_held: int, way: dict[str, Any], pool: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pending bytes stay below the limit, or are a single result. A chunk may be a sixteenth larger
-    than the one before, and the limit follows one task later."""
+    than the one before, and the limit adapts one task later."""
     monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)

@@ -59,7 +59,7 @@ def test_motions_and_errors_are_read_back_unchanged(way: dict[str, Any], out: Pa
 
 
 def test_unusual_values_survive_saving_to_a_folder(out: Path) -> None:
-    """Signs of zeros, infinite friction, missing arguments and last bits of a blow survive."""
+    """Values are signs of zeros, infinite friction, missing arguments, last bits of a blow."""
     mine = [
         Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
         Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),

@@ -144,7 +144,7 @@ def test_threads_that_read_a_motion_at_once_get_the_same_arrays() -> None:
 
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
 def test_times_are_accepted_as_in_simulate(t: Any) -> None:
-    """3000 times exceed the samples that the core evaluates in one block."""
+    """The 3000 times are more samples than the core evaluates in one block."""
     require_same(simulate_many(ROLLING, t), singly(ROLLING, t))
 
 

@@ -261,7 +261,7 @@ def test_a_resting_body_must_neither_rock_nor_move(column: int, word: str) -> No
 
 
 def test_a_law_is_named_only_if_it_is_by_far_the_nearest() -> None:
-    """Between two laws no law is named; each law itself is."""
+    """A motion between two laws names neither; a motion by a law names that law."""
     one = benchmark.problem("law.which")
     motions = {"stronge": one.states, **one.laws}
     t = one.output_times[np.rint(one.times * 100).astype(int)]
@@ -302,7 +302,7 @@ def test_a_wrong_event_time_is_judged_wrong_in_python_in_files_and_by_the_comman
 
 @pytest.mark.parametrize("name", sorted(IDS - set(NO_EVENTS)))
 def test_event_times_are_judged_by_the_stated_tolerance(name: str) -> None:
-    """2 % of sqrt(L/g), or a thousandth of the condition, 10 % at most."""
+    """The tolerance is 2 % of sqrt(L/g), or a thousandth of the condition, 10 % at most."""
     one = benchmark.problem(name)
     known = known_events(one)[: 5 if name == "hit.settle" else None]
     rest = known_events(one)[len(known) :]

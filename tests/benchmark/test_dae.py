@@ -83,7 +83,7 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
 def test_the_index_is_the_largest_number_of_differentiations(
     name: str, form: str, least: str
 ) -> None:
-    """Fewest differentiations that determine each entry of y'; the index is the largest of them."""
+    """The table has the fewest differentiations that determine each entry of y'."""
     dae = benchmark.problem(name).dae(form)
     found = sum((~determined(dae, k)).astype(int) for k in range(dae.index + 1))
     assert "".join(map(str, found)) == least.replace(" ", "")
@@ -114,7 +114,7 @@ def test_solve_dae_stays_within_its_tolerance(form: str) -> None:
 
 
 def test_ida_stays_within_its_tolerance() -> None:
-    """The page's program; its table covers all problems, which takes minutes."""
+    """The page's program is run on few problems: all of them, as in its table, take minutes."""
     errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)
     assert {row[:2] for row in errors} == {(name, form) for name in NAMES for form in FORMS[2:]}
     assert max(float(error) for *_, error in errors) <= 1e-8

@@ -18,7 +18,7 @@ HEIGHT, AHEAD = (f(0.4, a=2.0, b=0.7) for f in (geometry.support, geometry.suppo
 
 
 def test_mujoco_reads_mjcf_as_intended() -> None:
-    """The point above the centre moves forwards as theta grows: the Jacobian's last column."""
+    """The point above the centre moves forwards as theta grows, by the Jacobian's last column."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(SCENE.to_mjcf(timestep=0.002))
     data, above = mujoco.MjData(model), np.zeros((3, 3))

@@ -18,7 +18,7 @@ def test_the_slide_stops_when_friction_has_taken_its_momentum() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_rest_and_half_swings_are_read_off_the_states(name: str) -> None:
-    """REST is a little early: where the velocity has fallen to a five hundredth of its scale."""
+    """REST is read a little early, once the velocity is a five hundredth of its scale."""
     one = benchmark.problem(name)
     states = one.exact(one.output_times)
     read = read_off(one, one.output_times, states)

@@ -296,7 +296,7 @@ def test_gradients_equal_those_of_the_exact_motion() -> None:
 def test_the_command_exits_with_1_for_wrong_answers_and_2_for_bad_input(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Exit code 1 where an answer is wrong, 2 on bad input."""
+    """The command is run on results with wrong answers and with bad input."""
     assert main(["benchmark", "list"]) == 0
     listed = capsys.readouterr().out
     assert all(name in listed for name in IDS)

@@ -54,7 +54,7 @@ def test_failing_to_start_threads_changes_no_bit() -> None:
 
 
 def test_running_out_of_memory_raises_a_memory_error() -> None:
-    """Whichever array is the first without room: 16 MB each, in memory that grows by 16 MB."""
+    """Each array in turn is the first without room: 16 MB each, in memory that grows by 16 MB."""
     code = """
         import resource
         import numpy as np

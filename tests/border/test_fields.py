@@ -94,7 +94,7 @@ def test_a_scene_keeps_its_values_through_every_interface(
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_every_value_of_a_scene_affects_the_motion(name: str) -> None:
-    """The core reads the number, and so do the units of a contact motion."""
+    """The core reads each number, also when it scales a contact motion to its own units."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 

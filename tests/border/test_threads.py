@@ -100,7 +100,7 @@ def refusal(call: Callable[[], Any]) -> str:
 
 
 def test_concurrent_mixed_calls_equal_single_threaded_ones_bit_for_bit() -> None:
-    """8000 calls: each thread makes all calls in its own random order."""
+    """Each thread makes all calls in its own random order: 8000 calls in total."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
     def work(thread: int) -> None:

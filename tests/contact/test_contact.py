@@ -183,10 +183,10 @@ def test_a_slide_with_a_small_contact_response_lasts_until_lift_off(
 
 @pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
 def test_a_slide_may_jam_midway(scene: Scene) -> None:
-    """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
+    """B = c = 0 jams a slide (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
 
-    c vanishes more slowly than B: where SciPy stops, a part of c is left, and a part of omega and
-    slip in the fixed ratio in which the impulse of N changes them.
+    c vanishes more slowly than B: where SciPy stops, part of c is left, and part of omega and slip,
+    in the fixed ratio in which the impulse of N changes them.
     """
     motion = simulate(scene, 5.0, model="contact")
     assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
@@ -300,8 +300,8 @@ INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5
 
 
 def test_neither_of_two_possible_motions_is_chosen() -> None:
-    """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both motions
-    obey Newton's and Coulomb's laws."""
+    """If Gnn < mu s Gnt and c < 0, the body flies off, or N = c/B > 0 keeps it sliding; both
+    motions obey Newton's and Coulomb's laws."""
     start = INDETERMINATE.initial_state
     contact = response(INDETERMINATE, start)
     at = support(start.theta, 2.0, 1.0)

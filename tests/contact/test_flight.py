@@ -99,7 +99,7 @@ def test_random_flights_end_at_their_first_touch() -> None:
 @pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("omega", [8.0, -40.0, 700.0])
 def test_a_graze_is_distinguished_from_a_miss(omega: float, miss: float) -> None:
-    """A tip `miss` above the ground passes and lands later; a tip `miss` below has landed."""
+    """A tip `miss` above the ground passes and lands later; a tip `miss` below it has landed."""
     landings = []
     for offset in (miss, -miss):
         gap = Gap(Scene(2.0, 1.0, theta=0.3, omega=omega, z=3.0, z_dot=1.0))
@@ -125,7 +125,7 @@ def test_a_graze_is_distinguished_from_a_miss(omega: float, miss: float) -> None
 def test_a_body_may_leave_the_ground_by_acceleration_alone(
     omega: float, beyond: float, slope: float
 ) -> None:
-    """Rolling at c = g cos(alpha) + h'' omega^2 < 0 around the tip: gap and rate start at zero."""
+    """Rolling has c = g cos(alpha) + h'' omega^2 < 0 near the tip; gap and rate are 0."""
     scene = Scene(2.0, 1.0, theta=math.pi / 2 + beyond, omega=omega, slope=slope, friction=0.3)
     gap = Gap(scene)
     assert gap.acceleration(np.longdouble(0)) > 0
@@ -186,7 +186,8 @@ def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
     """The speed off the ground comes from the blow alone, without a difference of velocities that
-    are 1e9 times as fast. Judged in 40 digits: speed and time take some ten operations each."""
+    are 1e9 times as fast. The reference has 40 digits; speed and time take some ten operations
+    each."""
     blow = Impulse(jx=0.3 * strength, jz=strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]

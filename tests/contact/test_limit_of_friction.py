@@ -51,7 +51,7 @@ def test_a_body_at_the_friction_limit_moves_as_it_does_just_off_the_limit(
 @pytest.mark.parametrize("slope", [0.2, -0.9])
 @pytest.mark.parametrize("omega", [0.0, 1e-9, -1e-9])
 def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, ulps: int) -> None:
-    """h' = h tan(alpha): the body stays there or rocks about this position, and hardly slips."""
+    """Where h' = h tan(alpha) the body stays or rocks about the position, and hardly slips."""
     a, b, incline = 9.0, 1.0, math.tan(slope)
     c2 = a * a - b * b
     theta = math.atan(2 * incline * b * b / (c2 + math.sqrt(c2**2 - (2 * a * b * incline) ** 2)))

@@ -63,7 +63,7 @@ def allowed(scene: Scene, slip: float) -> list[Answer]:
 
 
 def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
-    """1500 states, half of them without rotation and half without slip, none in flight."""
+    """There are 1500 states, half without rotation and half without slip, none in flight."""
     random = np.random.default_rng(7)
     taken = {mode: 0 for mode in Mode}
     for _ in range(1500):
@@ -105,7 +105,7 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
 def test_a_lever_alone_can_jam_a_light_body(
     friction: float, lever: float, theta: float, inertia: float | None
 ) -> None:
-    """k^2 + h'(h' - s mu h + s' delta) <= 0, with delta > 2 k where there is no friction."""
+    """It jams if k^2 + h'(h' - s mu h + s' delta) <= 0; without friction delta > 2 k."""
     scene = Scene(
         2.0, 1.0, theta=theta, omega=1.0 if friction == 0 else -1.0, friction=friction,
         x_dot=0.0 if friction == 0 else 5.0, inertia=inertia, rolling_resistance=lever,
@@ -136,7 +136,7 @@ def test_a_body_rests_where_its_centre_is_above_the_patch_of_contact(slope: floa
 
 @pytest.mark.parametrize("friction", [1.0, math.inf])
 def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -> None:
-    """delta times the integral of N |omega|, by Gauss's rule between the turns."""
+    """The work is delta times the integral of N |omega|, by Gauss's rule between turning points."""
     scene = ROCKING.replace(friction=friction, omega=1.5, rolling_resistance=0.03)
     motion = simulate(scene, 9.0)
     assert not motion.events

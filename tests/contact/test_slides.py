@@ -85,9 +85,9 @@ def test_a_frictionless_slide_conserves_energy() -> None:
 def test_a_frictionless_slide_creeps_over_the_tip_at_every_pass(
     a: float, b: float, theta: float, creep: float
 ) -> None:
-    """Each pass of the tip has the omega of the first: the energy has few roundings there, though
-    in between it falls by the difference of the axes. The bound allows a few roundings of omega,
-    and a missed tip, where the doubles of the angle are 1e-15 apart."""
+    """Each pass of the tip has the same omega as the first: the energy has few roundings there,
+    although the centre falls by the difference of the axes in between. The bound allows a few
+    roundings of omega, and missing the tip by 1e-15, the spacing of doubles there."""
     scene = Scene(a, b, theta=theta, omega=creep, x_dot=1.0, friction=0.0)
     motion = simulate(scene, 60.0, model="contact")
     times = [float(motion.when(theta=theta + k * math.pi)[0]) for k in (1, 2, 3)]
@@ -158,7 +158,7 @@ NEAR_A_JAM = (
 
 @pytest.mark.parametrize(("given", "known", "t"), NEAR_A_JAM)
 def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], t: float) -> None:
-    """B falls below 1e-11, rises again in the first two slides; the slip vanishes.
+    """B falls below 1e-11, and in the first two slides rises again before the slip vanishes.
 
     The numbers come from reference/impulse_clock.py in 45 digits. A start in doubles has their
     roundings; each of some 60 pieces adds one of random sign."""
@@ -170,7 +170,7 @@ def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], 
 
 
 def test_the_timing_of_a_light_body_rocking_near_a_jam_stays_accurate() -> None:
-    """Some twenty swings in 0.3 s, at each end of which B all but vanishes.
+    """The body makes some twenty swings in 0.3 s, and B all but vanishes at the end of each.
 
     The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
     turn the body by 1.5 rad/s and change omega by 600 rad/s^2 in each of them."""

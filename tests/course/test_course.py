@@ -252,7 +252,7 @@ def allowed(number: str) -> float:
 
 @pytest.mark.parametrize("number", TASKS)
 def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
-    """A mark names the mistakes that were made, and besides them only those that lead to the same
+    """A mark names the mistakes that were made, and no others except ones that lead to the same
     number. Mistakes that change nothing are not named. Tolerances hold to within 30 %, since
     ellipses take the place of rolling discs there. They are at most 0.5 %, so numbers of one name
     may differ by 1 %.

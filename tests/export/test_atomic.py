@@ -161,7 +161,7 @@ def test_a_new_file_keeps_the_owner(old: Path) -> None:
 
 
 def test_a_read_only_file_is_not_overwritten() -> None:
-    """Root may write to any file, so root runs this as user `nobody`, in a folder open to all."""
+    """Root may write to any file, so root runs the test as `nobody`, in a folder open to all."""
     nobody, user = 65534, os.geteuid()
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)

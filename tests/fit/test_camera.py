@@ -86,7 +86,7 @@ def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
 def test_unknowns_that_a_film_cannot_determine_are_named(
     scene: Scene, free: tuple[str, ...], lost: str
 ) -> None:
-    """A flight without touch has neither ground nor scale, a body at rest no clock."""
+    """A flight without a touch determines neither ground nor scale, a body at rest no clock."""
     fit = fit_motion(**filmed(scene), scene=scene, free=free, sigma=SIGMA)
     told = [name for name in lost.split(", ") if not math.isinf(fit.errors[name])]
     assert told == [] and "the film cannot tell" in fit.message

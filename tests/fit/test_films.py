@@ -62,7 +62,7 @@ def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
 
 def test_outliers_do_not_inflate_the_noise() -> None:
     """The median residual of n numbers gives sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
-    (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. Bounded at four deviations of
+    (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. The bound is four deviations of
     the mean of three tracks; the median itself would be lower by a third."""
     t = np.linspace(0.00125, 0.4, 320)
     tracks = film(3, t)
@@ -76,7 +76,7 @@ def test_outliers_do_not_inflate_the_noise() -> None:
 
 @pytest.mark.parametrize("seed", range(len(KINDS)))
 def test_correct_films_raise_no_alarm(seed: int) -> None:
-    """T of a right film is at most a normal number: over 3.5 once in 4000 tracks; 1 in 300 here."""
+    """T of a correct film is at most normal, over 3.5 once in 4000 tracks: 1 in 300 here."""
     row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())
@@ -125,7 +125,7 @@ def test_a_track_that_freezes_or_jumps_is_reported_as_beyond_any_tracker() -> No
 
 
 def test_frames_on_either_side_of_a_missing_one_are_not_neighbours() -> None:
-    """Rows of the film may be missing, or numbers in them."""
+    """Whole rows of the film may be missing, or single numbers."""
     off = np.arange(8.0)
     off[3] = np.nan
     one, other = neighbours(np.array([0.0, 1, 2, 3, 4, 7, 8, 9]), off)

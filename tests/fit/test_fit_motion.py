@@ -52,8 +52,8 @@ UNEVEN = np.sort(np.random.default_rng(2).uniform(0, 0.45, 90))
 
 def test_fits_of_twelve_films_recover_their_parameters_with_honest_errors() -> None:
     """chi2 has the mean of its degrees of freedom n and the variance 2n, bounded at 5 deviations.
-    Of m normal numbers 0.68 m are within 1, bounded at 4 deviations sqrt(0.22 m); errors that
-    were widened bring more of them. More than one of m = 48 beyond 3 has the probability 0.8 %."""
+    Of m normal numbers 0.68 m are within 1, bounded at 4 deviations sqrt(0.22 m); widened errors
+    bring in more of them. More than one of m = 48 beyond 3 has the probability 0.8 %."""
     chi2, count, pulls = 0.0, 0, []
     for seed in range(12):
         rng = np.random.default_rng(seed)
@@ -124,9 +124,9 @@ def test_parameters_at_their_bounds_are_fitted(changes: dict[str, float]) -> Non
 
 
 def test_an_undetermined_parameter_keeps_its_guess() -> None:
-    """A film without an impact does not determine restitution, one at rest not friction, and none
-    the mass; points on the line of a blow are equivalent; half turns of theta stay those of the
-    scene."""
+    """A film without an impact does not determine restitution, a film of a body at rest does not
+    determine friction, and no film determines the mass; points on the line of a blow are
+    equivalent; half turns of theta stay those of the scene."""
     blow = Scene(friction=0.5, impulse=Impulse(jx=0.3, jz=-0.1, dx=-0.01, dz=0.02), **BODY)
     for scene, free, lost in (
         (ROLL, ("theta", "restitution"), ["restitution"]),

@@ -65,8 +65,8 @@ def test_the_oracle_lengths_equal_their_integrals(shape: Shape) -> None:
 
 def test_support_and_its_slope_are_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
     """h and h' are sums or products of positive terms, except a - b, which is exact near a circle.
-    So errors are relative: at most 3 roundings each in sin, cos and the axes, and 3 more after
-    them."""
+    Therefore errors are relative: at most 3 roundings each in sin, cos and the axes, and 3 more
+    after them."""
     for theta in angles:
         h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
         assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), h, h) <= 4

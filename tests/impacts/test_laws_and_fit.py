@@ -85,8 +85,9 @@ def test_laws_agree_with_small_steps_along_the_impulse_path(
     law: Any, friction: float, restitution: float
 ) -> None:
     """The oracle is a step late at the end of compression, which restitution at most doubles, and
-    another at its own end. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body by
-    sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the approach."""
+    another step late at the end of restitution. A step with its friction, sqrt(1 + mu^2) < 1.5 of
+    it, moves the body by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the
+    approach."""
     for state in approaching(25, seed=3).T:
         found = after(state, law, friction, restitution)
         true = walked(law, state, friction, restitution)
@@ -102,7 +103,7 @@ def test_laws_agree_with_small_steps_along_the_impulse_path(
 def test_the_impulse_acts_at_the_contact_within_the_friction_cone(
     law: Any, friction: float
 ) -> None:
-    """Velocities reach 10 m/s, with some tens of roundings each."""
+    """Velocities reach 10 m/s and have some tens of roundings each."""
     state = approaching(400)
     velocities = after(state, law, friction, 0.7)
     h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))

@@ -257,8 +257,8 @@ EXTREME = {
 @pytest.mark.parametrize("where", EXTREME)
 @each_method
 def test_scenes_of_extreme_scale_stay_accurate(name: str, where: str) -> None:
-    """The largest and smallest scenes, in steps of a thousandth of the time simulated: even order 4
-    is then within 1e-9 of the size of the motion."""
+    """The largest and smallest scenes are simulated in a thousand steps: even order 4 is then
+    within 1e-9 of the size of the motion."""
     scene, time = EXTREME[where]
     trajectory = stepped(scene, np.linspace(0, time, 101), name, time / 1000)
     exact = rl.simulate(scene, trajectory.t, method="exact")
@@ -295,8 +295,8 @@ def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
 )  # fmt: skip
 @each_method
 def test_a_resting_body_stays_at_rest(name: str, scene: Scene) -> None:
-    """A resting body stays at rest with every method: pi/2 is rounded to a double, and from there
-    the equation would take half a minute to fall off the tip."""
+    """A resting body stays at rest with every method: pi/2 is rounded to a double, from which the
+    body would need half a minute to fall off the tip."""
     for how in [{"step": 0.1}] if name not in PAIRS else [{"step": 0.1}, {}]:
         trajectory = roll(scene, 60.0, name, **how)
         assert np.all(trajectory.mode == Mode.REST)
@@ -316,7 +316,7 @@ def test_the_last_step_ends_exactly_at_the_end_time(
     name: str, span: float, step: float, steps: int
 ) -> None:
     """The last step is shorter where needed, and none is added for the rounding of 0.7/0.1. The
-    error is that of even steps, which is up to (0.3/0.25)^8 = 4.3 times smaller."""
+    error is compared with even steps, whose error is up to (0.3/0.25)^8 = 4.3 times smaller."""
     scene = replace(rl.scenes.rocking, omega=1.0)
     trajectory = stepped(scene, span, name, step)
     assert trajectory.stats["steps"] == steps

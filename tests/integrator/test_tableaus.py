@@ -174,7 +174,7 @@ def test_explicit_methods_are_explicit(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
-    """The conditions distinguish methods: one order more is refused."""
+    """The conditions distinguish orders: one order more is refused."""
     method = explicit(name)
     with pytest.raises(Violation):
         require_order(method.a, method.b, np.abs(method.b), method.order + 1)
@@ -186,7 +186,7 @@ def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
 
 
 def test_the_error_estimate_of_dopri5_uses_its_fourth_order_weights() -> None:
-    """Weights of J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
+    """Weights by J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
     lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
     method = explicit("dopri5")
     require(method.error[0], method.b - lower, np.abs(method.b) + np.abs(lower), 1)

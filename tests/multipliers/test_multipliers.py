@@ -123,9 +123,9 @@ def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
 
 def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> float:
     """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of
-    Baumgarte's feedback), relative to the sums of the magnitudes of their terms; for the second
-    each row times the largest acceleration, with angles as lengths, as elimination can guarantee
-    it."""
+    Baumgarte's feedback), relative to the sums of the magnitudes of their terms; for the second,
+    relative to each row times the largest acceleration, with angles as lengths, which elimination
+    can guarantee."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     (mass, force), (q_ddot, multipliers) = forces(scene), solved
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -178,8 +178,8 @@ def test_back_substitution_detects_a_change_of_a_millionth(column: int) -> None:
 
 @each_shape
 def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None:
-    """50 random rolling states: accelerations, N, F and all multipliers of the model "rolling", to
-    1e-12 of their terms (gravity is one: z_ddot is lambda_2/m - g)."""
+    """In 50 random rolling states accelerations, N, F and all multipliers equal those of the model
+    "rolling" to 1e-12 of their terms (gravity is one: z_ddot is lambda_2/m - g)."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
     known = _core.rolling_detail(scene.core, theta, omega, np.zeros(50))
@@ -262,10 +262,10 @@ FORCES = ("normal_force", "friction_force")
 @each_stabilization
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> None:
-    """2 s at rtol 1e-12, compared with the model "rolling" (exact where possible, dop853 at 1e-13).
-    The bound 1e-9: some 100 steps, each 1e-12 off, and errors grow by a factor of at most about
-    exp(lambda t) = e^3.4; a rounding of a far theta (1.5e-11) grows, too. With feedback the forces
-    contain the velocity residual times 2 alpha m = 60 kg/s at most."""
+    """Motions of 2 s at rtol 1e-12 are compared with the model "rolling" (exact where possible,
+    dop853 at 1e-13). The bound is 1e-9: some 100 steps are each 1e-12 off, and errors grow by a
+    factor of at most about exp(lambda t) = e^3.4; a rounding of a far theta (1.5e-11) grows, too.
+    With feedback the forces contain the velocity residual times 2 alpha m = 60 kg/s at most."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
@@ -312,9 +312,9 @@ STEPS = {"rk4": (4, (200, 400, 800)), "dopri5": (5, (160, 320, 640)), "dop853": 
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte", "projection"])
 @pytest.mark.parametrize("method", STEPS)
 def test_errors_shrink_at_the_order_of_the_method(method: Any, stabilization: Any) -> None:
-    """Largest error of q at all knots of 3.37 half turns, as a power of the step. The terms of the
-    next order still contribute: the slope lies between the two orders, closer to the method's
-    own."""
+    """The largest error of q at all knots of 3.37 half turns is fitted by a power of the step. The
+    terms of the next order still contribute: the slope lies between the two orders, closer to the
+    method's own."""
     order, counts = STEPS[method]
     scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
     span = 3.37 * rl.period(scene) / 2

@@ -43,7 +43,7 @@ def adapter(name: str) -> Any:
 
 
 def score_of(one: benchmark.Problem, result: Any, **more: Any) -> benchmark.Score:
-    """The score of states, with more of their result, or of a result."""
+    """The score of a result, or of states with further fields of a result."""
     result = benchmark.Result(result, **more) if more else result
     (score,) = benchmark.score({one.id: result}, problems=one)
     return score

@@ -42,7 +42,7 @@ def test_the_reports_blow_rolls_the_body_over() -> None:
 
 
 def test_starts_without_rolling_have_the_expected_outcome() -> None:
-    """A slide at 56.6 degrees to the front jams if the friction is more than 1.3527."""
+    """A forward slide at 56.6 degrees jams if the friction is more than 1.3527."""
     jams: dict[str, Any] = {"theta": math.radians(56.636), "x_dot": 5.0}
     for scene, expected in (
         (rl.scenes.drop, Outcome.LOSES_CONTACT),
@@ -63,9 +63,9 @@ def test_starts_without_rolling_have_the_expected_outcome() -> None:
 @pytest.mark.parametrize("side", [1, -1])
 def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
     """A circle rolls down the slope or, against it, turns back after a path of omega^2 (a^2 +
-    k^2)/(2 g sin(slope)): more than half a turn or not. Equilibrium at h' = h tan(slope) rests with
-    the friction tan(slope). The 2:1 disc on 0.1 rocks, and rolls over from flat at 3 rad/s
-    downhill."""
+    k^2)/(2 g sin(slope)): more than half a turn or not. A body in equilibrium, h' = h tan(slope),
+    rests with the friction tan(slope). On a slope of 0.1 the 2:1 disc rocks, and rolls over from
+    flat at 3 rad/s downhill."""
     round_one = Scene(1.0, 1.0, slope=0.1 * side)
     assert outcome(round_one) is Outcome.ROLLS_OVER
     half_turn = math.sqrt(2 * 9.81 * math.sin(0.1) * math.pi / 1.5)

@@ -85,8 +85,8 @@ def test_starts_near_the_separatrix_are_called_edge_or_judged_correctly(
 def test_the_outcome_changes_at_the_friction_of_the_certificate(
     a: float, b: float, omega: float
 ) -> None:
-    """The motion up from flat passes every height; |F|/N is known to 1e-13 or so, as the forces are
-    rounded at 1e-14 or so of the weight, and N is a tenth of it or more."""
+    """A motion up from flat passes every height. |F|/N is known to about 1e-13, as the forces are
+    rounded to about 1e-14 of the weight, and N is at least a tenth of it."""
     theta = 0.0 if a > b else math.pi / 2
     needed = certify(Scene(a, b, omega=omega, theta=theta)).largest_friction_needed
     assert needed is not None
@@ -99,7 +99,7 @@ def test_the_outcome_changes_at_the_friction_of_the_certificate(
 
 
 def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
-    """The 2:1 disc at 4.5 rad/s in flat needs 0.647 at 48.6 degrees and hardly any friction near
+    """The 2:1 disc at 4.5 rad/s when flat needs 0.647 at 48.6 degrees and hardly any friction near
     the tip. A start of the same motion above that angle passes the tip if it rises, and slips if it
     falls."""
     friction = 0.5
@@ -138,7 +138,7 @@ def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: f
 @pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1.0, 1e3), (1.0, 1e-3), (1e-3, 1.0)])
 def test_the_thinnest_body_rocks_if_slow_and_slips_if_fast(a: float, b: float) -> None:
     """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e4 rad/s
-    rolling would need a pull of the ground as soon as the body rises."""
+    the ground would have to pull as soon as the body rises."""
     flat = 0.0 if a > b else math.pi / 2
     tip = math.pi / 2 - flat
     slow = 1e-3 * thresholds(a, b).contact_loss_speed

@@ -178,7 +178,7 @@ def test_a_wrong_direction_is_detected(walked: list[Walked]) -> None:
 
 
 def test_random_scenes_never_jam_and_are_rarely_undecided() -> None:
-    """Among 1e5 scenes rounding changes the margins by 1e-12 or so of their largest value, so that
+    """Among 1e5 scenes rounding changes the margins by about 1e-12 of their largest value, so that
     even many scenes near the thresholds leave far fewer than one in a thousand undecided."""
     rng = np.random.default_rng(31)
     count = 100_000

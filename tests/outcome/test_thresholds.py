@@ -79,8 +79,8 @@ def test_the_defaults_are_a_disc_on_earth_with_unlimited_friction() -> None:
 @both
 @inertias
 def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str) -> None:
-    """N stays positive in the whole turn below the speed, and not just above it; at the speed it
-    vanishes at the angle."""
+    """Below the speed N stays positive in the whole turn, just above it N does not; at the speed N
+    vanishes at the stated angle."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     speed = found.contact_loss_speed
@@ -97,7 +97,7 @@ def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str)
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
 def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: float) -> None:
-    """The slip speed is the smallest speed at flat whose motion needs the given friction."""
+    """The slip speed is the smallest speed at flat with which motion needs the friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     speed = found.slip_speed
@@ -115,7 +115,7 @@ def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: 
 def test_friction_to_roll_over_is_the_largest_needed_while_rolling_over(
     shape: Shape, kind: str
 ) -> None:
-    """The largest friction needed at the energy of the barrier; inf if N vanishes before."""
+    """It is the largest friction needed at the energy of the barrier; inf if N vanishes before."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     rise = GRAVITY * np.array([abs(np.longdouble(shape[0]) - np.longdouble(shape[1]))])
@@ -234,9 +234,9 @@ def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: 
 @both
 @inertias
 def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -> None:
-    """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground; h' = 0 in flat and
-    on the tip. The package integrates, to 1e-13 per step; one slide from flat to tip takes some ten
-    steps, whose errors do not grow here: 1e-12."""
+    """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground; h' = 0 flat and on
+    the tip. The package integrates to 1e-13 per step; one slide from flat to tip takes some ten
+    steps, whose errors do not grow here, so the bound is 1e-12."""
     gyration2 = gyration2_of(shape, kind)
     rise = GRAVITY * abs(shape[0] - shape[1])
     exact = math.sqrt(tip_speed2(shape) + 2 * rise / gyration2)
@@ -292,7 +292,7 @@ def on_its_way_up(event: Event) -> bool:
 def test_a_body_jams_only_between_its_jam_speeds(
     a: float, gyration2: float, gravity: float, friction: float
 ) -> None:
-    """A body with its mass near the centre, above Painleve's friction: the contact model confirms
+    """For bodies with mass near the centre, above Painleve's friction, the contact model confirms
     the jam speeds, even near the ends of the ranges. The distance from an end is 1e-4 at least:
     where c and B vanish together, the last digits of a slide decide between a jam and leaving. The
     longest body slips at 0.24 rad/s, leaves the ground at more than 50 times that and jams at 16 to

@@ -479,7 +479,7 @@ def test_a_page_leaves_no_garbage_to_collect(report: rl.Trajectory, tmp_path: Pa
 
 
 def test_a_film_written_as_a_page_is_drawn_on_demand(report: rl.Trajectory, tmp_path: Path) -> None:
-    """Its pixels equal those of a film drawn at once, and matplotlib has the same animation."""
+    """The pixels equal those of a film drawn at once, and matplotlib has the same animation."""
     page = rl.animate(report, tmp_path / "roll.html", width=200)
     drawn = rl.animate(report, width=200, fps=60)
     assert not hasattr(page, "no_such_name")

@@ -218,7 +218,7 @@ def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Tr
 
 
 def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Trajectory) -> None:
-    """Errors of energy are some roundings of its largest part; work of friction does not count."""
+    """Errors are a few roundings of the energy; the work of friction is no error."""
     (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
     error, slides = np.asarray(line.get_ydata()), seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
@@ -374,7 +374,7 @@ def test_the_slip_mark_lies_along_the_slope() -> None:
 
 
 def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
-    """White, black and a grey between: a fifth of the scale is distinguished at a glance."""
+    """Marks are white, black and a grey between: a fifth of the scale is visible at a glance."""
     (strip,) = rl.animate(jump).strips
     rolling, sliding, shadow = (
         float(np.dot(to_rgb(colour), (0.21, 0.72, 0.07)))

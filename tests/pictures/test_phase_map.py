@@ -180,7 +180,7 @@ def test_speeds_over_the_friction_agree_with_thresholds() -> None:
 
 
 def test_colours_change_at_the_lines() -> None:
-    """Unlimited friction: rolling ends at N = 0; the separatrix divides rocking from rolling."""
+    """Rolling ends at N = 0; the separatrix divides rocking from rolling over."""
     shown = phase_map(resolution=400)
     codes = codes_of(shown)
     aspects, energies = (

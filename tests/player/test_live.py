@@ -46,7 +46,7 @@ console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(({ scene, tim
 def test_webassembly_gives_300_scenes_the_same_values_and_sentences_as_python(
     tmp_path: Path,
 ) -> None:
-    """Roundings of another C library, magnified by a short motion's bounces, stay in bounds."""
+    """Bounds allow roundings of another C library, magnified by the bounces of a short motion."""
     if NODE is None:
         pytest.skip("there is no node (apt-get install nodejs)")
     how, times = replace(DEFAULTS, max_steps=20_000, max_events=200), np.linspace(0.0, 1.5, 31)

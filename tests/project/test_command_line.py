@@ -114,7 +114,7 @@ def test_the_command_without_options_runs_the_report_scene(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
 def test_a_console_of_any_encoding_gets_the_output(encoding: str, tmp_path: Path) -> None:
-    """Eleven events, a name that no such console knows, a problem with an accent, and a refusal."""
+    """The output has eleven events, a name unknown to such consoles, an accent, and a refusal."""
     told = {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
     falls = ["--theta", "0.4", "--friction", "0.2", "--omega", "4", "--slope", "0.1"]
     code, out, err = typed(tmp_path, *falls, "--time", "9", "--plot", "θ→.png", **told)
@@ -336,7 +336,7 @@ def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
 
 
 def test_extreme_motions_still_give_standard_json(command: Any) -> None:
-    """JSON has no infinite number: no friction limit, rest, contact lost, the separatrix."""
+    """JSON has no infinity; unlimited friction, rest, lost contact and the separatrix have one."""
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         "--omega 50", f"--theta {math.pi / 2} --omega 0", "--omega 5.2 --friction 0",

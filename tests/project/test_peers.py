@@ -176,7 +176,7 @@ def test_a_well_races_as_long_as_its_swings() -> None:
 
 
 def test_the_judge_detects_a_small_error() -> None:
-    """The judge shares no line with exact rolling, and agrees with it to a few roundings of 7."""
+    """The judge shares no line with exact rolling, and agrees to a few roundings of theta = 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14

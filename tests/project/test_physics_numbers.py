@@ -41,7 +41,7 @@ def test_physical_values_agree_to_all_known_digits(
 
 
 def test_the_centre_path_agrees_with_project_euler_525() -> None:
-    """Project Euler 525: the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
+    """In Project Euler 525 the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
     integral of |d(x, h)/d theta| = r; here by the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
     trajectory = rl.simulate(turning, np.linspace(0, period(turning), 2001))

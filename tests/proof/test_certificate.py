@@ -417,7 +417,7 @@ def test_a_wrong_end_is_detected(shift: float) -> None:
 
 
 def test_a_verdict_very_close_to_the_threshold_is_edge_or_correct() -> None:
-    """Friction 1e-13, 1e-14 or 1e-15 from the needed one gives EDGE, or the true verdict."""
+    """Friction off by 1e-13, 1e-14 or 1e-15 from what is needed gives EDGE or the true verdict."""
     said_edge = 0
     for seed in range(3):
         sample, truth = random_sample(100, 1000 + seed)

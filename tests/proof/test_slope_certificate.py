@@ -163,8 +163,8 @@ def test_a_nearly_round_body_rolls_far_and_stops_rolling_at_its_bound(direction:
 
 
 def test_constant_forces_have_an_exact_friction_threshold() -> None:
-    """Needed friction is tan(slope) k^2/(k^2 + a^2) = tan(slope)/3 of a disc, tan(slope) at rest:
-    VALID just above, INVALID just below, EDGE at it."""
+    """A disc needs the friction tan(slope) k^2/(k^2 + a^2) = tan(slope)/3, a body at rest
+    tan(slope): VALID just above, INVALID just below, EDGE at the threshold."""
     incline = math.tan(0.2)
     tangent = 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
     circle = Scene(1.0, 1.0, slope=0.2, omega=1.0)

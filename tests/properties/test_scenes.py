@@ -131,10 +131,10 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
     """Energy never grows through an event or in an arc; the potential energy includes the slope.
 
     An event rounds each number of its state a few times, and a slip ends within rounding of its
-    initial speeds. An arc is known to rounding of its largest terms: the energies at both ends and,
-    in a flight, its height between them. Averaged bounces move under their initial forces: an error
-    of the square of their duration, relative to the time in which a body falls, turns by b/a, or a
-    force turns it.
+    initial speeds. An arc is known to within rounding of its largest terms: the energies at both
+    ends and, in a flight, its height between them. Averaged bounces move under their initial
+    forces: the error is the square of their duration, relative to the time in which a body falls,
+    turns by b/a, or a force turns it.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)

@@ -38,7 +38,7 @@ def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) ->
 
 @pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
 def test_corrected_allows_a_start_the_rounding_of_its_coordinates(a: float, theta: float) -> None:
-    """For f4 = psi - psi(theta), tan psi = a^2 tan theta, that is twice 16 ulp of psi and theta and
+    """For f4 = psi - psi(theta), tan psi = a^2 tan theta, this is twice 16 ulp of psi and theta and
     8 eps of psi - theta, plus 16 eps of |theta| + |psi|; f4 itself is known to 1e-15."""
     q, q_dot = rl.kinematics(theta, 0.0, a=a, b=1.0)
     slope = a**2 * (1 + np.tan(theta) ** 2) / (1 + a**4 * np.tan(theta) ** 2)
@@ -148,7 +148,7 @@ LAWS = {  # gap over time from (gap, its rate) = (0, 1) or (0.1, 0)
 def test_the_gap_of_an_inconsistent_start_evolves_as_predicted(
     stabilization: str, law: Any, gap: float, rate: float
 ) -> None:
-    """A body lifted or thrown off the ground: without stabilization the gap persists or grows."""
+    """A body is lifted or thrown up; without stabilization the gap persists or grows."""
     shift = np.eye(5)[1]
     options = {"step": 0.01} if stabilization == "ggl" else {}
     times = np.linspace(0.02, 1, 50)

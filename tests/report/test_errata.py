@@ -227,8 +227,8 @@ def test_the_correct_lambda4_vanishes() -> None:
 
 
 def test_f_of_eq_40_lacks_terms_of_eq_42() -> None:
-    """The difference of eq 40 from all the terms of eq 42 is its lost terms; F itself is
-    4 a^2 b^2 h' N by the moments about the contact."""
+    """Eq 40 differs from all the terms of eq 42 by its lost terms; F itself is 4 a^2 b^2 h' N, by
+    the moments about the contact."""
     found, at = numbers("eqs 40, 42"), Exact(ANGLE)
     assert found.right == close(16 * at.slope * 10 * at.normal)
     q, _ = rl.kinematics(ANGLE, at.omega, **SHAPE)
@@ -390,7 +390,7 @@ def test_multipliers_equal_those_of_the_package() -> None:
 
 
 def test_the_right_rows_are_the_gradients_of_f1_to_f4() -> None:
-    """Rows times rates equal scale times `constraints`, at any state, also off the constraints."""
+    """Rows times rates equal scaled `constraints`, at any state, even off the constraints."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
     velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity

@@ -34,7 +34,7 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 def test_wrong_equations_lift_the_body_off_the_ground(
     printed: tuple[str, ...], gap: float, mass: float
 ) -> None:
-    """Cause (a): wrong equations, from their own consistent start, at any tolerance."""
+    """Cause (a) is wrong equations, from their own consistent start, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     loose, tight = (
         run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
@@ -63,7 +63,7 @@ def test_the_right_rows_give_the_exact_motion() -> None:
 
 
 def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
-    """Cause (b): with z_dot too large by one, right equations give f2 = t with f2'' = 0."""
+    """Cause (b) is the start: with z_dot off by one, right equations give f2 = t, f2'' = 0."""
     q, q_dot = start(0.2, 2.0)
     q_dot[1] += 1.0
     times = np.linspace(0, 1, 11)
@@ -77,7 +77,7 @@ def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
 
 
 def test_large_steps_lift_the_body_off_the_ground() -> None:
-    """Cause (c): right equations with large RK4 steps give 0.84 m and +40 % after 60 s."""
+    """Cause (c) is the step: large RK4 steps give 0.84 m and +40 % energy after 60 s."""
     q, q_dot = start(0.0, 3.2)
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
     assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)

@@ -57,7 +57,7 @@ def period_unit(motion: Motion) -> float:
 
 @each_motion
 def test_the_oracle_is_accurate_to_thirty_digits(motion: Motion) -> None:
-    """Two rules of different order agree: the coarser errs far more than the finer."""
+    """Two rules of different order agree, and the coarser one errs far more than the finer one."""
     coarse, fine = exact_period(motion), exact_period(motion, 40)
     assert abs(coarse - fine) <= mp.mpf("1e-30") * fine
 
@@ -111,7 +111,7 @@ def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: M
 @pytest.mark.parametrize("radius", [1.0, 0.37, 1e-3, 250.0])
 @pytest.mark.parametrize("theta", [0.0, 0.7, -3.0, 1e4])
 def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
-    """An angle has two roundings at most, each half an ulp of its result: one ulp of the larger."""
+    """An angle has at most two roundings of half an ulp each: one ulp of the larger result."""
     for omega in (2.0, -0.3, 1e5):
         for t in (1e-9, 0.1, 7.7, -3.3, 1e6):
             angle, speed, x = flow(t, a=radius, b=radius, theta=theta, omega=omega)

@@ -102,7 +102,7 @@ def test_an_invalid_time_is_named_by_its_index(place: int, bad: float) -> None:
 
 
 def test_flow_needs_little_more_memory_than_its_result() -> None:
-    """A million times are not copied; a tenth of the answer is more than any table."""
+    """A million times are not copied, and any table takes less than a tenth of the answer."""
     times, start = np.linspace(0.0, 100.0, 1_000_000), arguments(MOTIONS["rotation"])
     tracemalloc.start()
     try:

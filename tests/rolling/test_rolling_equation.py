@@ -127,9 +127,9 @@ def test_derivatives_agree_with_differences_of_the_acceleration(shape: tuple[flo
 def test_forces_are_accelerations_minus_gravity(
     a: float, b: float, gyration2: float, slope: float
 ) -> None:
-    """N and F by Newton's law for the centre, in 40 digits. The bound is a few roundings of the
-    terms over D of which they are sums: where a thin body is light, both sides are far smaller than
-    the accelerations."""
+    """N and F follow from Newton's law for the centre, in 40 digits. The bound is a few roundings
+    of the terms over D of which they are sums: where a thin body is light, both sides are far
+    smaller than the accelerations."""
     rng = np.random.default_rng(6)
     for theta, omega in zip(rng.uniform(-4, 4, 60), rng.normal(0, 3, 60), strict=True):
         scene = Scene(a, b, inertia=gyration2, slope=slope, theta=float(theta), omega=float(omega))

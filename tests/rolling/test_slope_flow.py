@@ -114,8 +114,8 @@ def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) ->
 
     The reversed state at t reaches the reversed start after another t, by three methods: the sum
     uphill, the series over the top, the sum downhill. A rounding of the state in between changes
-    the energy, and moves the end by the time since then over the time scale of half a turn: 64
-    roundings of the path.
+    the energy and moves the end, in proportion to the time since then over the time scale of half a
+    turn: 64 roundings of the path are allowed.
     """
     scene = rl.Scene(1.0, ratio, slope=slope, theta=0.4, omega=-8.0)
     whole = rolled(scene, [0.0, 2e4])

@@ -115,7 +115,7 @@ def reach_of_series(motion: Motion) -> float:
 
 @each_motion
 def test_exact_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
-    """theta, omega and x err by four units; the forces follow from theta and omega.
+    """theta, omega and x err by at most four units; the forces follow from theta and omega.
 
     A state is some hundred series, each with its own rounding, and the energy keeps the angular
     velocity accurate; the sum over half turns has a few roundings of its time. The errors were 1.1
@@ -180,8 +180,8 @@ def test_radau_errors_are_as_its_order_predicts() -> None:
 def test_a_small_change_of_an_input_is_detected(name: str) -> None:
     """A change of any single input by a millionth is detected in every scene: the check is sharp.
 
-    Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share: a
-    slope of a few milliradians hardly matters to a fast spin: a millionth of it is 14 tolerances.
+    Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share. A
+    slope of a few milliradians hardly matters to a fast spin: its millionth is 14 tolerances.
     """
     changed = 0
     for motion in MOTIONS:

@@ -76,10 +76,10 @@ def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     """A start that moves towards or away from the rim swings like a start at rest further inside.
 
     The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
-    d (1 - share^2)^(1/2), up to its square and an ulp of theta: so far the period, 2 log(1/d)/rate
-    and a constant, may differ. After a period the body is at its start, up to an ulp and to the
-    rounding of the period. Crossing the well by series and coming back gave periods with errors of
-    16 %, and bodies that rolled out.
+    d (1 - share^2)^(1/2), up to its square and an ulp of theta; the period, 2 log(1/d)/rate plus a
+    constant, may differ by as much. After a period the body is at its start, up to an ulp and to
+    the rounding of the period. Crossing the well by series and coming back gave periods with errors
+    of 16 %, and bodies that rolled out.
     """
     (lying, _), (upright, rate) = equilibria(scene)
     inside = math.copysign(distance, lying - upright)

@@ -69,7 +69,7 @@ RANDOM = random_scenes(210)
 
 @pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
 def test_the_reaction_follows_the_collision_law(scene: Scene) -> None:
-    """The reaction agrees to rounding; for mu = inf with the limit of large mu (error ~ 1/mu)."""
+    """The reaction agrees to within rounding; mu = inf is the limit of large mu (error ~ 1/mu)."""
     assert scene.impulse is not None
     contact, free_omega = free_contact(scene, scene.impulse)
     unlimited = math.isinf(scene.friction)
@@ -179,8 +179,8 @@ def test_a_blow_that_misses_the_body_is_rejected(
     axes: tuple[float, float], theta: float, share: float, meets: bool
 ) -> None:
     """The line of action goes through an end of the body as seen along the blow: by brute force,
-    the farthest of points of the boundary. They are 3.1e-4 apart in the angle t of (a cos t, b sin
-    t), and the extent is a cosine of t: short by (1.6e-4)^2/2 = 1.2e-8 at most."""
+    the farthest of many points of the boundary. These points are 3.1e-4 apart in the angle t of (a
+    cos t, b sin t), and the extent is a cosine of t: short by (1.6e-4)^2/2 = 1.2e-8 at most."""
     a, b = axes
     rim = np.linspace(0.0, 2 * math.pi, 20_001)
     u, v = a * np.cos(rim), b * np.sin(rim)

@@ -171,9 +171,9 @@ def test_no_impact_gains_energy() -> None:
 
 
 def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
-    """Three cases of u1 = u - v Gnt/Gtt, the gap rate without slip: stuck, stuck without pressure,
-    or friction alone. The terms are of the size of the velocities and the response, and the angle
-    of h' has an error of an ulp."""
+    """u1 = u - v Gnt/Gtt, the gap rate without slip, has three cases: stuck, stuck unpressed, or
+    friction alone. The terms are of the size of the velocities and the response, and the angle of
+    h' has an error of an ulp."""
     met = [0, 0, 0]
     for hit in hits(600, 11, friction=math.inf):
         v, u, tangential, normal, coupling = hit.before
@@ -203,7 +203,8 @@ def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
 
 def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
     """The energy lost is the impulse times the mean velocity of the contact, up to roundings of the
-    kinetic energy. The reaction is the momentum that the centre gains, to those of its momenta."""
+    kinetic energy. The reaction is the momentum that the centre gains, up to roundings of its
+    momenta."""
     lossless = 0
     for hit in hits(600, 19, bounces=3):
         along, away = impulses(hit)

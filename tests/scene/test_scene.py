@@ -150,8 +150,8 @@ def test_a_slope_that_looks_like_degrees_is_questioned(slope: float, asked: bool
 
 @pytest.mark.parametrize("impulse", [None, Impulse()])
 def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
-    """A body turning at 0.9 rad with 3 rad/s needs the ground to pull, and the limit of slides
-    starts; with a friction of 0.01 it is friction that fails to hold."""
+    """A body that turns at 3 rad/s at 0.9 rad would need the ground to pull, and the limiting slide
+    starts; with a friction of 0.01 it is friction that is too small."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
     limit = scene(**given).initial_state
     assert limit.mode is Mode.SLIDING
@@ -270,6 +270,6 @@ def test_a_start_with_slip_slides(theta: float) -> None:
     ],
 )
 def test_a_body_rests_only_in_equilibrium(theta: float, mode: Mode) -> None:
-    """Rest needs |h'| within 8 ulp: the nearest doubles to the first multiples of pi/2."""
+    """Rest requires |h'| within 8 ulp, as at the doubles nearest to the first multiples of pi/2."""
     assert scene(theta=theta).initial_state.mode == mode
     assert scene(theta=theta, omega=1e-9).initial_state.mode != Mode.REST

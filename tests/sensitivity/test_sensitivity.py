@@ -36,7 +36,7 @@ def units(scene: Scene) -> Any:
 
 
 def sizes(scene: Scene, true: Any, wrt: list[str]) -> Any:
-    """Largest entries of columns (…, 6, k), or a unit of the state for the size of the input."""
+    """Largest entries of columns (…, 6, k), at least a unit of the state per size of the input."""
     largest = np.abs(true / units(scene)[:, None]).reshape(-1, len(wrt)).max(axis=0)
     return np.maximum(largest, [1 / size_of(scene, name) for name in wrt])
 
@@ -277,7 +277,7 @@ def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
 
 
 def test_a_message_names_the_events_in_which_a_neighbour_differs() -> None:
-    """The end of a motion is not an event that a neighbour has in place of another."""
+    """A neighbour that ends early is not said to have its end in place of an event."""
     landing = simulate(DROP, 1.0).events[0].t
     with pytest.raises(ValueError, match=r"there is no IMPACT to \w+ at t = 0\.\d+ s$"):
         simulate(DROP, landing).sensitivity("theta")
@@ -375,7 +375,7 @@ RESISTED = Scene(2.0, 1.0, theta=0.4, friction=1.0, rolling_resistance=0.02)
 def test_derivatives_hold_across_turns_of_rolling_resistance(
     scene: Scene, kinds: list[str]
 ) -> None:
-    """Differences of second order, whose steps of 1e-6 m leave about 1e-9 of the derivative."""
+    """The reference has second-order differences; steps of 1e-6 m leave about 1e-9."""
     motion = simulate(scene, [1.1, 4.5])
     assert [event.kind.name for event in motion.events] == kinds
     found = motion.sensitivity(["rolling_resistance", "theta"], side=1)

@@ -74,7 +74,7 @@ def test_the_energy_error_is_measured_correctly() -> None:
 @pytest.mark.parametrize("name", DRIFTING)
 def test_drifting_methods_lose_energy_and_phase_as_predicted(name: str) -> None:
     """Energy errors grow like time over three decades, phase errors like its square over the last
-    decade: before, the truncation of the period, in proportion to time, is not yet small."""
+    decade; before that, the truncation of the period, proportional to time, is not yet small."""
     drifting = errors(QUICK, SAMPLES, [DRIFTING[name]])
     energy = growth(drifting.energy)
     late = spread(SAMPLES // 10, SAMPLES) - 1
@@ -119,7 +119,7 @@ def test_the_energy_of_gauss_walks_at_random() -> None:
 
 
 def test_the_phase_of_gauss_walks_at_random() -> None:
-    """Delays are compared with their mean over all runs: truncation, which changes the period.
+    """Delays are compared with their mean over all runs, which truncation causes.
 
     The fit starts at 100 half swings, where the walk of the energy dominates the phase. In
     synthetic walks the exponent scatters by 0.1.

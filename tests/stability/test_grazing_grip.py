@@ -88,9 +88,9 @@ def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
 @pytest.mark.parametrize("slope", [0.0, 1e-300], ids=["by the certificate", "by the event finder"])
 def test_the_motion_slips_only_where_friction_is_insufficient(slope: float) -> None:
     """On level ground the certificate gives the angle; on the slightest slope an event of the
-    stepped motion, which searches for the minima of mu N - |F|, not for a change of sign. The angle
-    is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp of the need
-    over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
+    stepped motion gives it, by a search for the minima of mu N - |F|, not for a change of sign. The
+    angle is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp of the
+    need over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
     maximum = need()[1]
     for k in DECIDED:
         for side in (1, -1):

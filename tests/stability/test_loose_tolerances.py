@@ -51,9 +51,9 @@ def test_constraints_are_satisfied_only_by_construction(scene: str, name: str) -
 
 @each_run
 def test_energy_is_conserved_only_by_construction(scene: str, name: str) -> None:
-    """The exact motion keeps the energy (4 ulp: a sum of squares of rounded rates), and projection
-    with the energy (8 ulp); all other methods lose more than 1e-4, or 1e-5 with Radau's steps of a
-    thirtieth of a swing."""
+    """The exact motion keeps the energy (4 ulp: a sum of squares of rounded rates), and so does
+    projection with the energy (8 ulp); all other methods lose more than 1e-4, or 1e-5 with Radau's
+    steps of a thirtieth of a swing."""
     found = run(scene, name)
     if kind(name) in ("exact", "contact", "projection+energy"):
         off = np.abs(found.motion.energy / found.motion.energy[0] - 1)

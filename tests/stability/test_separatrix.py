@@ -39,7 +39,7 @@ def first_wrong(side: int, **how: Any) -> int | None:
 def test_motions_that_conserve_energy_are_right_down_to_1e_minus_14_off_the_separatrix(
     how: dict[str, Any], side: int
 ) -> None:
-    """Exact motions decide right to 45 ulp of omega, and so do stepped ones that keep their
+    """Exact motions decide correctly to 45 ulp of omega, as do stepped ones that keep their
     energy."""
     assert first_wrong(side, **how) is None
 
@@ -47,8 +47,8 @@ def test_motions_that_conserve_energy_are_right_down_to_1e_minus_14_off_the_sepa
 @pytest.mark.parametrize("name", FAIL)
 def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str) -> None:
     """A method is wrong between its own separatrix and the true one, from k = -log10(distance) on,
-    on the side of its own. A shift of rounding size is known only to a unit. (ggl is too slow for a
-    bisection.)"""
+    on the side of its own separatrix. A shift of rounding size is known only to a unit. (ggl is too
+    slow for a bisection.)"""
     above, below = (first_wrong(side, **FAIL[name]) for side in SIDES)
     assert (above is None) != (below is None)
     if "ggl" not in name:

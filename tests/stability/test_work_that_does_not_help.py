@@ -47,9 +47,9 @@ def known() -> np.ndarray:
 
 def test_plain_sums_get_worse_with_more_steps() -> None:
     """Rms errors of a hundred starts have slope 4 in double precision; in single precision, where
-    few steps show it, slope 4 to 2^-5 s, the least error at 2^-6 s, and then slope -1/2 (0.12: a
-    tenth of each rms is the scatter of a hundred starts, over 2^4 in steps): 2^-12 s costs 64 times
-    as much for an error many times as large."""
+    few steps show it, they have slope 4 to 2^-5 s, are least at 2^-6 s, and then have slope -1/2
+    (to 0.12: a tenth of each rms is the scatter of a hundred starts, over 2^4 in steps): 2^-12 s
+    costs 64 times as much for an error many times as large."""
     powers, finer = np.arange(4, 13), np.arange(5, 10)
     errors = np.array([plain(int(k), np.float32) for k in powers])
     falls = exponent(2.0**-finer, [plain(int(k), np.float64) for k in finer])
@@ -89,7 +89,7 @@ def test_the_package_gets_no_worse_with_more_steps(method: str) -> None:
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_constraints_cost_some_accuracy_but_no_more_with_more_steps(name: str) -> None:
-    """dop853 in five coordinates solves for them at every stage: 16 ulp of the largest angle."""
+    """dop853 solves for constraints at every stage: 16 ulp of the largest angle are lost."""
     for power in (8, 10):
         found, _ = ends(**kept_by(name, method="dop853", step=2.0**-power))
         assert rms(found - known()) <= 16 * EPS * 0.4

@@ -157,7 +157,7 @@ def test_projection_hides_no_step_that_is_too_large() -> None:
 
 
 def test_a_warning_comes_with_the_loss_and_not_before() -> None:
-    """Steps from fine to coarse, at some of which the constraints or the energy are lost."""
+    """Steps range from fine to coarse; some lose the constraints or the energy."""
     for how, quantity, least in (
         (DRIFTING, "constraints", 1e-3),
         ({"model": "rolling", "method": "rk4"}, "energy", 1e-2),

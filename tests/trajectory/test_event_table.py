@@ -77,7 +77,7 @@ def test_the_motions_have_events_of_all_kinds() -> None:
 
 
 def test_an_impact_changes_the_motion_by_its_impulse() -> None:
-    """Newton's second law holds, and the energies of the states; other events have no impulse."""
+    """Impulse and energies obey Newton's second law; other events have no impulse."""
     for motion in motions():
         table, mass = motion.events.table, motion.scene.mass
         hit = table["kind"] == EventKind.IMPACT

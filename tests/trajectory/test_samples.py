@@ -246,10 +246,10 @@ LONG_RUNS = {
 
 @pytest.mark.parametrize(("scene", "t_end"), LONG_RUNS.values(), ids=LONG_RUNS)
 def test_residuals_of_a_million_samples_do_not_grow(scene: Scene, t_end: float) -> None:
-    """Residuals do not grow: 1e-14 of the size, and 2 ulp of theta times h' of the ground.
+    """Residuals stay within 1e-14 of the size, and 2 ulp of theta times h' of the ground.
 
-    Velocities: the same times omega; the rates of f2, f3 and f4 are differences of terms in
-    psi_dot. Energy: 16 ulp, and the effect of 2 ulp of theta.
+    Velocities have the same bound times omega; the rates of f2, f3 and f4 are differences of terms
+    in psi_dot. The energy has 16 ulp, and the effect of 2 ulp of theta.
     """
     trajectory = simulate(scene, np.linspace(0, t_end, 1_000_000))
     if t_end > 1e5:

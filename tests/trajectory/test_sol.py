@@ -69,7 +69,7 @@ def test_the_order_of_times_changes_no_bit() -> None:
 
 
 def test_scene_at_takes_the_state_of_a_rolling_motion() -> None:
-    """tests/properties/test_restarts.py shows how it continues."""
+    """tests/properties/test_restarts.py shows how such a motion continues."""
     scene = SCENES["standing"].replace(impulse=Impulse(jx=0.1))
     whole = simulate(scene, 4.0)
     later, at = whole.scene_at(1.7), whole.sol(1.7)

@@ -183,7 +183,7 @@ def test_numbers_of_any_type_become_float64() -> None:
 
 
 def test_arrays_of_the_caller_are_left_alone() -> None:
-    """Arrays of others are neither locked nor shared, nor are read-only views of such arrays."""
+    """The caller's arrays are neither locked nor shared, nor are read-only views of them."""
     mine, mode = np.arange(5.0), np.full(5, 2, np.int8)
     view = mine[:]
     view.flags.writeable = False
@@ -249,7 +249,7 @@ def test_names_of_any_text_type_become_plain_strings() -> None:
 
 
 def test_events_have_the_angle_and_position_that_they_print() -> None:
-    """Both are the same before and after an event: only velocities change there."""
+    """Angle and position are the same before and after an event: only velocities change."""
     seen = set()
     for scene in random_scenes(80, 5):
         for event in rl.simulate(scene, 3.0, raise_on_failure=False).events:

@@ -124,7 +124,7 @@ def test_passages_of_the_reports_ellipse_follow_its_turns() -> None:
 
 
 def test_events_can_be_selected_by_their_kinds() -> None:
-    """A body thrown uphill passes its tip and comes back; all kinds of events are the events."""
+    """A body thrown uphill passes its tip and comes back; selecting every kind gives all events."""
     back = simulate(Scene(1.0, 2.0, theta=-1.0, omega=4.0, slope=-0.3), 4.0)
     over, again = back.when(event="roll_over")
     assert back.theta[0] < 0 < back.at(0.5 * (over + again)).theta and back.theta[-1] < 0
@@ -136,7 +136,7 @@ def test_events_can_be_selected_by_their_kinds() -> None:
 
 
 def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() -> None:
-    """In 1e9 half turns one angle is quickly found at one time; a height is passed too often."""
+    """In 1e9 half turns an angle is passed once and found quickly; a height, too often."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
     (t,) = motion.when(theta=angle)
@@ -185,7 +185,7 @@ def test_a_turning_point_at_the_start_recurs_every_period() -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
 def test_a_body_far_down_a_slope_passes_its_start_only_once_more() -> None:
-    """A body passes its start once more, and never again; heights are passed too often."""
+    """The body passes its start once more and never again; heights are passed too often."""
     motion = simulate(Scene(2.0, 1.0, slope=0.1, omega=-8.0), [0.0, 1e6], model="rolling")
     start, again = motion.when(theta=0.0)
     assert start == 0 and motion.when(x=0.0) == pytest.approx([0.0, again], rel=1e-12)

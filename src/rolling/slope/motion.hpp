@@ -23,7 +23,7 @@ struct Equilibria {
 std::optional<Equilibria> equilibria(const Axes& lying, double incline);
 
 // Body and ground in natural units, powers of two. The slope falls towards growing angles; one that
-// falls the other way is seen from behind.
+// falls the other way is viewed from behind.
 struct SlopeBody {
     double length;  // unit of length [m]
     double time;    // unit of time [s]
