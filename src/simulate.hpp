@@ -25,9 +25,8 @@ struct Solution : Integration<Motion> {
 
 // Numerical errors of an integrated motion in its energy and its constraints.
 struct Losses {
-    // Largest change of the energy relative to the largest kinetic + |potential| energy. Heights
-    // are measured from the ground where the motion starts, so that the origin of x does not
-    // matter.
+    // Largest change of the energy, over the largest kinetic + |potential| energy. Heights are
+    // measured from the ground where the motion starts, so the origin of x has no effect.
     double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
     double projected = 0.0;    // largest constraint residual after a step, before its projection
@@ -40,7 +39,8 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
 // Simulates the multiplier model from coordinates and velocities that violate the constraints; such
-// a motion is never valid. The scene provides the body and the ground.
+// a motion is never valid. The scene has the body and the ground; a consistent start is part of a
+// scene.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 

@@ -22,7 +22,7 @@ from ._player import animate, explore
 
 _FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Options for the arguments whose names begin the error messages of functions
+# Options for the arguments with whose names error messages of functions begin
 _OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 

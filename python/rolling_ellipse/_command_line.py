@@ -132,7 +132,7 @@ def examples_parser() -> OneLineParser:
 
 
 def require_file(option: str, path: str) -> None:
-    """Raise ValueError unless the path is a possible file in an existing folder."""
+    """Raise ValueError unless the path can be a file in an existing folder."""
     if Path(path).is_dir() or not Path(path).parent.is_dir():
         raise ValueError(f"{option} must name a file in an existing folder, got {path!r}")
 

@@ -169,9 +169,9 @@ void add(double change, double& number, double& low) {
 // velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
 // rebound; if omega changes little, its change is computed from v and u before the collision. If
 // the contact keeps slipping, the impulse gives x_dot and omega. If little is left of the omega of
-// a light and fast body, the angular momentum about another point of the line of the impulse, at
-// the height of the centre, gives omega more accurately. If little is left of h' omega, the impulse
-// gives z_dot.
+// a light, fast body, the angular momentum about another point on the line of the impulse, at the
+// height of the centre, gives omega accurately. If little is left of h' omega, the impulse gives
+// z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;

@@ -28,8 +28,8 @@ MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Executor that runs each task at once, fails those in `lost`, and after some tasks hangs or
-    refuses more."""
+    """Executor that runs each task at once, fails the tasks in `lost`, and after some tasks hangs
+    or refuses more."""
 
     def __init__(self, lost: Any = (), hangs_after: int = 10**9, closes_after: int = 10**9) -> None:
         self.lost, self.hangs_after, self.closes_after = lost, hangs_after, closes_after

@@ -3,8 +3,7 @@
 The bound: inputs are doubles, off by up to half an ulp (a relative 1.1e-16), and so are the numbers
 in the files. A condition is the change of an answer, in its own scale, caused by that of all
 inputs: a method as good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room
-for its own roundings and for forces, functions of the state with slopes of up to three weights by
-scale.
+for its roundings and for forces, functions of the state with slopes up to three weights by scale.
 """
 
 import json

@@ -186,8 +186,7 @@ def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
     """The speed off the ground comes from the blow alone, without a difference of velocities that
-    are 1e9 times as fast. The reference has 40 digits; speed and time take some ten operations
-    each."""
+    are 1e9 times as fast. The reference has 40 digits; speed and time take ten operations each."""
     blow = Impulse(jx=0.3 * strength, jz=strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]

@@ -1,8 +1,7 @@
 """Marks of the course for right and wrong answers.
 
-Right answers are computed here by closed forms, Newton's law, and SciPy's quadratures, roots and
-least squares; wrong answers by the same formulas with a mistake in them. `pytest -rP -k marks`
-shows all marks.
+Right answers are computed by closed forms, Newton's law, and SciPy's quadratures, roots and least
+squares; wrong ones by the same formulas with a mistake. `pytest -rP -k marks` shows all marks.
 """
 
 import math
@@ -252,10 +251,9 @@ def allowed(number: str) -> float:
 
 @pytest.mark.parametrize("number", TASKS)
 def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
-    """A mark names the mistakes that were made, and no others except ones that lead to the same
-    number. Mistakes that change nothing are not named. Tolerances hold to within 30 %, since
-    ellipses take the place of rolling discs there. They are at most 0.5 %, so numbers of one name
-    may differ by 1 %.
+    """A mark names the mistakes that were made, and others only if they lead to the same number.
+    Mistakes that change nothing are not named. Tolerances hold to within 30 %, since ellipses
+    replace rolling discs. They are at most 0.5 %, so numbers of one name may differ by 1 %.
     """
     right, near, task = answer(number), allowed(number), TASKS[number]
     off = min(1.3 * near, near + 4e-3 * abs(right))

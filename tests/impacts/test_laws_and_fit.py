@@ -85,8 +85,8 @@ def test_laws_agree_with_small_steps_along_the_impulse_path(
     law: Any, friction: float, restitution: float
 ) -> None:
     """The oracle is a step late at the end of compression, which restitution at most doubles, and
-    another step late at the end of restitution. A step with its friction, sqrt(1 + mu^2) < 1.5 of
-    it, moves the body by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the
+    another at the end of restitution. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves
+    the body by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the
     approach."""
     for state in approaching(25, seed=3).T:
         found = after(state, law, friction, restitution)

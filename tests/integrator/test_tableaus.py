@@ -3,8 +3,7 @@
 Explicit methods are tested by rooted trees: a method has order p if, for every tree of up to p
 nodes, phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving
 Ordinary Differential Equations I, II.2). Implicit methods are tested by the simplifying assumptions
-B, C, D of II.7 and IV.5 there. The arithmetic is long double, whose rounding is 2000 times finer
-than that of doubles.
+B, C, D of II.7 and IV.5 there. The arithmetic is long double, which rounds 2000 times more finely.
 """
 
 from collections.abc import Callable, Iterator

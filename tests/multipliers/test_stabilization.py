@@ -59,8 +59,7 @@ def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
 def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
     """At 10 000 times between the knots of 10 half turns by dop853 at rtol 1e-10, the motion is
     1e-8 from exact rolling (some 500 steps, each 1e-10 off in theta = 30, with errors of both
-    signs), and residuals are roundings: 16 ulp of theta in the constraints, times the rates for
-    velocities."""
+    signs), and residuals are 16 ulp of theta in the constraints, times the rates for velocities."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, moving = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     for name in ("theta", "omega", "x", "psi"):

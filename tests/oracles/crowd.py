@@ -56,7 +56,7 @@ def gyration2_of(a: Floats, b: Floats, mass: Floats, inertia: Floats) -> Long:
 
 def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
     """Columns a, b, mass, gravity, inertia: a/b over six decades, half of ordinary shape, a tenth
-    nearly circular; half of the inertias are those of discs, the others from nearly a point's to a
+    nearly circular; half of the inertias are discs', the others from nearly a point's to a
     hoop's."""
     thin, ordinary = rng.uniform(-2.999, 2.999, count), rng.uniform(-1.1, 1.1, count)
     ratio = 10 ** np.where(rng.random(count) < 0.5, thin, ordinary)

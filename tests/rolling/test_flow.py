@@ -149,8 +149,7 @@ def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> No
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
 def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], quarter: int) -> None:
     """Rest lasts forever where the double next to the quarter turn is an equilibrium: |h'| within 8
-    ulp of h. At pi or 5 pi/2 it may not be one: the body then rocks by the rounding of the
-    angle."""
+    ulp of h. At pi or 5 pi/2 it may not be: the body then rocks by the rounding of the angle."""
     theta = quarter * math.pi / 2
     a, b = shape
     slope = geometry.support_slope(theta, a=a, b=b)

@@ -19,8 +19,7 @@ CONTROLLED: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("how", CONTROLLED.values(), ids=CONTROLLED)
 def test_the_number_of_controlled_steps_grows_only_logarithmically(how: dict[str, Any]) -> None:
     """No decade of a/b adds more steps than the one before: near the flat position the motion is
-    self-similar, so that each factor in a/b adds a fixed number of steps. As a power of a/b, the
-    growth is below 0.2."""
+    self-similar, so that each factor in a/b adds a fixed number of steps: a power below 0.2."""
     counts = [steps_taken(ratio, **how) for ratio in RATIOS]
     told(", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))

@@ -125,9 +125,8 @@ class Scene(FieldsOnly, Listed):
     z : float, optional
         Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
     x_dot, z_dot : float, optional
-        Velocity of the centre [m/s]. On the ground the default is the velocity of rolling, and
-        x_dot within 32 ulp and z_dot within 8 ulp of it count as rolling; in the air the default is
-        0.
+        Velocity of the centre [m/s]. On the ground the default is the velocity of rolling; x_dot
+        within 32 ulp and z_dot within 8 ulp of it count as rolling. In the air it is 0.
     impulse : Impulse, optional
         Blow received at t = 0; its line of action must meet the body.
 
@@ -249,9 +248,8 @@ class Scene(FieldsOnly, Listed):
     def from_json(cls, source: str | os.PathLike[str]) -> Scene:
         """Return the scene in a JSON text, in a link to the live page, or in a file with either.
 
-        Arguments of Scene that are left out have their defaults. Like a state that a motion
-        reaches, the start may be about to hit the ground, with more energy than the constructor
-        accepts.
+        Arguments of Scene that are left out have their defaults. Like a state in a motion, the
+        start may be about to hit the ground, and have more energy than the constructor takes.
 
         Parameters
         ----------

@@ -13,9 +13,9 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
     An ellipsoid with the semi-axes a, max(a, b), b along x, y, z is held in its plane by two slides
     ``x``, ``z`` and a hinge ``theta``: z points away from the ground, theta turns clockwise, and
     gravity is tilted by the slope. The key frame ``start`` is the `initial_state`. MJCF has no
-    coefficient of restitution: a contact is a critically damped spring, or undamped if it is 1.
-    Rolling resistance becomes MuJoCo's rolling friction, which acts like it while the body rolls; a
-    sliding contact shares one friction cone between slip and rotation.
+    coefficient of restitution: a contact is a critically damped spring, or an undamped one for
+    restitution 1. Rolling resistance becomes MuJoCo's rolling friction, which acts like it while
+    the body rolls; a sliding contact shares one friction cone between slip and rotation.
 
     Parameters
     ----------

@@ -39,8 +39,8 @@ class Event(FieldsOnly):
     kind : EventKind
         SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
     state_before, state_after : InitialState
-        State just before and just after; the latter includes an impact's reaction impulse and
-        lost energy.
+        State just before and just after; the state after an impact includes its reaction impulse
+        and lost energy.
     energy_before, energy_after : float
         Kinetic and potential energy of the two states [J].
     theta, x : float

@@ -155,8 +155,7 @@ def parts(front: dict[Point, str]) -> list[tuple[str, list[Point]]]:
 
 
 def _least(front: dict[Point, str], error: float) -> tuple[float, str]:
-    """Return the least value for an error of at most `error` and its contender; NaN if there is
-    none."""
+    """Return the least value for an error of at most `error`, and its contender; NaN if none."""
     return next(((v, name) for (at, v), name in front.items() if at <= error), (math.nan, ""))
 
 

@@ -112,11 +112,11 @@ def required_friction(
     """Return the least coefficient of friction with which the body can roll forever.
 
     It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
-    ``|Gnt|/Gtt`` if that is larger: then its slip stops before the compression ends, and does not
+    ``|Gnt|/Gtt`` if that is larger: then the slip stops before the compression ends, and does not
     start again (the collision law of `Scene.initial_state`). The rolling that follows requires the
-    largest ``|F|/N``: on level ground that of `certify`, over the whole motion; on a slope that of
-    a circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
-    over the angle, by a scan and golden section). The scene's own friction has no effect.
+    largest ``|F|/N`` of the whole motion: on level ground from `certify`; on a slope for a circle,
+    a body in equilibrium, or a body that rocks between two turning points (the maximum over the
+    angle, by a scan and golden section). The scene's own friction has no effect.
 
     Parameters
     ----------

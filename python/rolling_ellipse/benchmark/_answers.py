@@ -4,7 +4,7 @@ The answer must follow from the simulator's output: the values at the end, or at
 within 0.01 L or 0.01 rad; the number of half swings (`_events`); and events of the right kinds, in
 order. Each event must be on time to within 2 % of sqrt(L/g), or to within a thousandth of the
 largest condition number before it, whichever is larger, but never more than 10 %. The states must
-match the motion as closely as if the inputs were off by at most 10 %, in our conventions
+match the motion as closely as if the inputs were off by at most 10 %, in the package's conventions
 (`_mistakes`).
 """
 

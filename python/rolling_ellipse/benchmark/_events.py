@@ -11,9 +11,9 @@ the second run flies, STICK if it rolls, SLIP if the first one rolls, and REVERS
 both slip.
 
 With rolling resistance the last event is REST, if it is followed by sqrt(L/g)/10 or more without a
-velocity above its limit: sqrt(g L)/500, of the rotation sqrt(g/L)/500. Its time is that at which
-the last velocity passes its limit. A half swing ends where the rotation turns and exceeds the limit
-on both sides.
+velocity above its limit: sqrt(g L)/500, of the rotation sqrt(g/L)/500. It is where the last
+velocity passes its limit. A half swing ends where the rotation turns and exceeds the limit on both
+sides.
 """
 
 from __future__ import annotations

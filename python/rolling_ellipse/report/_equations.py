@@ -258,8 +258,8 @@ def complete_f(
 ) -> FloatArray:
     """Return F of eq 40 with every term, as eq 37 gives it with lambda1, lambda2 and lambda4.
 
-    These have the signs of eq 39, so that the difference from `eq_40` is the lost terms. This is
-    not the right F.
+    The multipliers have the signs of eq 39, so that the difference from `eq_40` is the lost terms.
+    The result is not the correct F.
     """
     body, (theta, _, r, sine, cosine), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)

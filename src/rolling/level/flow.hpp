@@ -1,9 +1,8 @@
 // Exact rolling on level ground: its start and the state at any time. There are no steps: a state
 // costs the same however far it is from the start.
 //
-// A motion is described by its phase. The types below hold the integrand of the time, the
-// coordinate of the integration and the integrals, for one body (T = double) or one body per lane
-// of a Pack.
+// A motion is described by its phase. Types below hold the integrand of the time, the coordinate of
+// integration and the integrals, for one body (T = double) or one per lane of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral

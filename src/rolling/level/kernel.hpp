@@ -55,8 +55,7 @@ struct FlowReader {
     DoubleDouble half_turn;
     double half_turns_per_time;
     DoubleDouble start_time;
-    // `spin`: sign of the motion after an even number of half turns; `alternates`: 1 if a half turn
-    // changes it.
+    // `spin`: sign of the motion after whole turns; `alternates`: 1 if half turns change it.
     double spin;
     double alternates;
     double quarters_per_half_turn;

@@ -304,7 +304,7 @@ WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
     double energy = 0.0;
     const auto add = [&](std::size_t panel, double from, double width, double turned,
                          double to_singularity) {
-        // the distance in v of a singularity at an angle is about a logarithm
+        // in v the distance of a singularity grows like the logarithm of its angle
         const double over_distance = turned / to_singularity + 0.5;
         const int count =
             static_cast<int>(std::ceil(width * std::max(over_distance / safe, 1 / widest_part)));

@@ -8,7 +8,7 @@ from ..trajectory import Trajectory
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:
-    """Return a trajectory read from a file of `Trajectory.save`.
+    """Return a trajectory read from a file written by `Trajectory.save`.
 
     Examples
     --------

@@ -71,7 +71,7 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
 
 
 def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
-    """Return a trajectory read from a file of `save`.
+    """Return a trajectory read from a file written by `save`.
 
     Raises
     ------

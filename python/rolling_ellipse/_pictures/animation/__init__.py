@@ -178,8 +178,7 @@ def _check_ax(ax: Any, figure: Any, motions: int, panel: str | None) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot's figures are windows; if not, a notebook would show them beside the
-    player."""
+    """Whether pyplot opens windows; if not, a notebook would show figures beside the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

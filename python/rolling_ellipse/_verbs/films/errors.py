@@ -24,7 +24,7 @@ def standard_errors(
 ) -> tuple[FloatArray, FloatArray, list[Any]]:
     """Return standard errors and covariance of the unknowns, and all solutions found on the way.
 
-    Each parameter is moved by three standard errors, and further, with the others refitted: its
+    Each parameter is moved by three standard errors, and further, with all others refitted: its
     error becomes the change divided by the root of the rise of chi2, if that is larger. Rivals are
     other minima.
     """

@@ -1,4 +1,4 @@
-"""Least squares from many starts: the best minimum of a function with many."""
+"""Least squares from many starts: the best of many minima."""
 
 from __future__ import annotations
 

@@ -34,10 +34,9 @@ def starts(
 ) -> Iterator[tuple[float, FloatArray, Box]]:
     """Yield the best start for each set of coefficients: distance, start, and box of its fit.
 
-    They are the scene's own values, and pre-fits of more and more frames, seen by the cameras that
-    make the film most similar to the scene. Friction stays in a cell of its grid: where it is large
-    enough for the body to stick, no film can determine it, and a step that overshoots would not
-    come back.
+    They are the scene's own values, and pre-fits of more and more frames, seen by cameras that make
+    the film most like the scene. Friction stays in a cell of its grid: where it is large enough for
+    the body to stick, no film can determine it, and a step that overshoots would not come back.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):

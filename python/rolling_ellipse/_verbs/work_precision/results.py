@@ -206,8 +206,8 @@ class WorkPrecision:
     def verdict(self, *, t_end: float | None = None) -> str:
         """Summarise which method is fastest at each error level, by what factor, and which fail.
 
-        Where a peer is ahead of all methods of the package, that comes first, with the reason. The
-        error is the largest of the state, at the samples and at the end. A method is called
+        If a peer is ahead of all methods of the package, this comes first, with the reason. The
+        error is the largest error of the state at the samples and the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
 
         Examples

@@ -24,9 +24,8 @@ class Errors:
 
     The error of a state is the largest of three: of theta [rad], of omega over the largest |omega|
     of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
-    the end, or only at the end for a run without samples. Gap and slip, which should be 0 in
-    contact and without sliding, are divided by the longer semi-axis, and by that times the largest
-    |omega|.
+    the end, or only at the end for a run without samples. Gap and slip, where they should be 0, are
+    divided by the longer semi-axis, and by that times the largest |omega|.
     """
 
     final: float = math.nan  # error of the state at the end
