@@ -519,7 +519,7 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
 
 
 def too_slow(*_: Any) -> None:
-    """The handler of the alarm."""
+    """Handles the alarm."""
     raise TimeoutError
 
 

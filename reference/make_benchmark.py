@@ -160,7 +160,7 @@ class Sampler(Follower):
         return [row.kind.upper() for row in self.rows]
 
     def row(self, normal: Any = 0, friction: Any = 0) -> list[Any]:
-        """The current state with the forces from given forces per mass."""
+        """The current state, followed by the forces computed from forces per mass."""
         s, mass = self.state, self.body.mass
         forces = mass * normal, mass * friction
         return [s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, *forces]

@@ -298,7 +298,7 @@ def checked(
 def make_scene(
     name: str, scene: Scene, longest: float, family: Family, fields: list[str] = FIELDS
 ) -> Checked:
-    """The lines of a scene, which ends where the inputs no longer determine it."""
+    """The lines of a scene, whose motion ends where the inputs no longer determine it."""
     end, unit = planned(scene, longest, family.most_events)
     ends = [share * end for share in family.states]
     made = checked(name, scene, ends, units(scene, ends) if ends[1:] else unit, fields)

@@ -62,7 +62,7 @@ def family(
     name: str, scenes: int, start: str, wanted: tuple[str, ...], shape: str = "any",
     least: float = 1e-3, **given: float,
 ) -> Family:  # fmt: skip
-    """A family of scenes with drawn levers, from the least one to half of the shorter semi-axis."""
+    """A family of scenes with levers drawn from the least one to half of the shorter semi-axis."""
     return Family(
         name, scenes, start, wanted, shape, given, states=(0.3, 0.7, 1.0), lever=(least, 0.5)
     )

@@ -1,7 +1,7 @@
 """Starts without slip whose friction is, to within rounding, exactly what they need.
 
 The next moment decides whether such a body rolls or slips. It must do one of the two, and move as
-with a little more or a little less friction.
+it would with slightly more or slightly less friction.
 """
 
 import math

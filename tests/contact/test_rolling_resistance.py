@@ -183,7 +183,7 @@ def test_a_small_lever_changes_the_motion_in_proportion() -> None:
         Scene(0.3, 1.0, theta=1.0, omega=0.5, friction=0.8, rolling_resistance=0.01),
     ],
 )
-def test_a_state_of_a_motion_starts_the_rest_of_that_motion(scene: Scene) -> None:
+def test_a_motion_can_be_restarted_from_any_of_its_states(scene: Scene) -> None:
     whole = simulate(scene, np.linspace(0.0, 6.0, 61))
     turns = whole._solution.turns.tolist()
     for begin in (0.4, 1.3, 2.9, *turns[:3], *(event.t for event in whole.events)):

@@ -106,7 +106,7 @@ void every_segment_knows_every_kind_of_sample() {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        // Flow samples of rolling come from another formula.
+        // Samples of rolling use a different formula.
         const auto close = [](double one, double other) {
             return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
         };

@@ -44,7 +44,7 @@ def test_tables_of_all_kinds_give_the_same_track(
         assert np.allclose([t, x, z, theta], [*ROWS.values()], atol=1e-6)
 
 
-def test_a_data_frame_a_mapping_and_a_file_are_the_same(tmp_path: Path) -> None:
+def test_a_data_frame_a_mapping_and_a_file_give_the_same_track(tmp_path: Path) -> None:
     pandas = pytest.importorskip("pandas")
     path = written(tmp_path / "t.csv", "t,x,y,q", ",", ".")
     for table in (TABLE, pandas.DataFrame(TABLE), pandas.read_csv(path), path, str(path)):

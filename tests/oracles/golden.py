@@ -129,7 +129,7 @@ def at(state: Any) -> tuple[float, ...]:
 
 
 def motion_through_python(motion: list[Record]) -> Iterator[Record]:
-    """The records of a motion after "motion" and "scene"."""
+    """The records of a motion that follow the records "motion" and "scene"."""
     (_, model, method, stabilization), scene = motion[0].words, scene_of(motion[1].numbers)
     t_end, samples, step, stages = motion[0].numbers
     times = np.array([t_end * i / (samples - 1) for i in range(int(samples))])

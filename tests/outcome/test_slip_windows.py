@@ -52,7 +52,7 @@ def friction_at_rest(a: float, b: float, gyration2: float) -> float:
 
 
 def bodies(count: int, seed: int, decades: float) -> Iterator[Body]:
-    """Random bodies; friction of every second one is a little too low for a body at rest."""
+    """Random bodies; every second one has slightly too little friction to stay at rest."""
     rng = np.random.default_rng(seed)
     for i in range(count):
         size, aspect = 10 ** rng.uniform(-1, 1), 10 ** rng.uniform(-decades, decades)

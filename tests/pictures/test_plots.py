@@ -353,7 +353,7 @@ def test_strobe_bodies_stand_on_the_ground_at_equally_spaced_times(
         assert centre_of(body) == (at.x[i], at.z[i])
         assert (body.width, body.height) == (2 * trajectory.scene.a, 2 * trajectory.scene.b)
         lowest_x, lowest_z = support(body)
-        # theta is converted to degrees: 100 rad keep 1e-14 rad, times rho or size; x is up to 10 m
+        # in degrees, 100 rad are exact to 1e-14 rad, times rho or size; x is at most 10 m
         assert abs(lowest_z) <= 1e-12 * size
         rho = (trajectory.scene.a * trajectory.scene.b) ** 2 / at.z[i] ** 3
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))

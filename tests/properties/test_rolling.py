@@ -117,8 +117,8 @@ def test_half_a_turn_gives_the_same_body(data: Any) -> None:
 
 @given(st.data())
 def test_two_successive_moves_equal_a_single_one(data: Any) -> None:
-    """A move by t1, then by t2, equals one by t1 + t2, to the errors of the intermediate state, as
-    t2 changes them, and of both results."""
+    """A move by t1, then by t2, equals one by t1 + t2, up to the errors of both results and those
+    of the intermediate state, carried through t2."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     first, second = data.draw(spans(motion, 1e4)), data.draw(SIGNS) * data.draw(spans(motion, 1e4))

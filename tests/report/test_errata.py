@@ -45,7 +45,7 @@ class Exact:
         self.x_ddot = self.h * self.alpha + self.slope * self.omega**2
         # lambda1, and lambda2 with the printed sign of g, for 10 kg
         self.friction, self.lifted = 10 * self.x_ddot, 10 * (self.normal - 2 * 9.81)
-        # the moment of these about G is 10 (a^2 + b^2)/4 times the acceleration in eq 35
+        # the moment of these forces about G is 10 (a^2 + b^2)/4 times the acceleration in eq 35
         self.couple = 10 * (a * a + b * b) / 4 * self.alpha + self.friction * self.h
         self.couple -= self.lifted * self.slope
         # sine and cosine of psi - theta

@@ -25,7 +25,7 @@ def states(level: str, motions: Columns, workers: int = 1) -> np.ndarray:
 
 
 def scenes(count: int, seed: int, *, ratio: float, half_turns: float) -> Columns:
-    """Random bodies of aspects up to `ratio`, and times up to about a number of half turns."""
+    """Random bodies of aspects up to `ratio`; times of at most about `half_turns` half turns."""
     rng = np.random.default_rng(seed)
     long_axis = 10 ** rng.uniform(-1, 1, count)
     short_axis = long_axis * 10 ** -rng.uniform(0, math.log10(ratio), count)

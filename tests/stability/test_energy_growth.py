@@ -56,8 +56,8 @@ def test_growth_exponents_are_measured_correctly(drift: float, expected: float) 
 
 
 def test_the_energy_error_is_measured_correctly() -> None:
-    """A change of 1e-9 in omega is 2e-9 of the kinetic energy; at any angle the energy is the
-    package's, which has some ulp of a sum of four products."""
+    """A change of 1e-9 in omega is 2e-9 of the kinetic energy; at every angle the energy agrees
+    with the package's to a few ulp."""
     omega = QUICK.omega
     kinetic = (GYRATION2 + B * B) * omega**2 / 2
     found = energy_error(np.zeros(1), np.array([omega * (1 + 1e-9)]), omega)

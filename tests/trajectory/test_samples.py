@@ -178,8 +178,8 @@ def test_rates_are_derivatives_in_slides_and_flights(mode: Mode, name: str) -> N
 
 def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     """Assert a rate by central differences D(d) of `sol` at times d and 2 d away. D(d) misses the
-    rate by c d^2 + O(d^4), so D(2 d) - D(d) = 3 c d^2 is three times that; and by the rounding of
-    the values over d: 16 ulp of their size, and a few ulp of theta times their slope."""
+    rate by c d^2 + O(d^4), a third of D(2 d) - D(d) = 3 c d^2, and by the rounding of the values
+    over d: 16 ulp of their size, and a few ulp of theta times their slope."""
     scene = motion.scene
     step = 1e-4 * min(scene.a, scene.b) / max(scene.a, scene.b)
     times = motion.t[5:-5:7]

@@ -135,7 +135,7 @@ def test_a_body_at_rest_stays_at_rest(theta: float) -> None:
     for name in ("omega", "x_dot", "z_dot", "psi_dot", "r_dot", "turns"):
         assert np.all(getattr(trajectory, name) == 0)
     assert trajectory.theta[0] == theta and trajectory.x[0] == 4.0
-    # theta on the tip is the nearest double: forces of this rounding remain
+    # theta on the tip is the nearest double, whose rounding leaves small forces
     assert np.all(np.abs(trajectory.normal_force - 3 * 9.81) <= 8 * EPS * 30)
     assert np.all(np.abs(trajectory.friction_force) <= 8 * EPS * 30)
 

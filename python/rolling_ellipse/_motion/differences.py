@@ -202,7 +202,7 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return what neighbours must share, with times: start, events with the mode after, and end."""
+    """Return what neighbours must share, with times: start, events with their new modes, end."""
     known = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     turns = (("a turn", t) for t in motion._solution.turns.tolist())
     events = sorted([*known, *turns], key=itemgetter(1))

@@ -88,7 +88,7 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         Raises
         ------
         ImportError
-            Without pandas: it comes with ``rolling_ellipse[data]``.
+            If pandas is missing: it comes with ``rolling_ellipse[data]``.
 
         Examples
         --------
@@ -112,7 +112,7 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         Raises
         ------
         ImportError
-            Without xarray: it comes with ``rolling_ellipse[data]``.
+            If xarray is missing: it comes with ``rolling_ellipse[data]``.
 
         Examples
         --------

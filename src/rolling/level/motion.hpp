@@ -174,8 +174,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
-    // In a libration a point beyond a turning point mirrors one before it. The path between the two
-    // omits the part to the turning point and back, which cancels.
+    // In a libration, a point beyond a turning point mirrors one before it. The path between the
+    // two omits the way to the turning point and back, which cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {

@@ -25,7 +25,7 @@ def to_dataframe(trajectory: Trajectory) -> DataFrame:
     Raises
     ------
     ImportError
-        Without pandas: it comes with ``rolling_ellipse[data]``.
+        If pandas is missing: it comes with ``rolling_ellipse[data]``.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
     Raises
     ------
     ImportError
-        Without xarray: it comes with ``rolling_ellipse[data]``.
+        If xarray is missing: it comes with ``rolling_ellipse[data]``.
 
     Examples
     --------

@@ -269,7 +269,7 @@ class MotionArrays(dict[str, FloatArray]):
         Raises
         ------
         ImportError
-            Without xarray: it comes with ``rolling_ellipse[data]``.
+            If xarray is missing: it comes with ``rolling_ellipse[data]``.
 
         Examples
         --------

@@ -283,7 +283,7 @@ def work_precision(
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:
         spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
-    # judging that exceeded its share still leaves the rest for timing
+    # if judging exceeded its share, the rest is still left for timing
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,
