@@ -314,7 +314,7 @@ def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float
     assert theta[breaks - 1] == pytest.approx(np.full(breaks.size, flat + sign * math.pi / 2))
     assert theta[breaks + 1] == pytest.approx(np.full(breaks.size, flat - sign * math.pi / 2))
     assert omega[breaks - 1] == pytest.approx(omega[breaks + 1], rel=1e-12)
-    # all other points are samples
+    # the other points are samples
     ours = np.setdiff1d(np.arange(theta.size), np.concatenate([breaks + i for i in (-1, 0, 1)]))
     assert np.array_equal(omega[ours], motion.omega)
     turned = (motion.theta - theta[ours]) / math.pi

@@ -35,7 +35,7 @@ def path(theta: float, a: float, b: float) -> mp.mpf:
 
 
 def excess(start: Start, t: float, state: State) -> float:
-    """Error of x / the effect of roundings of theta and time, and four ulp of x."""
+    """Error of x, in units of the effect of roundings of theta and time plus four ulp of x."""
     a, b, theta0, _ = start
     theta, omega, x = state
     with mp.workdps(30):

@@ -123,7 +123,7 @@ def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distan
         found = simulate(scene, 0.1)
         stick = found.events[0]
         assert found.status is Status.COMPLETED and stick.kind is EventKind.STICK, omega
-        # N/m is g/B for at least a third of the time; some 4 ulp of B = 1 - ... may be missing
+        # N/m is g/B for at least a third of the time; B = 1 - ... may be off by some 4 ulp
         longest = slip / grip * (response + 4 * EPS) / (GRAVITY / 3)
         assert 0 <= stick.t <= longest, omega
         turned = stick.state_after.omega - omega

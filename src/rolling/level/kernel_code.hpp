@@ -58,7 +58,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Between neighbouring points eight nodes are exact to within rounding.
+    // Between neighbouring points, eight nodes are exact to within rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {

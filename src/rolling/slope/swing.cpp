@@ -114,7 +114,7 @@ struct Change {
     double bend;
 };
 
-// Complex zeros of D and h are pi/2 away, so that the rule errs by 1e-17.
+// Complex zeros of D and h are pi/2 away, so the rule errs by 1e-17.
 ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPanel& panel,
                                              double to) {
     static_assert(lanes == 4);
@@ -142,12 +142,12 @@ ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPa
     return {half * total, lane_of(rates, 0), (lane_of(rates, 2) - lane_of(rates, 1)) / (2 * near)};
 }
 
-// An estimate of the coordinate between 0 and `most` up to which W changes by an energy from the
-// bottom, from a cubic through four points of the moment over the coordinate.
+// Estimates the coordinate between 0 and `most` up to which W changes by an energy from the bottom,
+// from a cubic through four points of the moment over the coordinate.
 ROLLING_ELLIPSE_WIDE double estimate(const SlopeBody& body, const WellPanel& panel, double energy,
                                      double most) {
     constexpr int steps = 3;
-    constexpr double beyond = 1.25;  // the moment grows less than at the bottom, mostly
+    constexpr double beyond = 1.25;  // mostly the moment grows more slowly than at the bottom
     const double height = std::sqrt(body.short_axis2 + body.c2 * square(panel.at.sine));
     const double turned = panel.grade * panel.rate * square(panel.at.cosine);
     const double bend = body.pull * panel.from_rim.sine * square(turned) / height;
