@@ -308,7 +308,7 @@ def make_scene(
 
 
 def drawn(rng: random.Random, family: Family, name: str, fields: list[str] = FIELDS) -> Checked:
-    """A scene of a family that is decided and has the required kinds of events."""
+    """A random scene of a family whose motion is decided and has the wanted kinds of events."""
     while True:
         scene = random_scene(rng, family)
         if family.name == "short":

@@ -346,7 +346,7 @@ def random_body(rng: random.Random, kind: str) -> Body:
 
 
 def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, float]:
-    """theta0 and omega0 of a kind."""
+    """Random theta0 and omega0 of a kind of motion."""
     sign = rng.choice([-1, 1])
     theta = rng.uniform(-math.pi, math.pi)
     low, high = sorted((body.a, body.b))

@@ -13,7 +13,7 @@ MANY = 20_000  # number of samples from which compiled dense output is faster th
 
 
 def equations(slope: bool) -> list[Any]:
-    """The system with few products of series; level ground needs no terms of the slope."""
+    """The system, with few products of series; level ground needs no slope terms."""
     theta, omega, x = heyoka.make_vars("theta", "omega", "x")
     b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
     s, c = heyoka.sin(theta), heyoka.cos(theta)

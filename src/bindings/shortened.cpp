@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_arguments = 16;
 
-// The object that stands for the function. Once it is made, only the references to it change.
+// The object that stands for the function. Once made, only its reference count changes.
 struct Shortened {
     PyObject head;
     vectorcallfunc call;

@@ -203,7 +203,7 @@ py::dict stats(const Solution& solution) {
     return found;
 }
 
-// The losses of an integrated motion (energy, constraints, projected); None for all others.
+// The losses of an integrated motion (energy, constraints, projected); None for other solutions.
 py::object losses_in(const Solution& solution) {
     const std::optional<Losses> found = losses(solution);
     if (!found) return py::none();

@@ -49,7 +49,7 @@ struct EnergyRange : Shape {
 
 EnergyRange energy_range(const RollingStart& start);
 
-// The same for an energy at heights H - S above the flat position and H - 1 above the tip.
+// The range of an energy H - S above the flat position and H - 1 above the tip.
 EnergyRange energy_range(const Shape& shape, double over_flat, double over_tip);
 
 // The range of a rotation with the energy of the separatrix, H = 1.

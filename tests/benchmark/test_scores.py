@@ -19,7 +19,7 @@ from rolling_ellipse.geometry import support_slope
 IDS = [one.id for one in benchmark.problems()]
 BOUNCES = {one.id for one in benchmark.problems() if "restitution" in one.tags}
 # A simulator fails if its error is above a millionth of the condition number. The changes below are
-# 1e-3 at least of one input, whose share of the condition number is above a thousandth.
+# at least 1e-3 of one input, whose share of the condition number is above a thousandth.
 TOLERANCE = 1e-6
 WITH_SLIP = {
     "hit.drop_slip", "hit.drop_slip_e", "hit.settle", "law.which", "leave.slip_then_lift",

@@ -129,8 +129,8 @@ UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
 
 @pytest.mark.parametrize(("name", "step"), UNSOLVABLE.items(), ids=UNSOLVABLE)
 def test_an_unsolved_step_is_not_taken(name: str, step: float) -> None:
-    """If Newton's iteration fails, the motion ends at the knot before, which obeys the constraints
-    like all others: a step of the index-2 system ends on them or is not taken."""
+    """If Newton's iteration fails, the motion ends at the previous knot, which obeys the
+    constraints: a step of the index-2 system ends on them or is not taken."""
     times = np.arange(round(1 / step) + 1) * step
     moving = ggl(SCENES[name], times, step=step, raise_on_failure=False)
     assert worst_residual(moving) <= 1e-10
@@ -138,7 +138,7 @@ def test_an_unsolved_step_is_not_taken(name: str, step: float) -> None:
 
 def test_index_2_is_accurate_far_from_zero() -> None:
     """A start 15 915 turns on (theta = 1e5, ulp 1.5e-11) turns as far in 1 s as the one near 0, to
-    1e-10: this ulp twice, times e^1.7, the growth of errors."""
+    1e-10: two such ulps, times e^1.7, the growth of errors."""
     near, far = (Scene(2.0, 1.0, theta=0.2 + k * 2 * math.pi, omega=3.2) for k in (0, 15_915))
     turned = [ggl(scene, [1.0], step=2.0**-6).theta[0] - scene.theta for scene in (near, far)]
     assert abs(turned[1] - turned[0]) <= 1e-10

@@ -75,8 +75,8 @@ def least_slack(sample: Sample) -> Long:
         moving.at((slice(None), None)), friction[:, None], on.waist[:, None] * np.sinh(v)
     )
     least: Long = values.min(1)
-    # Between samples at most 0.016 apart a dip is deeper by 3e-5 of its second derivative by v at
-    # most, and these forces have no feature narrower than v = 0.1 or so.
+    # Between samples at most 0.016 apart, a dip is deeper by at most 3e-5 of its second derivative
+    # by v, and these forces have no feature narrower than v = 0.1 or so.
     rows, columns = oracles.rolling.local_minima(values, np.where(least < -0.01, -np.inf, 0.01))
     if rows.size:
         part, held, waist = moving.at(rows), friction[rows], on.waist[rows]

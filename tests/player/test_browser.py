@@ -44,7 +44,7 @@ def told(page: Page, words: str) -> Any:
 
 
 def given(page: Page, words: str) -> Any:
-    """The value of a function of the first film's player that needs no drawing."""
+    """The value of a function of the first film's player, without waiting for a drawing."""
     return page.evaluate(f"({words})({HOST}.player)")
 
 
@@ -103,7 +103,7 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
 def edge_distance(
     dark: np.ndarray, near: tuple[float, float], way: np.ndarray, reach: float
 ) -> float | None:
-    """Distance of the outermost dark pixel along a direction within reach."""
+    """Distance to the outermost dark pixel along a direction, within reach."""
     steps = np.arange(0.0, reach, 0.5)
     columns, rows = (near[i] + steps * way[i] - 0.5 for i in (0, 1))
     columns, rows = np.round(columns).astype(int), np.round(rows).astype(int)

@@ -107,9 +107,9 @@ LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.39365152
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> None:
-    """Bisection shows that runs are lost within 1 % of the end of the stability interval of 2 alpha
-    h. On the ellipse 600 steps must raise 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and the
-    constraints change as it turns."""
+    """Bisection finds the loss of runs within 1 % of the end of the stability interval of 2 alpha
+    h: on the ellipse, errors of 1e-6 must reach 1 in 600 steps (2.3 % a step, where R' is 2 or
+    more), and the constraints change as it turns."""
     limit = interval(method, -1)
     assert limit == pytest.approx(LIMITS[method], rel=1e-9)
     found = reach(method)

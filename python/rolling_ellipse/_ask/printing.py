@@ -64,7 +64,7 @@ _IN_ASCII = {
 
 
 def _without_code(error: UnicodeError) -> tuple[str, int]:
-    """Return ASCII for characters that a codec lacks, and where to resume: its error handler."""
+    """Codec error handler: return ASCII for characters without a code, and where to resume."""
     assert isinstance(error, UnicodeEncodeError)
     lost = normalize("NFD", error.object[error.start : error.end])
     return "".join(_IN_ASCII.get(each, ascii(each)[1:-1]) for each in lost), error.end

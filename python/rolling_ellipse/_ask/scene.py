@@ -79,7 +79,7 @@ class InitialState(Listed):
 
 
 class _Nothing(TypedDict):
-    """Arguments other than the named ones: a type checker accepts none."""
+    """No arguments besides the named ones, for type checkers."""
 
 
 @dataclass(frozen=True, init=False, repr=False)

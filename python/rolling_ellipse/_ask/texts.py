@@ -172,7 +172,7 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _linked(name: str, text: str) -> Any:
-    """Return the number that a link gives as text."""
+    """Return a number from its text in a link."""
     value: Any = text
     with suppress(ValueError):
         value = float(text)

@@ -121,7 +121,7 @@ def plot_strobe(
 
 
 def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> None:
-    """Raise the errors of `plot_strobe`."""
+    """Check the arguments of `plot_strobe`, raising its errors."""
     require_motion(trajectory)
     whole_within("count", count, _MOST)
     first, last = span_of(trajectory)

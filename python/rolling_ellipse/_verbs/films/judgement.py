@@ -78,7 +78,7 @@ def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
 
 
 def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the residuals of a track that have a neighbour, and these next ones, without gaps."""
+    """Return two arrays: residuals of a track that have a next sample, and the next residuals."""
     steps = np.diff(t)
     near = steps < _GAP * np.median(steps) if steps.size else np.zeros(0, dtype=bool)
     pair = near & np.isfinite(off[:-1]) & np.isfinite(off[1:])

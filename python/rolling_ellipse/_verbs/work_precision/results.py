@@ -101,7 +101,7 @@ class WorkPrecision:
 
     @property
     def reference(self) -> Reference:
-        """The reference for the last end."""
+        """The reference for the last end time."""
         return self.references[-1]
 
     @property
