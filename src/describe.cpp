@@ -35,8 +35,10 @@ Sentences course_of(const Scene& scene, const Solution& solution, const Start& s
     Sentences found{{name(start.next.mode) + "_starts", {}}};
     for (const auto& [t, kind, before, after] : solution.motion.events) {
         if (t < begin) continue;
+        if (kind == EventKind::blow) break;
         if (kind == EventKind::rest) {
-            const double askew = std::abs(quarter_view({after.theta, 0.0}).rest.high) * (180 / pi);
+            const double askew =
+                std::abs(quarter_view({after.state.theta, 0.0}).rest.high) * (180 / pi);
             const bool has_angle = scene.slope == 0 && scene.a != scene.b;
             found.push_back(has_angle ? Sentence{"rests_askew", {{"t", t}, {"angle", askew}}}
                                       : Sentence{"rests_at", {{"t", t}}});
@@ -96,26 +98,16 @@ Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certifi
 // The event after which a body that starts in the air is on the ground; null if there is none.
 const Event* landing_of(const Solution& solution) {
     for (const Event& each : solution.motion.events) {
-        if (each.after.mode != Mode::flight) return &each;
+        if (each.after.state.mode != Mode::flight) return &each;
     }
     return nullptr;
-}
-
-// The scene of a body that continues on the ground after an event.
-Scene scene_after(Scene scene, const State& state) {
-    scene.impulse.reset();
-    for (auto* number : {&scene.z, &scene.x_dot, &scene.z_dot}) number->reset();
-    if (state.mode == Mode::sliding) scene.x_dot = state.x_dot;
-    scene.theta = state.theta;
-    scene.omega = state.omega;
-    scene.x = state.x;
-    return scene;
 }
 
 // How and when the rolling that starts at the time `begin` ends, as far as the motion shows it.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
     const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
     for (const Event& each : solution.motion.events) {
+        if (each.kind == EventKind::blow) break;
         const auto end = outcome_of(each.kind);
         if (end && each.t > begin) return at(first == Outcome::jams ? first : *end, each.t);
     }
@@ -153,7 +145,7 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
         }
         landed = landing->t;
         found.headline.push_back({"lands", {{"t", landed}}});
-        ground = scene_after(scene, landing->after);
+        ground = reached(scene, landing->after.state);
         start = Start(ground);
     }
     append(found.reasons, surprise(ground, start));
@@ -182,7 +174,7 @@ std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution&
                                              const Checkpoint& checkpoint) {
     const Event* const landing = landing_of(solution);
     if (landing == nullptr) return {};
-    return outcome(scene_after(scene, landing->after), checkpoint);
+    return outcome(reached(scene, landing->after.state), checkpoint);
 }
 
 Sentences describe_start(const Scene& scene, const Start& start) {

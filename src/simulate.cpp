@@ -59,7 +59,7 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
 // Whether the contact model computes the motion; it proves each arc of rolling only up to the end
 // time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
-    if (asked.model == Model::contact) return true;
+    if (asked.model == Model::contact || !asked.blows.empty()) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&
            !may_hold_for_ever(scene, from.initial.state);
 }
@@ -121,9 +121,20 @@ Integration<Motion> solve(const Scene& scene, const Beginning& from, const Setti
     return as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint));
 }
 
+// Says which blows came after the end of a motion; empty if none did.
+std::string what_is_missed(const std::vector<Blow>& blows, const std::vector<Event>& events) {
+    const auto is_blow = [](const Event& event) { return event.kind == EventKind::blow; };
+    const std::size_t struck = std::count_if(events.begin(), events.end(), is_blow);
+    if (struck == blows.size()) return {};
+    const std::string first = brief(blows[struck].t) + " s";
+    return blows.size() - struck == 1 ? "; the blow at " + first + " was not reached"
+                                      : "; the blows at " + first + " and later were not reached";
+}
+
 Solution solution(Integration<Motion> found, const Settings& settings, double t_end) {
     Solution solution{std::move(found), settings.model, settings.method};
     solution.message = why_ended(solution.ending, settings, solution.followed_until, t_end);
+    solution.message += what_is_missed(settings.blows, solution.motion.events);
     return solution;
 }
 

@@ -7,6 +7,7 @@ of functions, classes and methods ends with examples, which assume the two impor
 =================  =================================================================================
 set up a scene     `Scene` with `Impulse.press`; ready-made ones are in `scenes`
 compute a motion   `simulate`: a `Trajectory` with arrays ``motion.t``, ``.theta``, ``.x``, ...
+strike it again    ``simulate(scene, 6.0, blows=[(2.0, rl.Impulse.press(20.0, 0.5))])``
 at other times     ``motion.sol(times)`` for arrays, ``motion.at(t)`` for one time, neither solves
                    again; ``motion.scene_at(t)`` to continue
 when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``, and

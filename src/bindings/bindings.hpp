@@ -100,7 +100,8 @@ CoordinateState single_state(const Array& q, const Array& q_dot);
 
 // An event as a row of numbers: t, the code of its kind, and the states before and after, each with
 // the code of its mode.
-inline constexpr std::size_t event_numbers = 2 + 2 * (std::size(state_fields) + 1);
+inline constexpr std::size_t event_numbers =
+    2 + 2 * (std::size(state_fields) + 1) + std::size(start_fields);
 using EventRow = std::array<double, event_numbers>;
 py::tuple event_columns();
 Array event_rows(const std::vector<Event>& events);

@@ -80,6 +80,10 @@ void take(py::handle given, Value& value) {
         const auto& known = names<Value>;
         const auto at = std::find(known.begin(), known.end(), given.cast<std::string>());
         value = static_cast<Value>(at - known.begin());
+    } else if constexpr (std::is_same_v<Value, std::vector<Blow>>) {
+        for (const auto& [t, impulse] : given.cast<std::vector<std::pair<double, Impulse>>>()) {
+            value.push_back({t, impulse});
+        }
     } else {
         value = given.cast<Value>();
     }

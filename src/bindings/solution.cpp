@@ -211,13 +211,11 @@ py::object losses_in(const Solution& solution) {
 }
 
 // The state just before or just after an event, and the code of its mode.
-py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
-    const Event event = event_of(row);
-    const State& before = event.before;
-    const InitialState start =
-        after ? start_after(scene, event) : InitialState{before, 0.0, 0.0, before.omega};
-    py::dict found = numbers_of(start);
-    found["mode"] = static_cast<int>(start.state.mode);
+py::dict event_state(const EventRow& row, bool after) {
+    const auto& [t, kind, before, start] = event_of(row);
+    const InitialState& state = after ? start : InitialState{before, 0.0, 0.0, before.omega};
+    py::dict found = numbers_of(state);
+    found["mode"] = static_cast<int>(state.state.mode);
     return found;
 }
 
@@ -231,6 +229,7 @@ py::tuple event_columns() {
         for (const auto& field : state_fields) names.append(std::string(field.name) + when);
         names.append(std::string("mode") + when);
     }
+    for (const auto& field : start_fields) names.append(field.name);
     return names;
 }
 
@@ -240,10 +239,11 @@ Array event_rows(const std::vector<Event>& events) {
     for (const Event& event : events) {
         *to++ = event.t;
         *to++ = static_cast<int>(event.kind);
-        for (const State* state : {&event.before, &event.after}) {
+        for (const State* state : {&event.before, &event.after.state}) {
             for (const auto& field : state_fields) *to++ = state->*field.number;
             *to++ = static_cast<int>(state->mode);
         }
+        for (const auto& field : start_fields) *to++ = event.after.*field.number;
     }
     return table;
 }
@@ -256,10 +256,11 @@ py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n
 Event event_of(const EventRow& row) {
     Event event{row[0], static_cast<EventKind>(row[1]), {}, {}};
     const double* from = row.data() + 2;
-    for (State* state : {&event.before, &event.after}) {
+    for (State* state : {&event.before, &event.after.state}) {
         from = read(*state, state_fields, from);
         state->mode = static_cast<Mode>(*from++);
     }
+    read(event.after, start_fields, from);
     return event;
 }
 
@@ -311,7 +312,7 @@ void bind_solution(py::module_& m) {
             },
             "t"_a);
     m.attr("STATS") = names_of(stats_of(0, {}));
-    m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
+    m.def("event_state", event_state, "row"_a, "after"_a);
     m.def("sample_times", sample_times, "t"_a);
     m.def("simulate", solved, "scene"_a, "settings"_a, "t"_a, "start"_a);
 }

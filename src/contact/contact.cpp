@@ -10,11 +10,25 @@
 namespace rolling_ellipse {
 namespace {
 
+constexpr std::size_t usual_events = 16;  // for which space is made at once
+
 // The kind of the event that leads to the mode `next`; for sliding, the given kind.
 EventKind kind_of(Mode next, EventKind sliding) {
     if (next == Mode::rest) return EventKind::rest;
     if (next == Mode::rolling) return EventKind::stick;
     return next == Mode::flight ? EventKind::lift_off : sliding;
+}
+
+// The state just after an event other than a blow, and the impulse of the ground at an impact. All
+// are in SI units.
+InitialState start_after(const Scene& scene, EventKind kind, const State& before,
+                         const State& after) {
+    InitialState start{after, 0.0, 0.0, before.omega};
+    if (kind != EventKind::impact) return start;
+    start.reaction_x = scene.mass * (after.x_dot - before.x_dot);
+    start.reaction_z = scene.mass * (after.z_dot - before.z_dot);
+    start.energy_lost = energy_lost(scene, before, after);
+    return start;
 }
 
 // The motion so far, and its state at a time. Times, states and segments are in natural units;
@@ -24,28 +38,65 @@ class ContactRun {
     ContactRun(const Scene& scene, const InitialState& start, const Settings& settings,
                double t_end, const Checkpoint& checkpoint)
         : units_(natural_units(scene.body(), scene.mass)),
+          given_(scene),
           scene_(in_units(scene, units_)),
           settings_(settings),
-          t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
+          t_end_(t_end),
           checkpoint_(checkpoint),
-          state_(in_units(start.state, units_)),
-          gap_rate_(start.gap_rate / units_.speed()),
           rest_speed_(rest_speed(scene_, units_, settings)),
-          motion_{units_, scene_, {}, {}, {}} {}
+          motion_{units_, scene_, {}, {}, {}} {
+        begin(start);
+    }
 
     Integration<Motion> run() {
-        start();
-        while (!ending_) {
-            checkpoint_();
-            follow();
+        for (const Blow& blow : settings_.blows) {
+            follow_until(blow.t);
+            if (ending_) break;
+            strike(blow);
         }
-        return {std::move(motion_), *ending_, now() * units_.time, counts_};
+        follow_until(t_end_);
+        return {std::move(motion_), ending_.value_or(Ending::completed), now() * units_.time,
+                counts_};
     }
 
   private:
-    // Chooses the first motion after the start. A body that touches the ground and moves into it
+    // Follows the motion, left to itself, up to a time [s]: that of a blow, or of the end.
+    void follow_until(double t) {
+        until_ = std::min(t / units_.time, std::numeric_limits<double>::max());
+        is_there_ = false;
+        while (!ending_ && !is_there_) {
+            checkpoint_();
+            follow();
+        }
+    }
+
+    // Strikes the body as a scene in its state does.
+    void strike(const Blow& blow) {
+        ContactSample before;
+        Sampler(motion_, 1)(&blow.t, 1, &before);
+        Scene struck = reached(given_, before.state);
+        struck.impulse = blow.impulse;
+        validate_blow(struck, geometry(struck.axes(), struck.theta),
+                      "blows (at " + text(blow.t) + " s)");
+        const InitialState start = initial_state(struck);
+        InitialState after = start;
+        after.state.mode = first_continuation(struck, start.state).mode;
+        note({blow.t, EventKind::blow, before.state, after});
+        if (!ending_) begin(start);
+    }
+
+    // Begins a motion, and chooses its first law. A body that touches the ground and moves into it
     // collides at once.
-    void start() {
+    void begin(const InitialState& start) {
+        begun_ = now();
+        scene_ = motion_.scene;
+        axes_exchanged_ = false;
+        turned_ = {};
+        low_ = {};
+        sliding_on_.reset();
+        next_ = {Mode::flight};
+        state_ = in_units(start.state, units_);
+        gap_rate_ = start.gap_rate / units_.speed();
         const bool touches = state_.z == geometry(axes(), state_.theta).h;
         const double blur = angle_roundings(state_.theta);
         recount(state_, {state_.theta, 0.0});
@@ -154,7 +205,7 @@ class ContactRun {
     template <class Flow>
     void roll(Flow flow, double lasts) {
         if (lasts == infinity) {
-            validate_time(t_end_ * units_.time, (now() + longest_time(flow)) * units_.time);
+            validate_time(until_ * units_.time, (now() + longest_time(flow)) * units_.time);
         }
         const auto kept = std::make_shared<const Flow>(std::move(flow));
         if (lasts > 0) add_segment(kept);
@@ -300,7 +351,7 @@ class ContactRun {
     void continue_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
         // A start at the limit of rolling changes its mode without an event.
-        if (now() == 0 && motion_.events.empty()) return start_with(next);
+        if (has_just_begun()) return start_with(next);
         continue_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
 
@@ -314,12 +365,24 @@ class ContactRun {
         if (is_stuck() && !ending_) note(EventKind::jam, state_);
     }
 
+    bool has_just_begun() const {
+        const auto& events = motion_.events;
+        return static_cast<double>(t_ + -begun_) == 0 &&
+               (events.empty() || events.back().kind == EventKind::blow);
+    }
+
     void note(EventKind kind, const State& before) {
+        const State was = in_full(before);
+        note({now() * units_.time, kind, was, start_after(given_, kind, was, in_full(state_))});
+    }
+
+    void note(const Event& event) {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
             ending_ = Ending::max_events;
-        } else {
-            motion_.events.push_back({now() * units_.time, kind, in_full(before), in_full(state_)});
+            return;
         }
+        if (motion_.events.empty()) motion_.events.reserve(usual_events);
+        motion_.events.push_back(event);
     }
 
     // The state in SI units, with its total angle.
@@ -333,12 +396,12 @@ class ContactRun {
     }
 
     double now() const { return static_cast<double>(t_); }
-    double time_left() const { return static_cast<double>(-t_ + t_end_); }
+    double time_left() const { return static_cast<double>(-t_ + until_); }
     bool is_over_after(double lasts) const {
-        return !(static_cast<double>(t_ + lasts) <= t_end_);  // NaN if it lasts forever
+        return !(static_cast<double>(t_ + lasts) <= until_);  // NaN if it lasts forever
     }
 
-    // Advances the time to the end of the segment just added; false if the motion ends first.
+    // Advances the time to the end of the segment just added; false if `until_` comes first.
     bool advance(double lasts) {
         if (is_over_after(lasts)) {
             finish();
@@ -349,8 +412,8 @@ class ContactRun {
     }
 
     void finish() {
-        t_ = {t_end_, 0.0};
-        ending_ = Ending::completed;
+        t_ = {until_, 0.0};
+        is_there_ = true;
     }
 
     // Ends the motion early, at the time `lasts` after the start of its last segment.
@@ -360,9 +423,13 @@ class ContactRun {
     }
 
     const Units units_;
-    Scene scene_;  // the scene, with axes exchanged after an odd number of quarter turns
+    const Scene& given_;  // the scene in SI units
+    Scene scene_;         // the scene, with axes exchanged after an odd number of quarter turns
     const Settings& settings_;
-    const double t_end_;
+    const double t_end_;    // [s]
+    double until_ = 0.0;    // time of the next blow, or of the end
+    bool is_there_ = true;  // whether that time is reached
+    double begun_ = 0.0;    // time of the start, or of the last blow
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_;
@@ -375,7 +442,7 @@ class ContactRun {
     Continuation next_{Mode::flight};
     DoubleDouble t_;
     StepCounts counts_;
-    std::optional<Ending> ending_;
+    std::optional<Ending> ending_;  // set if the motion ends early
 };
 
 }  // namespace

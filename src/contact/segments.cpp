@@ -166,16 +166,6 @@ State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turne
     return state;
 }
 
-InitialState start_after(const Scene& scene, const Event& event) {
-    const auto& [t, kind, before, after] = event;
-    InitialState start{after, 0.0, 0.0, before.omega};
-    if (kind != EventKind::impact) return start;
-    start.reaction_x = scene.mass * (after.x_dot - before.x_dot);
-    start.reaction_z = scene.mass * (after.z_dot - before.z_dot);
-    start.energy_lost = energy_lost(scene, before, after);
-    return start;
-}
-
 Motion single(const Scene& scene, decltype(Segment::law) law) {
     Motion motion{Units{}, scene, {}, {}, {}, false};
     motion.segments.push_back({0.0, std::move(law)});

@@ -18,21 +18,18 @@
 
 namespace rolling_ellipse {
 
-enum class EventKind : std::int8_t { slip, stick, reverse, lift_off, impact, rest, jam };
+enum class EventKind : std::int8_t { slip, stick, reverse, lift_off, impact, rest, jam, blow };
 
 template <>
 inline constexpr std::array names<EventKind>{"SLIP",   "STICK", "REVERSE", "LIFT_OFF",
-                                             "IMPACT", "REST",  "JAM"};
+                                             "IMPACT", "REST",  "JAM",     "BLOW"};
 
 struct Event {
     double t;
     EventKind kind;
     State before;
-    State after;
+    InitialState after;  // also the impulse of the ground at an impact or a blow
 };
-
-// The state just after an event, and the impulse of the ground at an impact.
-InitialState start_after(const Scene& scene, const Event& event);
 
 // A body whose state stays as it is: at rest, or at an instant from which no motion continues and
 // at which no contact force obeys the laws.

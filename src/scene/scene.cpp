@@ -28,7 +28,8 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
 
 // Rejects a blow whose line of action misses the body. A tangent parallel to that line lies at the
 // distance `reach` from the centre: h of physics (1), in the direction across the line.
-void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) {
+void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow,
+                   const std::string& name) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
     const double jx = blow.jx / larger;  // jx scaled, so that its square never overflows
@@ -40,7 +41,7 @@ void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow) 
                                          scene.b * (across_x * at.sin + across_z * at.cos));
     const double distance = std::abs(blow.dx * across_x + blow.dz * across_z);
     if (distance <= reach + blow_margin * std::max(scene.a, scene.b)) return;
-    refuse("impulse",
+    refuse(name,
            "along a line that meets the body, at most " + text(reach) +
                " [m] from its centre at this angle and direction",
            distance);
@@ -209,16 +210,30 @@ void validate(const Scene& scene, Origin origin) {
     if (origin == Origin::typed) require_no_approach(start, at);
 }
 
-void validate_blow(const Scene& scene, const Geometry& at) {
+void validate_blow(const Scene& scene, const Geometry& at, const std::string& name) {
     if (!scene.impulse) return;
     validate(*scene.impulse);
-    require_reach(scene, at, *scene.impulse);
+    require_reach(scene, at, *scene.impulse, name);
     const double energy = energy_after_impulse(scene, at);
     if (energy <= most_energy) return;
-    refuse("impulse",
+    refuse(name,
            "weak enough to leave the body, were it free, a kinetic energy of at most 1e12 times "
            "mass gravity max(a, b)",
            energy);
+}
+
+Scene reached(Scene scene, const State& state) {
+    scene.impulse.reset();
+    for (auto* number : {&scene.z, &scene.x_dot, &scene.z_dot}) number->reset();
+    if (!rolls(state)) scene.x_dot = state.x_dot;
+    if (state.mode == Mode::flight) {
+        scene.z = state.z;
+        scene.z_dot = state.z_dot;
+    }
+    scene.theta = state.theta;
+    scene.omega = state.omega;
+    scene.x = state.x;
+    return scene;
 }
 
 State state_before_impulse(const Scene& scene, const Geometry& at) {

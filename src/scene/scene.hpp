@@ -305,8 +305,11 @@ void validate(const Impulse& impulse);
 void validate(const Scene& scene, Origin origin = Origin::typed);
 
 // Throws unless the impulse is finite, its line of action meets the body and the resulting motion
-// is not too fast.
-void validate_blow(const Scene& scene, const Geometry& at);
+// is not too fast; the error has the name.
+void validate_blow(const Scene& scene, const Geometry& at, const std::string& name = "impulse");
+
+// The scene of a body that continues from a state of its motion, without an impulse.
+Scene reached(Scene scene, const State& state);
 
 // The state before any impulse, given the geometry at its angle. Absent values are filled in;
 // values within rounding of touching or of rolling are set exactly. A body that touches the ground

@@ -85,6 +85,29 @@ void validate_stages(const Settings& settings) {
     if (*settings.stages < 2 || *settings.stages > 4) refuse("stages", "2, 3 or 4", stages);
 }
 
+// Rejects blows that the model cannot follow, out of order, or outside of the span.
+void validate_blows(const Settings& settings, double t_end) {
+    if (settings.blows.empty()) return;
+    const bool by_rolling = settings.method != Method::automatic;
+    if (by_rolling || settings.model == Model::rolling || settings.model == Model::multipliers) {
+        refuse("blows",
+               "() for " +
+                   (by_rolling ? "method " + quoted(name(settings.method))
+                               : "model " + quoted(name(settings.model))) +
+                   " (model 'contact' follows them)",
+               text(settings.blows.front().t) + " s");
+    }
+    double last = 0.0;
+    for (const Blow& blow : settings.blows) {
+        if (!(blow.t >= last && blow.t <= t_end)) {
+            refuse("blows",
+                   "at times [s] that do not fall, within the motion, [0, " + text(t_end) + "]",
+                   text(blow.t) + (last > 0 ? " after " + text(last) : ""));
+        }
+        last = blow.t;
+    }
+}
+
 }  // namespace
 
 void validate(const Settings& settings, double t_end) {
@@ -107,6 +130,7 @@ void validate(const Settings& settings, double t_end) {
     if (settings.rest_speed && !(*settings.rest_speed > 0 && std::isfinite(*settings.rest_speed))) {
         refuse("rest_speed", "a positive finite speed [m/s]", *settings.rest_speed);
     }
+    validate_blows(settings, t_end);
 }
 
 }  // namespace rolling_ellipse

@@ -6,8 +6,9 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
-#include "numerics/names.hpp"
+#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
 
@@ -29,6 +30,12 @@ template <>
 inline constexpr std::array names<Stabilization>{"none", "baumgarte", "projection",
                                                  "projection+energy", "ggl"};
 
+// An impulse applied during a motion, at the time t [s].
+struct Blow {
+    double t;
+    Impulse impulse;
+};
+
 struct Settings {
     Model model;
     Method method;
@@ -41,6 +48,7 @@ struct Settings {
     long max_steps;
     long max_events;
     std::optional<double> rest_speed;  // slower bounces are summed [m/s]; if absent, by size
+    std::vector<Blow> blows = {};      // in order of time
 };
 
 inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model},
@@ -53,7 +61,8 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
                                             std::pair{"baumgarte", &Settings::baumgarte},
                                             std::pair{"max_steps", &Settings::max_steps},
                                             std::pair{"max_events", &Settings::max_events},
-                                            std::pair{"rest_speed", &Settings::rest_speed}};
+                                            std::pair{"rest_speed", &Settings::rest_speed},
+                                            std::pair{"blows", &Settings::blows}};
 
 // Called now and then during a long computation; throws to stop it.
 using Checkpoint = std::function<void()>;

@@ -142,14 +142,14 @@ def test_a_folder_from_another_version_is_rejected(
     list(load_many(out))  # numbers of another version can be read
 
 
-@pytest.mark.parametrize(("schema", "cure"), [(1, ""), (4, ": a newer .* pip install .*")])
+@pytest.mark.parametrize(("schema", "cure"), [(1, ""), (5, ": a newer .* pip install .*")])
 def test_a_folder_of_another_schema_is_refused_as_such(schema: int, cure: str, out: Path) -> None:
     """This holds whatever other names its request has."""
     simulate_many(GRID, TIMES, out=out)
     about, arrays = taken_apart((out / "request.npz").read_bytes())
     about = about | {"schema": schema, "colour": 1}
     (out / "request.npz").write_bytes(put_together(about, arrays | {"psi": TIMES}))
-    said = f"must be a folder .*: it is of schema {schema}; this version reads 2 and 3{cure}$"
+    said = f"must be a folder .*: it is of schema {schema}; this version reads 2 to 4{cure}$"
     with pytest.raises(ValueError, match=f"^path {said}"):
         load_many(out)
     with pytest.raises(ValueError, match=f"^out {said}"):

@@ -256,7 +256,7 @@ void print_motion(const Asked& asked) {
           {static_cast<double>(solution.ending), solution.followed_until,
            valid_until(scene, solution)});
     for (const Event& event : solution.motion.events) {
-        std::vector<double> line = numbers(event.after);
+        std::vector<double> line = numbers(event.after.state);
         line.insert(line.begin(), event.t);
         print(std::string("event ") + word(event.kind), line);
     }

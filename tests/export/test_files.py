@@ -157,7 +157,7 @@ def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) 
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(("schema", "cure"), [(3, ""), (6, ": a newer .* pip install .*")])
+@pytest.mark.parametrize(("schema", "cure"), [(3, ""), (7, ": a newer .* pip install .*")])
 def test_a_file_of_another_schema_is_refused_as_such(
     schema: int, cure: str, contents: Contents, path: Path
 ) -> None:
@@ -165,7 +165,7 @@ def test_a_file_of_another_schema_is_refused_as_such(
     about, arrays = taken_apart(contents["rolling"])
     del about["reason"]
     other = put_together(about | {"schema": schema, "colour": 1}, arrays | {"psi": arrays["x"]})
-    require_refused(other, path, f"it is of schema {schema}; this version reads 4 and 5{cure}$")
+    require_refused(other, path, f"it is of schema {schema}; this version reads 4 to 6{cure}$")
 
 
 @each_model

@@ -1,7 +1,7 @@
-"""Files written before bodies had rolling resistance stay readable.
+"""Files written before bodies had rolling resistance, or motions blows, stay readable.
 
-They have schema 4 or one of its time: a folder, a race, answers to a problem, and pickles. The
-tests of the player read an old link.
+The former have schema 4 or one of its time: a folder, a race, answers to a problem, and pickles.
+The latter have schema 5 and names that say so. The tests of the player read an old link.
 """
 
 import json
@@ -39,6 +39,29 @@ def test_an_old_folder_is_read_as_scenes_without_rolling_resistance() -> None:
     assert first.scene == rl.Scene(2.0, 1.0, theta=0.2, friction=0.5, z=2.5)
     assert second.scene.theta == 0.4
     assert first.t.tolist() == [0.0, 0.5, 1.0]
+
+
+def test_motions_of_a_version_without_blows_are_read_with_the_effects_of_their_impacts(
+    tmp_path: Path,
+) -> None:
+    scene = rl.Scene(2.0, 1.0, theta=0.5, z=2.5, friction=0.3, restitution=0.5, omega=-1.0, mass=3)
+    alone = rl.load(OLD / "before_blows.npz")
+    stored = rl.load_many(OLD / "folder_before_blows")
+    scenes = [scene, scene, scene.replace(theta=0.4, mass=0.7)]
+    impulses = []
+    for old, its in zip([alone, *stored], scenes, strict=True):
+        assert isinstance(old, rl.Trajectory)
+        assert old.scene == its and old.blows == () and len(old.events) > 0
+        for event in old.events:
+            was, becomes = event.state_before, event.state_after
+            impulses.append(its.mass * (becomes.z_dot - was.z_dot))
+            assert becomes.reaction_z == impulses[-1] > 0 and becomes.free_omega == was.omega
+            lost = event.energy_before - event.energy_after
+            assert becomes.energy_lost == pytest.approx(lost, abs=1e-12)  # of energies of 100 J
+    first = len(alone.events)
+    assert stored.arrays("events")["reaction_z"].tolist() == impulses[first:]
+    alone.save(tmp_path / "new.npz")
+    assert rl.load(tmp_path / "new.npz") == alone
 
 
 def test_an_old_race_is_read() -> None:

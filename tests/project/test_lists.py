@@ -46,10 +46,10 @@ class Kind(NamedTuple):
 
 KINDS = {
     "an event": Kind([kind.name for kind in EventKind], (
-        "src/contact/segments.cpp", "tests/border/test_stub.py", "tests/core/golden.cpp",
+        "tests/border/test_stub.py", "tests/core/golden.cpp",
         "tests/contact/test_contact_reference.py", "tests/core/test_core.py", "src/describe.cpp",
         "reference/contact_motion.py", "reference/make_contact_reference.py", "tools/same_bits.py",
-        "python/rolling_ellipse/_motion/event_table.py",
+        "python/rolling_ellipse/benchmark/_equations.py",
     )),
     "a method": Kind(
         ["dopri5"],  # the tableaus call it DormandPrince5

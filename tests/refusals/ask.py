@@ -24,6 +24,7 @@ PRINTED: dict[str, Any] = {
     "consistent": "project",
 }
 UNKNOWN: list[Any] = ["", "auto ", "no_such", "rk5", None, 1, ["auto"]]
+PRESS, MANY_BLOWS = Impulse.press(1.0, 0.5), Impulse.press([1.0, 2.0], 0.5)
 
 
 def run(**options: Any) -> Callable[[Path], Any]:
@@ -119,7 +120,13 @@ REFUSALS: list[Row] = [
         atol=[-1e-9, NAN, INF], max_steps=[0, 2**31, 500.0, 1e6], max_events=[0, -3],
         baumgarte=[1.0, (1.0,), (1.0, 2.0, 3.0)], rest_speed=[-1.0, 0.0, NAN, INF],
         step=[0.1], stabilization=["glue", None],
+        blows=[3, None, (1.0, PRESS), [(1.0, PRESS, PRESS)], [(1.0, None)], [(1.0, MANY_BLOWS)],
+               [("1", PRESS)], [(NAN, PRESS)], [(-1.0, PRESS)], [(INF, PRESS)], [(9.0, PRESS)],
+               [(0.5, PRESS), (0.25, PRESS)], [(0.5, Impulse.press(1.0, 9.0))],
+               [(0.5, Impulse(jx=1e50))]],
     ),
+    *(("blows", run(blows=[(0.5, PRESS)], **how)) for how in (
+        {"model": "rolling"}, {"model": "multipliers"}, {"method": "dopri5"})),
     *(("model", run(scene=scene, model=model))
       for scene in (AIR, scenes.drop, scenes.slip) for model in ("rolling", "multipliers")),
     ("rtol", run(rtol=0.0, atol=0.0)),

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from oracles.files import put_together, taken_apart
-from rolling_ellipse import Scene, scenes
+from rolling_ellipse import Impulse, Scene, scenes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
 
 from refusals import Row, wrong
@@ -176,7 +176,9 @@ REFUSALS: list[Row] = [
     ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=ThreadPoolExecutor(1))),
     *wrong(rl.ends, {"scenes": MIXED, "t": 1.0},
            t=[-1.0, [1.0, 2.0], [[1.0]], math.nan, math.inf, "x"], scenes=[1], progress=[1],
-           max_events=[-1, 0.5, "x"], rest_speed=[-1.0, "x"], workers=WORKERS),
+           max_events=[-1, 0.5, "x"], rest_speed=[-1.0, "x"], workers=WORKERS,
+           blows=[3, [(2.0, Impulse())]]),
+    ("blows", many([], blows=[(-1.0, Impulse())])),
     ("arguments", lambda _: rl.ends(MANY, [1.0, 2.0, 3.0])),
     ("t", lambda _: rl.ends(iter(MIXED), [1.0, 2.0, 3.0])),
     (rl.WorkerError, lambda _: rl.ends(MANY, 1.0, workers=Broken(1))),

@@ -22,7 +22,8 @@ CONTACT = rl.simulate(scenes.bounce, np.linspace(0.0, 3.0, 12))
 STEPPED = rl.simulate(
     Scene(2.0, 1.0, omega=1.0), [0.5], model="multipliers", method="rk4", step=0.1
 )
-HERE, NOWHERE = [0.0] * 6 + [0], [0.0] * 6 + [9]
+HERE, NOWHERE, NOTHING = [0.0] * 6 + [0], [0.0] * 6 + [9], [0.0] * 4
+BLOW = {"jx": 1.0, "jz": 0.0, "dx": 0.0, "dz": 0.0}
 
 Change = Callable[[Any, Any], Any]
 
@@ -150,17 +151,20 @@ REFUSALS: list[Row] = [
     ("path", changed(MOTION, lambda about, _: about.__delitem__("status"))),
     ("path", changed(CONTACT, lambda about, _: about["events"].reverse())),
     *facts(
-        more=[1], schema=[3, 4, 6], message=[1], reason=[1], status=["FINISHED"],
+        more=[1], schema=[3, 4, 5, 7], message=[1], reason=[1], status=["FINISHED"],
         method=["auto", "x"], model=["falling", "multipliers"], span=[1, 0.01], t_end=[-1.0, 9.0],
         valid_until=[-1.0],
         stats=[{"more": 1}, {"segments": -1}, {"steps": 1.5}],
-        events=[3, [[0.1, "SLIP"]], [[0.1, "FALL", HERE, HERE]], [[9.0, "SLIP", HERE, HERE]],
-                [[0.1, "SLIP", [0.0] * 6, [0.0] * 8]], [[0.1, "SLIP", HERE, NOWHERE]],
-                [[0.1, "SLIP", ["a"] * 7, [0.0] * 7]]],
+        events=[3, [[0.1, "SLIP"]], *([each] for each in (
+            [0.1, "FALL", HERE, HERE, NOTHING], [9.0, "SLIP", HERE, HERE, NOTHING],
+            [0.1, "SLIP", [0.0] * 6, [0.0] * 8, NOTHING], [0.1, "SLIP", HERE, NOWHERE, NOTHING],
+            [0.1, "SLIP", ["a"] * 7, [0.0] * 7, NOTHING], [0.1, "SLIP", HERE, HERE, [0.0]],
+            [0.1, "SLIP", HERE, HERE, ["a"] * 4]))],
         events__0__0=["x"], events__0__2=[[1.0, 0]],
         scene__mass=[-1.0], scene__theta=["flat"], scene__z=[0.1], scene__impulse=[{"jx": 1.0}],
         scene__a=[2], settings__rtol=[-1.0], settings__model=["rolling"], settings__method=["rk4"],
         settings__max_events=[0], settings__baumgarte=[[1.0]],
+        settings__blows=[3, [[0.1, {"jx": 1.0}]], [[9.0, BLOW]], [[0.1, BLOW]]],
     ),
     *facts(STEPPED, span=[1e308], method=["dopri5"]),
     # files and folders

@@ -63,7 +63,8 @@ def test_a_table_equals_the_objects_bit_for_bit() -> None:
 
 def test_the_motions_have_events_of_all_kinds() -> None:
     tables = [motion.events.table for motion in motions()]
-    assert set(chain.from_iterable(each["kind"].tolist() for each in tables)) == {*EventKind}
+    kinds = set(chain.from_iterable(each["kind"].tolist() for each in tables))
+    assert kinds == {*EventKind} - {EventKind.BLOW}  # in tests/contact/test_blows_in_motion.py
     assert max(map(size, tables)) > 20 and {*map(size, tables)} > {0, 1, 2}
     assert (
         SCENES[0].restitution == 0.5 and tables[0]["mode_after"][-1] != Mode.FLIGHT
@@ -71,7 +72,7 @@ def test_the_motions_have_events_of_all_kinds() -> None:
     hidden = [motion._solution.turns.size for motion in motions()]
     assert hidden[2] > 0 and not set(motions()[2]._solution.turns) & set(tables[2]["t"])
     reasons = [*chain.from_iterable(each["reason"] for each in tables)]
-    assert len({*reasons}) == len(EventKind) + 1  # infinite friction has a slip of its own
+    assert len({*reasons}) == len(kinds) + 1  # infinite friction has a slip of its own
     lost = np.concatenate([each["energy_lost"] for each in tables])
     assert (lost > 0).any() and (lost == 0).any() and not (lost < 0).any()
 

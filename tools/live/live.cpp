@@ -62,7 +62,7 @@ std::string json(const char* brackets, const Values& values, const Write& write)
 }
 
 std::string json(const Event& event) {
-    const double place = event.after.x + geometry(scene.axes(), event.after.theta).dh;
+    const double place = event.after.state.x + geometry(scene.axes(), event.after.state.theta).dh;
     return '[' + json(event.t) + ',' + json(name(event.kind)) + ',' + json(place) + ']';
 }
 

@@ -156,6 +156,18 @@ def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
 Impulse.__init__ = _by_name(Impulse.__init__)  # type: ignore[method-assign]
 
 
+def one_blow(name: str, value: Any) -> _core.Impulse:
+    """Return one impulse in the core's form, or raise an error that names the argument."""
+    if not isinstance(value, Impulse):
+        raise TypeError(f"{name} must be an Impulse, got {shown(value)}")
+    if value.shape != ():
+        raise ValueError(
+            f"{name} must be one blow, got an Impulse of shape {value.shape}: outcome(scene, "
+            "impulse) takes many"
+        )
+    return value.core
+
+
 def numbers(name: str, value: Any) -> Any:
     """Return a number as a float, and an array of numbers as a read-only copy."""
     values = array(name, value)

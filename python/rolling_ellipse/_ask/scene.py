@@ -13,6 +13,7 @@ from .._core import Mode
 from .check import number, positive, shown
 from .habits import meant
 from .impulse import Impulse as Impulse
+from .impulse import one_blow
 from .printing import Listed, Row, brief, with_unit
 from .reason import blow_in_words, in_words
 from .records import FieldsOnly, cached_property
@@ -205,7 +206,7 @@ class Scene(FieldsOnly, Listed):
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
         """Check the arguments, and keep them as the fields of this scene."""
-        blow = None if given["impulse"] is None else _one_blow(given["impulse"])
+        blow = None if given["impulse"] is None else one_blow("impulse", given["impulse"])
         core = _core.scene_of(given, blow, reached)  # rejects numbers out of range
         if core is None:  # some numbers are of types other than float
             for name, value in given.items():
@@ -352,18 +353,6 @@ def _doubt(name: str, value: float) -> str:
 
 _FIELDS = tuple(field.name for field in fields(Scene))
 OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)
-
-
-def _one_blow(impulse: Any) -> _core.Impulse:
-    """Return an impulse in the core's form, or raise an error for any other argument."""
-    if not isinstance(impulse, Impulse):
-        raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
-    if impulse.shape != ():
-        raise ValueError(
-            f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
-            "use outcome(scene, impulse)"
-        )
-    return impulse.core
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from functools import lru_cache, partial
 from typing import Any, Literal, TypedDict, get_args
 
 from .. import _core
 from .check import choice, number, optional_number, shown, whole
+from .impulse import Impulse, one_blow
 from .records import FieldsOnly, cached_property
 
 Model = Literal["auto", "rolling", "multipliers", "contact"]
@@ -17,6 +18,7 @@ Stabilization = Literal["none", "baumgarte", "projection", "projection+energy", 
 MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
 GIVEN: Any = "arrays"  # the method of a trajectory from arrays; no setting has this name
+Blows = tuple[tuple[float, Impulse], ...]
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 
@@ -34,6 +36,7 @@ class Options(TypedDict, total=False):
     max_steps: int
     max_events: int
     rest_speed: float | None
+    blows: Iterable[tuple[float, Impulse]]
     raise_on_failure: bool
 
 
@@ -52,6 +55,7 @@ class Settings(FieldsOnly):
     max_steps: int = 1_000_000
     max_events: int = 10_000
     rest_speed: float | None = None
+    blows: Blows = ()
 
     def __post_init__(self) -> None:
         given = self.__dict__
@@ -60,7 +64,8 @@ class Settings(FieldsOnly):
     @cached_property
     def core(self) -> _core.Settings:
         """The settings in the core's form."""
-        return _core.Settings(self.__getstate__())
+        blows = [(t, impulse.core) for t, impulse in self.blows]
+        return _core.Settings(self.__getstate__() | {"blows": blows})
 
 
 def settings(*given: Any) -> Settings:
@@ -68,7 +73,10 @@ def settings(*given: Any) -> Settings:
     for known, made in (_last[0], _BY_DEFAULT):
         if _core.hold_the_same(given, known):
             return made
-    plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
+    plain = all(
+        type(value) in _PLAIN or value is DEFAULTS.baumgarte or value is DEFAULTS.blows
+        for value in given
+    )
     if not plain:
         return _checked(*given)
     made = _kept(*given)
@@ -91,6 +99,20 @@ def _pair(name: str, value: Any) -> tuple[float, float]:
     return number(name, first), number(name, second)
 
 
+def _blows(name: str, value: Any) -> Blows:
+    """Return pairs of a time and an Impulse; the core checks the times."""
+    try:
+        pairs = [(t, impulse) for t, impulse in value]
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"{name} must be pairs of a time [s] and an Impulse, ((2.0, Impulse(…)),), got "
+            f"{shown(value)}"
+        ) from None
+    for k, (_, impulse) in enumerate(pairs):
+        one_blow(f"{name}[{k}][1]", impulse)
+    return tuple((number(f"{name}[{k}][0]", t), j) for k, (t, j) in enumerate(pairs))
+
+
 def _whole(name: str, value: Any) -> int:
     found = whole(name, value)
     if not -(2**31) <= found < 2**31:
@@ -107,6 +129,7 @@ _CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # the check for each type o
     "int": _whole,
     "int | None": lambda name, value: None if value is None else _whole(name, value),
     "tuple[float, float]": _pair,
+    "Blows": _blows,
 }
 _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()

@@ -15,7 +15,7 @@ import numpy as np
 from .. import _core
 from .._ask.check import COORDINATES as COORDINATES
 from .._ask.check import FloatArray, broadcast, coordinates, finite, number, require_together
-from .._core import Mode
+from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -157,21 +157,25 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 
 def may_lose_energy(motion: Trajectory) -> bool:
-    """Whether impacts or friction may take energy: without friction, impacts may be elastic."""
+    """Whether blows, impacts or friction may change the energy: impacts may be elastic."""
     inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
     lossy = inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
-    return lossy or motion.scene.rolling_resistance > 0
+    return lossy or bool(motion.blows) or motion.scene.rolling_resistance > 0
 
 
 def losses(motion: Trajectory) -> dict[str, FloatArray]:
     """Return the energies lost in rolling, in slides and in impacts [J] up to each sample, (n,).
 
     There is a sample at every event, so energy lost after a sample in flight is lost in an impact.
+    Energy that a blow gives or takes is not a loss.
     Where rolling resistance and friction take energy together, the work of rolling resistance is
     computed from its couple by the trapezoidal rule between samples.
     """
     t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
     lost = -np.diff(motion.energy, prepend=motion.energy[:1])
+    for event in motion.events:
+        if event.kind is EventKind.BLOW and t[0] < event.t <= t[-1]:
+            lost[np.searchsorted(t, event.t)] += event.energy_after - event.energy_before
     impacts = np.where(last == Mode.FLIGHT, lost, 0.0)
     others = lost - impacts
     power = motion.scene.rolling_resistance * motion.normal_force * np.abs(motion.omega)

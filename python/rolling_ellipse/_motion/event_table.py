@@ -50,8 +50,8 @@ class EventTable(dict[str, npt.NDArray[Any]]):
     ``t`` [s], ascending, and ``kind``, codes of `EventKind`, which equal its members.
     ``theta_before``, ``theta_after`` and so on: states just before and after, also ``mode_before``
     (codes of `Mode`) and ``energy_before`` [J].
-    ``reaction_x``, ``reaction_z`` [N s], ``energy_lost`` [J]: impulse of the ground and energy lost
-    in an impact, 0 for other events; ``reason``: why the event happens.
+    ``reaction_x``, ``reaction_z`` [N s], ``energy_lost`` [J]: impulse of the ground in an impact
+    or a blow, and energy lost in an impact, 0 for other events; ``reason``: why the event happens.
 
     Examples
     --------
@@ -134,27 +134,31 @@ def _unit(column: str) -> str:
 def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
     """Return the columns of a table from rows of the core, for one body, or a body for each row."""
     found: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
-    before, after = (
-        SimpleNamespace(**{name: found[f"{name}_{when}"] for name in STATE_UNITS})
-        for when in ("before", "after")
-    )
-    mass, inertia, *_, friction = body
-
-    def lost(name: str) -> Any:
-        was, remains = getattr(before, name), getattr(after, name)
-        return 0.5 * (was - remains) * (was + remains)
-
     with np.errstate(all="ignore"):
-        found |= {"energy_before": energy(body, before), "energy_after": energy(body, after)}
-        effects = (
-            mass * (after.x_dot - before.x_dot),
-            mass * (after.z_dot - before.z_dot),
-            np.fmax(mass * (lost("x_dot") + lost("z_dot")) + inertia * lost("omega"), 0.0),
-        )
-    struck = found["kind"] == EventKind.IMPACT
-    found |= {name: np.where(struck, x, 0.0) for name, x in zip(_EFFECTS, effects, strict=True)}
+        for when in ("before", "after"):
+            state = SimpleNamespace(**{name: found[f"{name}_{when}"] for name in STATE_UNITS})
+            found[f"energy_{when}"] = energy(body, state)
+    *_, friction = body
     pulled = (found["kind"] == EventKind.SLIP) & np.isinf(friction)
     names = [*(f"{kind.name}_why" for kind in EventKind), "SLIP_pulled"]
     reasons = np.array([table("en")[name] for name in names], object)
     found["reason"] = reasons[np.where(pulled, len(EventKind), found["kind"]).astype(int)]
     return {name: found[name] for name in COLUMNS}
+
+
+def with_effects(rows: FloatArray, body: Any) -> FloatArray:
+    """Return rows of an older version, which knew no blows, with the effects of their impacts."""
+    found = dict(zip(_core.COLUMNS["events"], rows.T, strict=False))
+    mass, inertia, *_ = body
+
+    def gained(name: str) -> Any:
+        return found[f"{name}_after"] - found[f"{name}_before"]
+
+    def lost(name: str) -> Any:
+        return -0.5 * gained(name) * (found[f"{name}_before"] + found[f"{name}_after"])
+
+    with np.errstate(all="ignore"):
+        energy_lost = np.fmax(mass * (lost("x_dot") + lost("z_dot")) + inertia * lost("omega"), 0.0)
+        effects = mass * gained("x_dot"), mass * gained("z_dot"), energy_lost
+    x, z, energy_lost = np.where(found["kind"] == EventKind.IMPACT, effects, 0.0)
+    return np.column_stack([rows, x, z, found["omega_before"], energy_lost])

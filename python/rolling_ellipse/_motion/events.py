@@ -1,4 +1,4 @@
-"""Events of a contact motion: slip, stick, reversal, lift-off, impact, rest and jam."""
+"""Events of a contact motion: slip, stick, reversal, lift-off, impact, rest, jam and blow."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ _FIRST, _LAST = 12, 4  # events shown at the top and bottom of a long table
 
 @dataclass(frozen=True, repr=False)
 class Event(FieldsOnly):
-    """One event of a motion: an impact, or a change of mode or of the slip's direction.
+    """One event of a motion: an impact, a blow, or a change of mode or of the slip's direction.
 
     Attributes
     ----------
     t : float
         Time [s].
     kind : EventKind
-        SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
+        SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST, JAM or BLOW.
     state_before, state_after : InitialState
-        State just before and just after; the state after an impact includes its reaction impulse
-        and lost energy.
+        State just before and just after; the state after an impact or a blow includes the impulse
+        of the ground, that after an impact the lost energy.
     energy_before, energy_after : float
         Kinetic and potential energy of the two states [J].
     theta, x : float
@@ -54,6 +54,9 @@ class Event(FieldsOnly):
     IMPACT at 0.4515 s, then 0.620 m/s up
     >>> np.round([event.t for event in motion.events if event.kind == "IMPACT"], 3)
     array([0.452, 0.677, 1.662, 2.645, 2.871])
+    >>> again = rl.simulate(rl.scenes.report, 6.0, blows=[(2.0, rl.Impulse.press(20.0, 0.5))])
+    >>> print(f"{again.events[0].state_after.reaction_z:.3f} N s up")
+    12.642 N s up
     """
 
     t: float
@@ -81,9 +84,12 @@ class Event(FieldsOnly):
     def _change(self) -> str:
         before, after = self.state_before, self.state_after
         change = f"{before.mode.name} → {after.mode.name}"
-        if self.kind is EventKind.IMPACT:
+        if self.kind in (EventKind.IMPACT, EventKind.BLOW):
             change += f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+        if self.kind is EventKind.IMPACT:
             change += f", {after.energy_lost:.4g} J lost"
+        if self.kind is EventKind.BLOW:
+            change += f", {self.energy_after - self.energy_before:+.4g} J"
         return change
 
     def __repr__(self) -> str:
@@ -157,7 +163,7 @@ def events(scene: Scene, rows: npt.ArrayLike) -> Events:
 
 
 def _state(event: Any, *, after: bool) -> InitialState:
-    state: dict[str, Any] = _core.event_state(event._scene.core, event._numbers, after)
+    state: dict[str, Any] = _core.event_state(event._numbers, after)
     pulled = event.kind is EventKind.SLIP and math.isinf(event._scene.friction)
     why = "SLIP_pulled" if pulled else f"{event.kind.name}_why"
     reason = table("en")[why] if after else "just before"

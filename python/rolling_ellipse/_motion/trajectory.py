@@ -17,7 +17,7 @@ from .._ask.habits import MEANT, meant
 from .._ask.reason import in_words
 from .._ask.records import FieldsOnly, cached_property, find_late, trusted
 from .._ask.scene import Scene, reached_scene, require_scene
-from .._ask.settings import GIVEN, METHODS, MODELS, Method, Model, Settings
+from .._ask.settings import GIVEN, METHODS, MODELS, Blows, Method, Model, Settings
 from ..geometry import support_slope
 from .constraints import COORDINATES, ConstraintResiduals, constraints
 from .energies import energies
@@ -118,9 +118,11 @@ class Trajectory(FieldsOnly):
         Last time requested [s].
     settings : Settings
         Arguments of `simulate`: model, method and their options.
+    blows : tuple of (float, Impulse)
+        Blows during the motion: times [s] and impulses, as given to `simulate`.
     events : tuple of Event
-        Impacts, and changes of mode and of the slip's direction, of the model "contact", in order
-        of time; it prints as a table and has `to_dataframe`.
+        Impacts, blows, and changes of mode and of the slip's direction, of the model "contact", in
+        order of time; it prints as a table and has `to_dataframe`.
     stats : dict
         Counts of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
@@ -283,6 +285,11 @@ class Trajectory(FieldsOnly):
         return events(self.scene, self._solution.events)
 
     @property
+    def blows(self) -> Blows:
+        """Blows during the motion: times [s] and impulses."""
+        return self.settings.blows
+
+    @property
     def success(self) -> bool:
         """Whether the status is COMPLETED, or JAMMED (no motion continues, or more than one)."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
@@ -355,7 +362,8 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that continues from time t [s]; give it an impulse with `Scene.replace`.
 
-        At the time of an event it continues in the mode after the event. If a motion ended because
+        At the time of an event it continues in the mode after the event, without later ``blows``.
+        If a motion ended because
         of ``max_events``, the next event is due at its `t_end`. If that event is an impact, it is
         the first event of the new motion, at t = 0 or a rounding later: no other scene may start by
         moving into the ground. Any other change happens without an event where the state is at the
@@ -472,7 +480,8 @@ def _reason(self: Trajectory) -> str:
     if self.start is not None:
         return in_words([("off_constraints", [])])
     _, headline, reasons = _core.describe(self.scene.core, self._solution)
-    return in_words(headline + reasons[reasons[0][0] in _NOT_NEW :])
+    until = [("until_the_blow", [("t", t)]) for t, _ in self.blows[:1]]
+    return in_words(headline + reasons[reasons[0][0] in _NOT_NEW :] + until)
 
 
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:

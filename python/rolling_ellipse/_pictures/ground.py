@@ -19,7 +19,7 @@ from matplotlib.transforms import Affine2D, Transform
 
 from .._ask.check import FloatArray, require_near
 from .._ask.printing import length_unit
-from .._ask.scene import InitialState, Scene
+from .._ask.scene import Impulse, InitialState, Scene
 from .._core import Mode
 from .._motion.trajectory import Trajectory
 from ..geometry import support_slope
@@ -105,6 +105,13 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
     seen = np.concatenate(corners)
     (left, bottom), (right, top) = seen.min(axis=0), seen.max(axis=0)
     return left - 0.2 * size, right + 0.2 * size, bottom - 0.35 * size, top + 0.25 * size
+
+
+def blows_of(motion: Trajectory) -> list[tuple[float, Impulse]]:
+    """Return the blows of a motion with their times, its scene's own first."""
+    own = motion.scene.impulse
+    all_blows = *([] if own is None else [(0.0, own)]), *motion.blows
+    return [(t, blow) for t, blow in all_blows if t <= motion.t_end]
 
 
 def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Polygon:

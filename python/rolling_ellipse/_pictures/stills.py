@@ -36,6 +36,7 @@ _EVENTS = {
     EventKind.IMPACT: "v",
     EventKind.REST: "s",
     EventKind.JAM: "X",
+    EventKind.BLOW: "*",
 }
 _PILE = 0.4  # approximate opacity where all bodies overlap
 _MOST = 10_000  # largest number of positions; each takes some milliseconds

@@ -107,7 +107,7 @@ def strip(motion: Trajectory) -> dict[str, Any]:
     if times is None:
         times = even_times(0.0, motion.t_end, _SAMPLES)
     return {
-        **body(scene),
+        **body(motion),
         "label": "",
         "share": 1.0,
         "window": (foot[0] - wide / 2, foot[0] + wide / 2, foot[1] + low, foot[1] + high),

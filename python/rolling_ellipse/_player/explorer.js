@@ -26,7 +26,7 @@ export class Explorer extends Player {
 
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
-    strip.blow = null; // the hand shows the blow
+    strip.blows = []; // the hand shows the blow
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();

@@ -12,12 +12,11 @@ import numpy as np
 
 from .._ask.check import FloatArray
 from .._ask.printing import length_unit
-from .._ask.scene import Scene
 from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.strip import cameras, in_rows
-from .._pictures.ground import touching_x
+from .._pictures.ground import blows_of, touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
@@ -180,7 +179,7 @@ def film_html(animation: RollingAnimation) -> str:
     wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {
-            **body(motion.scene),
+            **body(motion),
             "label": labels[k],
             "share": seen.heights[k],
             "window": seen.windows[k],
@@ -210,16 +209,16 @@ def film_html(animation: RollingAnimation) -> str:
     return fragment(data, motions, text)
 
 
-def body(scene: Scene) -> dict[str, Any]:
-    """Return the body, its ground, its blow and its unit of length, as JSON types."""
-    blow = scene.impulse
+def body(motion: Trajectory) -> dict[str, Any]:
+    """Return the body, its ground, its blows and its unit of length, as JSON types."""
+    scene = motion.scene
     return {
         "a": scene.a,
         "b": scene.b,
         "slope": scene.slope,
         "unit": length_unit(max(scene.a, scene.b)),
         "weight": scene.mass * scene.gravity,
-        "blow": blow and [blow.jx, blow.jz, blow.dx, blow.dz],
+        "blows": [[t, *vars(blow).values()] for t, blow in blows_of(motion)],
     }
 
 

@@ -31,7 +31,7 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   paintTrace(ink, colours.orange, 1.8, strip, ({ x, z }) => [x, z], at, view, 1);
   paintContact(ink, colours, strip, at, view);
   if (shown.forces) paintForces(ink, colours, strip, at, view);
-  if (strip.blow) paintBlow(ink, colours, strip, view, shown.lasting);
+  paintBlow(ink, colours, strip, at, view, shown.lasting);
   paintEvents(ink, colours, strip, at, view, shown);
   paintTexts(ink, colours.ink, shown);
 }
@@ -219,14 +219,15 @@ function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (Math.abs(at.F) > 0.02 * weight) text(ink, colours.plum, "F", along[0], along[1] - 8);
 }
 
-/** Draw the blow at its point on the body at t = 0. */
-function paintBlow(ink, colours, strip, view, lasting) {
-  const [jx, jz, dx, dz] = strip.blow, size = Math.hypot(jx, jz);
-  if (lasting > FADES || !size) return;
-  const { x, z } = strip.motion.at(0), long = 0.9 * Math.max(strip.a, strip.b);
+/** Draw the last blow at its point on the body at its time. */
+function paintBlow(ink, colours, strip, at, view, lasting) {
+  const [t, jx, jz, dx, dz] = strip.blows.filter(([then]) => then <= at.t).pop() ?? [];
+  const size = Math.hypot(jx, jz), age = lasting * (1 - t / Math.max(at.t, 1e-300));
+  if (!(age <= FADES && size)) return;
+  const { x, z } = strip.motion.at(t), long = 0.9 * Math.max(strip.a, strip.b);
   const end = [x + dx, z + dz], start = [end[0] - (long * jx) / size, end[1] - (long * jz) / size];
   const [u, v] = view.at(...start);
-  ink.globalAlpha = 1 - lasting / FADES;
+  ink.globalAlpha = 1 - age / FADES;
   arrow(ink, colours.plum, [u, v], view.at(...end), 3.5);
   text(ink, colours.plum, `${round(size)} N s`, u + 10, v + 12, "left");
   ink.globalAlpha = 1;

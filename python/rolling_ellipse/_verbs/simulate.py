@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from .. import _core
 from .._ask.categories import StabilityWarning, ValidityWarning
 from .._ask.check import FloatArray, array, flag, shown
 from .._ask.habits import understood
+from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
 from .._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from .._motion.samples import even_times
@@ -38,6 +40,7 @@ def simulate(
     max_steps: int = DEFAULTS.max_steps,
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
+    blows: Iterable[tuple[float, Impulse]] = DEFAULTS.blows,
     raise_on_failure: bool = True,
 ) -> Trajectory:
     """Return the motion of a scene from t = 0 on, sampled at times.
@@ -57,7 +60,7 @@ def simulate(
         comes to rest, on segments joined by ``events``. No segment is integrated by steps: slides
         are power series in time [9]_ that end at proved first roots, and so is rolling with
         resistance, which no other model has. "auto" is "rolling" if the certificate proves it, else
-        "contact"; if a method is given it is "rolling".
+        "contact"; if a method is given it is "rolling", and with ``blows`` it is "contact".
         "multipliers" is rolling in the report's five coordinates with four constraints and their
         Lagrange multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau"
         with the stabilization "ggl".
@@ -98,6 +101,10 @@ def simulate(
         The relative error is of the order of the square of its ratio to sqrt(g min(a, b)), which
         is a millionth by default and a hundredth at most. Bounces that last too long for that are
         not summed: if the body is hardly pressed to its ground, or restitution is near 1.
+    blows : iterable of (float, Impulse)
+        Blows during the motion of "contact", at times [s] that do not fall, from 0 to the last of
+        ``t``: an event of the kind BLOW each, after any other event at its time, by the law of the
+        blow of a scene in the state then reached. One at t = 0 follows the scene's own.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; if not, the motion up to then
         is returned.
@@ -125,7 +132,8 @@ def simulate(
     ValueError
         If times are negative, not increasing or not finite, a name is unknown, an argument is out
         of range or has no effect on the method, or the scene of the model "rolling" or
-        "multipliers" does not start rolling.
+        "multipliers" does not start rolling, or a blow misses the body, or would be too strong,
+        when its time comes.
     IntegrationError
         If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
         STEP_TOO_LARGE); its ``trajectory`` is the motion up to then.
@@ -163,7 +171,7 @@ def simulate(
     raise_on_failure = flag("raise_on_failure", raise_on_failure)
     how = settings(
         model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
-        rest_speed,
+        rest_speed, blows,
     )  # fmt: skip
     trajectory = Trajectory.computed(scene, how, sample_times(t))
     if trajectory.status is not COMPLETED:

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from operator import attrgetter
 from typing import Any, TypeVar
 
@@ -16,8 +16,8 @@ import numpy as np
 from ... import _core
 from ..._ask.check import choice, file_name, require
 from ..._ask.scene import STATE_UNITS
-from ..._ask.settings import Settings
 from ..._core import EventKind, Mode
+from ..event_table import with_effects
 from ..events import Event, events
 from ..samples import ContactSamples
 from ..status import Status
@@ -27,12 +27,15 @@ from .atomic import replacing
 
 _Made = TypeVar("_Made", bound=Trajectory)
 
-_SCHEMA = 5
+_SCHEMA = 6
+_WITHOUT_BLOWS = 5  # schema whose settings have no blows, and whose events no effects
 _WITHOUT_RESISTANCE = 4  # schema whose scenes have no rolling resistance
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
 _OF_MODELS = {"contact": ContactSamples._fields, "multipliers": ("coordinates",)}
 _state = attrgetter(*STATE_UNITS)
+_EFFECTS = _core.COLUMNS["events"][-4:]
+_effects = attrgetter(*_EFFECTS)
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 _ABOUT = ("schema", "scene", "settings", "status", "events", *_FACTS)
 
@@ -124,15 +127,16 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
     Thus nothing is converted, filled in or left out, even where the classes would accept that.
     """
     if about["schema"] == _WITHOUT_RESISTANCE:
-        about |= {"schema": _SCHEMA, "scene": strict.with_resistance(about["scene"])}
+        about |= {"schema": _WITHOUT_BLOWS, "scene": strict.with_resistance(about["scene"])}
+    if about["schema"] == _WITHOUT_BLOWS:
+        about |= _with_blows(about)
     strict.require_names("about", about, _ABOUT)
     of_model = _OF_MODELS.get(about["model"], ())
     start = {"start"} & set(arrays) if "coordinates" in of_model else ()
     strict.require_names(f"model {about['model']!r}", arrays, {*_VECTORS, *of_model, *start})
     for name, values in arrays.items():
         strict.require_array(name, values, np.int8 if name == "mode" else np.float64, values.shape)
-    scene, settings = strict.scene_of(about["scene"]), about["settings"]
-    strict.require_names("settings", settings, strict.field_names(Settings))
+    scene = strict.scene_of(about["scene"])
     contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
     pairs: dict[str, Any] = {name: tuple(arrays[name]) for name in _PAIRS if name in arrays}
     trajectory = kind(
@@ -141,7 +145,7 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
         **{name: about[name] for name in _FACTS},
         contact=ContactSamples._make(contact) if contact else None,
         scene=scene,
-        settings=Settings(**settings),
+        settings=strict.settings_of(about["settings"]),
         status=Status[choice("status", about["status"], tuple(Status.__members__))],
         kept_events=events(scene, [*map(event_row, about["events"])]),
     )
@@ -153,24 +157,39 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
     return trajectory
 
 
+def _with_blows(about: dict[str, Any]) -> dict[str, Any]:
+    """Return the values that an older file, of a motion without blows, lacks."""
+    events, body = about["events"], strict.scene_of(about["scene"]).core.body
+    rows = [event_row([*each, [0.0] * len(_EFFECTS)])[: -len(_EFFECTS)] for each in events]
+    known = with_effects(np.reshape(rows, (-1, len(_core.COLUMNS["events"]) - len(_EFFECTS))), body)
+    effects = known[:, -len(_EFFECTS) :].tolist()
+    return {
+        "schema": _SCHEMA,
+        "settings": strict.without_blows(about["settings"]),
+        "events": [[*each, its] for each, its in zip(events, effects, strict=True)],
+    }
+
+
 def event_values(event: Event) -> list[Any]:
     """Return an event as JSON values."""
     before, after = (
         [*_state(state), int(state.mode)] for state in (event.state_before, event.state_after)
     )
-    return [event.t, event.kind.name, before, after]
+    return [event.t, event.kind.name, before, after, [*_effects(event.state_after)]]
 
 
 def event_row(values: Any) -> list[float]:
     """Return an event written by `event_values` as a row of numbers for `events`."""
-    t, kind, (*before, mode_before), (*after, mode_after) = values
-    for value in (t, *before, *after):
+    t, kind, (*before, mode_before), (*after, mode_after), effects = values
+    for value in (t, *before, *after, *effects):
         if not (isinstance(value, float) and math.isfinite(value)):
             raise ValueError(f"events must hold finite numbers, got {value!r}")
     if not len(before) == len(after) == len(STATE_UNITS):
         raise ValueError(f"events must hold states of {len(STATE_UNITS)} numbers, got {values!r}")
-    kind = choice("kind", kind, tuple(EventKind.__members__))
-    return [t, EventKind[kind].value, *before, Mode(mode_before), *after, Mode(mode_after)]
+    if len(effects) != len(_EFFECTS):
+        raise ValueError(f"events must hold {len(_EFFECTS)} effects, got {effects!r}")
+    code = EventKind[choice("kind", kind, tuple(EventKind.__members__))].value
+    return [t, code, *before, Mode(mode_before), *after, Mode(mode_after), *effects]
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
@@ -188,9 +207,14 @@ def _require_consistent(trajectory: Trajectory) -> None:
     _require_within("times of events", times, 0.0, t_end)
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
+    blows = [t for t, _ in trajectory.blows if t < t_end or trajectory.status is Status.COMPLETED]
+    struck = [event.t for event in trajectory.events if event.kind is EventKind.BLOW]
+    if struck[: len(blows)] != blows:
+        raise ValueError(f"times of BLOW events must be those of blows, {blows}, got {struck}")
     _core.validate_settings(settings.core, span)
     # The core rejects what it cannot solve.
-    _core.simulate(trajectory.scene.core, settings.core, np.zeros(1), trajectory.start)
+    unstruck = replace(settings, blows=())
+    _core.simulate(trajectory.scene.core, unstruck.core, np.zeros(1), trajectory.start)
 
 
 def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from ..._ask.check import readable, require, shown
 from ..._ask.scene import Impulse, Scene, reached_scene
+from ..._ask.settings import Settings
 
 ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON objects
 
@@ -105,11 +106,11 @@ def require_names(what: str, values: Any, names: Iterable[str]) -> None:
 
 def require_schema(it: str, schema: Any, old: int, new: int) -> None:
     """Raise a ValueError for another schema; if a newer version wrote it, say what to do."""
-    if schema not in (old, new):
+    if type(schema) is not int or not old <= schema <= new:
         is_newer = type(schema) is int and schema > new
         cure = ": a newer one wrote it, pip install --upgrade rolling-ellipse" if is_newer else ""
         wrong = f"{it} is of schema {shown(schema)}"
-        raise ValueError(f"{wrong}; this version reads {old} and {new}{cure}")
+        raise ValueError(f"{wrong}; this version reads {old} to {new}{cure}")
 
 
 def with_resistance(scene: Any) -> Any:
@@ -118,13 +119,27 @@ def with_resistance(scene: Any) -> Any:
     return scene | {"rolling_resistance": 0.0}
 
 
+def without_blows(settings: Any) -> Any:
+    """Return the values of settings of an older schema, whose motions have no blows."""
+    require_names("settings", settings, {*field_names(Settings)} - {"blows"})
+    return settings | {"blows": []}
+
+
 def scene_of(values: Any) -> Scene:
     require_names("scene", values, field_names(Scene))
     impulse = values["impulse"]
-    if impulse is not None:
-        require_names("impulse", impulse, field_names(Impulse))
-        impulse = Impulse(**impulse)
-    return reached_scene({**values, "impulse": impulse})
+    return reached_scene({**values, "impulse": impulse and _impulse_of(impulse)})
+
+
+def settings_of(values: Any) -> Settings:
+    require_names("settings", values, field_names(Settings))
+    blows = tuple((t, _impulse_of(impulse)) for t, impulse in values["blows"])
+    return Settings(**{**values, "blows": blows})
+
+
+def _impulse_of(values: Any) -> Impulse:
+    require_names("impulse", values, field_names(Impulse))
+    return Impulse(**values)
 
 
 def npz_about(content: bytes) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.transforms import ScaledTranslation
 
 from ..._ask.check import FloatArray
+from ..._ask.impulse import Impulse
 from ..._ask.printing import length_unit
 from ..._core import Mode
 from ..._motion.trajectory import Trajectory
@@ -220,7 +221,7 @@ class Strip:
 
     def _point(self, i: int) -> None:
         """Make the arrows show the forces of the ground, and the blow while it fades."""
-        motion, scene, blow = self.motion, self.motion.scene, self.motion.scene.impulse
+        motion, scene = self.motion, self.motion.scene
         size, texts = max(scene.a, scene.b), ["", "", ""]
         feet, arrows = np.zeros((3, 2)), np.zeros((3, 2))
         if self._film.forces and motion.mode[i] != Mode.FLIGHT:
@@ -228,10 +229,13 @@ class Strip:
             N, F = np.clip(forces / (scene.mass * scene.gravity), -3, 3) * size
             feet[:2, 0], arrows[0, 1], arrows[1, 0] = motion.contact_x[i], N, F
             texts[:2] = "N", "F" if F else ""
-        fresh = max(0.0, 1 - self._film.t[i] / self._film.speed / FADES)
-        strength = np.hypot(blow.jx, blow.jz) if blow is not None else 0.0
+        now = self._film.t[i]
+        struck = [each for each in drawing.blows_of(self._source) if each[0] <= now]
+        t, blow = struck[-1] if struck else (-math.inf, Impulse())
+        fresh = max(0.0, 1 - (now - t) / self._film.speed / FADES)
+        strength = np.hypot(blow.jx, blow.jz)
         if self._film.blow and fresh and strength:
-            start, texts[2] = self._source.sol([0.0]), f"  {strength:.3g} N s"
+            start, texts[2] = self._source.sol([t]), f"  {strength:.3g} N s"
             arrows[2] = np.array([blow.jx, blow.jz]) * 0.9 * size / strength
             feet[2] = np.array([start.x[0] + blow.dx, start.z[0] + blow.dz]) - arrows[2]
         seen = drawing.tilted(scene).transform

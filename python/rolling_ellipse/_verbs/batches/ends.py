@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ... import _core
 from ..._ask.check import FloatArray, array, copied, require
 from ..._ask.habits import understood
+from ..._ask.impulse import Impulse
 from ..._ask.progress import reporting
 from ..._ask.records import FieldsOnly
 from ..._ask.scene import STATE_UNITS, Scene
@@ -148,6 +149,7 @@ def ends(
     progress: bool | Callable[[int, int | None], Any] = False,
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
+    blows: Iterable[tuple[float, Impulse]] = DEFAULTS.blows,
 ) -> Ends:
     """Return the last states and event counts of many motions, bit for bit those of `simulate`.
 
@@ -167,6 +169,8 @@ def ends(
         Largest number of events, after which a motion ends with the status MAX_EVENTS.
     rest_speed : float, optional
         As for `simulate` [m/s].
+    blows : iterable of (float, Impulse)
+        As for `simulate`, for all scenes.
 
     Raises
     ------
@@ -185,7 +189,8 @@ def ends(
     >>> last.events
     array([0, 0, 0, 0, 3, 3], dtype=int32)
     """
-    how = replace(DEFAULTS, max_events=max_events, rest_speed=rest_speed)
+    given: dict[str, Any] = {"max_events": max_events, "rest_speed": rest_speed, "blows": blows}
+    how = Settings(**given)
     times = array("t", t)
     require("t", _ENDLESS, times, times != math.inf)
     require("t", "finite and not negative [s]", times, (times >= 0) & (times < math.inf))

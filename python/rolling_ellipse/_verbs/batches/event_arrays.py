@@ -60,6 +60,12 @@ class EventArrays(EventTable):
         return f"{super().__repr__()[:-1]}; {counts_of(self.status)}>"
 
 
+_NONE: Tables = {
+    name: np.empty((0, len(_core.COLUMNS[name])), dtype)
+    for name, dtype in (("codes", np.int64), ("events", np.float64))
+}
+
+
 def gathered_events(
     request: Request, parts: Iterable[tuple[FloatArray, Any]], axes: tuple[str, ...],
     shape: tuple[int, ...] | None,
@@ -83,9 +89,18 @@ def gathered_events(
 
 def _events_in(begin: int, table: FloatArray, tables: Tables | Exception | None) -> dict[str, Any]:
     """Return the columns of the events of scenes from the index `begin` on."""
-    rows, counts = np.empty((0, len(_core.COLUMNS["events"]))), np.zeros(len(table), int)
-    if isinstance(tables, dict):  # else they are lost
-        rows, counts = tables["events"], columns("codes", tables)["events"]
-    place = np.repeat(np.arange(len(table)), counts)
-    found = columns_of(rows, _core.bodies(table)[place].T.copy())
-    return {"scene": begin + place} | found
+    if not isinstance(tables, dict):  # they are lost
+        table, tables = table[:0], _NONE
+    place = begin + _places_of(tables)
+    return {"scene": place} | columns_of(tables["events"], bodies_of(table, tables))
+
+
+def bodies_of(table: FloatArray, tables: Tables) -> FloatArray:
+    """Return the body of each event's scene as a column; the scenes are the rows of a table."""
+    return _core.bodies(table)[_places_of(tables)].T.copy()
+
+
+def _places_of(tables: Tables) -> npt.NDArray[np.int64]:
+    """Return the index of each event's scene among those of the tables."""
+    counts = columns("codes", tables)["events"]
+    return np.repeat(np.arange(len(counts)), counts)

@@ -26,18 +26,19 @@ import numpy as np
 
 from ... import _core
 from ..._ask.check import FloatArray, file_name, flag, shown
-from ..._ask.settings import Settings
+from ..._motion.event_table import with_effects
 from ..._motion.export import strict
 from ..._motion.export.atomic import remove_unfinished, replacing
 from . import answers as results
 from .asked import Chunk, sizes
-from .event_arrays import EventArrays, gathered_events
+from .event_arrays import EventArrays, bodies_of, gathered_events
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-_SCHEMA = 3
+_SCHEMA = 4
+_WITHOUT_BLOWS = 3  # schema whose settings have no blows, and whose events no effects
 _WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _SAME, _SAME_SCENES = "a folder of the same request", "a folder of the same scenes"
 _REQUEST, _END = "request.npz", "end.json"
@@ -284,6 +285,8 @@ def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
     if scenes.ndim == 2 and scenes.shape[1] == len(_core.COLUMNS["scenes"]) - 1:
         at = _core.COLUMNS["scenes"].index("rolling_resistance")
         scenes = tables["scenes"] = np.insert(stored, at, 0.0, axis=1)
+    if tables["events"].shape[1:] == (len(_core.COLUMNS["events"]) - 4,):
+        tables["events"] = with_effects(tables["events"], bodies_of(scenes, tables))
     results.require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), stored):
         raise ValueError("request and scenes must match the digests in the name of the file")
@@ -293,11 +296,10 @@ def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
 
 
 def _about(request: results.Request) -> dict[str, Any]:
-    gains = list(request.settings.baumgarte)  # JSON has no tuples
     return {
         "schema": _SCHEMA,
         "version": version("rolling-ellipse"),
-        "settings": asdict(request.settings) | {"baumgarte": gains},
+        "settings": json.loads(json.dumps(asdict(request.settings))),  # lists for tuples
         "raise_on_failure": request.raise_on_failure,
     }
 
@@ -305,13 +307,14 @@ def _about(request: results.Request) -> dict[str, Any]:
 def _of_request(content: bytes) -> tuple[dict[str, Any], results.Request]:
     about, arrays = strict.npz_about(content), strict.npz_arrays(content, {"about", "t"})
     strict.require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
-    strict.require_names("settings", about["settings"], strict.field_names(Settings))
+    is_old = about["schema"] <= _WITHOUT_BLOWS
+    settings = strict.without_blows(about["settings"]) if is_old else about["settings"]
     t = arrays["t"]
     strict.require_array("t", t, np.float64, (t.size,))
     if not t.size or np.any(np.diff(t, prepend=0.0) < 0):
         raise ValueError("t must hold times that do not fall")
     raises = flag("raise_on_failure", about["raise_on_failure"])
-    return about, results.Request(Settings(**about["settings"]), t, raises)
+    return about, results.Request(strict.settings_of(settings), t, raises)
 
 
 def _of_end(content: bytes) -> dict[str, Any]:

@@ -89,7 +89,7 @@ def simulate_many(
         shape, then the times. "theta", "omega" and "x" need no Python objects. Or "events", alone:
         all events up to the last time, as `EventArrays`.
     raise_on_failure, **options
-        As for `simulate`, from ``model`` to ``rest_speed``.
+        As for `simulate`, from ``model`` to ``blows``, which strike all scenes.
 
     Returns
     -------
