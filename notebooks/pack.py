@@ -1,7 +1,8 @@
-"""Pack the notebooks, without outputs, and the tables of reference states into one archive.
+"""Pack files for the package into an archive: python notebooks/pack.py examples.zip
 
-CMake runs `pack.py FILE.zip` with a plain Python, for the package's `examples`; the same sources
-give the same bits.
+examples.zip has the notebooks, without outputs, and the tables of reference states, for `examples`;
+course.zip the sheets and their pictures, for `course.sheet`. CMake runs this with a plain Python;
+the same sources give the same bits.
 """
 
 import json
@@ -20,14 +21,23 @@ def without_outputs(path: Path) -> str:
     return json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
 
 
-def main() -> None:
+def examples() -> dict[str, str | bytes]:
     notebooks = {path.name: without_outputs(path) for path in ROOT.glob("notebooks/*.ipynb")}
     modules = [path for path in ROOT.glob("notebooks/*.py") if path.name != Path(__file__).name]
-    files = notebooks | {
+    return notebooks | {
         path.relative_to(ROOT).as_posix().removeprefix("notebooks/"): path.read_text("utf-8")
         for path in (*modules, *ROOT.glob("reference/*.csv"))
     }
-    with zipfile.ZipFile(sys.argv[1], "w") as archive:
+
+
+def course() -> dict[str, str | bytes]:
+    return {path.name: path.read_bytes() for path in ROOT.glob("docs/course/[01][0-9]*")}
+
+
+def main() -> None:
+    place = Path(sys.argv[1])
+    files = {"examples": examples, "course": course}[place.stem]()
+    with zipfile.ZipFile(place, "w") as archive:
         for name in sorted(files):
             # a ZipInfo has a fixed date
             archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 9)

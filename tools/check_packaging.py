@@ -112,8 +112,9 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
         files = {each.filename for each in archive.infolist() if not each.is_dir()}
     files = {name for name in files if not name.startswith("rolling_ellipse-")}  # pip's files
     core = {name for name in files if Path(name).match("rolling_ellipse/_core.*.so")}
+    packed = {f"rolling_ellipse/{name}.zip" for name in ("examples", "course")}
     known = {name.removeprefix("python/") for name in files_of_git() if name.startswith(PACKAGE)}
-    require_same(repaired.name, files - core - {"rolling_ellipse/examples.zip"}, known)
+    require_same(repaired.name, files - core - packed, known)
     print(f"{repaired.name}: {repaired.stat().st_size / 1e6:.2f} MB", flush=True)
     return repaired
 

@@ -29,7 +29,7 @@ your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_prec
                    ``Trajectory.from_arrays`` takes your arrays, to draw, film or compare them
                    (`plot_error`)
 score a simulator  `benchmark`: ``benchmark.run(simulator)``, ``benchmark.score(results)``
-teach              `course` marks answers, `examples` writes the notebooks
+teach              `course` has sheets and marks answers, `examples` writes the notebooks
 shape and period   `geometry`, `period`
 the report         `report` has its equations; `kinematics`, `constraints` its coordinates
 =================  =================================================================================

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from functools import cache, partial
+from io import StringIO
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -72,7 +73,10 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "comparison": lambda: rl.report.errata()[0].evaluate(),
     "fitted impacts": fitted,
     "sensitivity": lambda: MOTIONS["rolling"]().sensitivity("omega"),
-    "course": lambda: (rl.course.tasks()[-1], rl.course.mark("1.1", 0.2)),
+    "course": lambda: (
+        rl.course.tasks()[-1], rl.course.mark("1.1", 0.2), rl.course.sheet(1),
+        rl.course.mark_table(StringIO("student,seed,task,answer\nAda,7,1.1,0.2")),
+    ),
     "fit": lambda: rl.fit_motion(
         TIMES, rl.simulate(rl.scenes.rolling, TIMES).x, scene=rl.scenes.rolling, free="omega"
     ),

@@ -45,11 +45,26 @@ def use(folder: Path) -> list[float]:
     pictures = [rl.plot(motion), motion.plot_phase(), rl.plot_phase_map(resolution=4), fit.plot()]
     pages = [rl.animate(rolls).figure, rl.explore(body), rl.examples(folder / "examples")]
     marked, known = course.mark("3.2", 1.9).right, benchmark.run(lambda p, t, s: p.exact(t))
+    course.sheet(1, seed=7).save(folder / "sheet.html")
+    (folder / "answers.csv").write_text("student,seed,task,answer\nAda,7,1.1,0.2")
+    of_class: dict[str, int] = course.mark_table(folder / "answers.csv").points
     height: float = geometry.support(0.3, a=2.0, b=1.0) + report.errata()[0].evaluate().gap
     struck = impacts.collide(0.3, 0.0, -1.0, 0.0, a=2.0, b=1.0, friction=0.3, restitution=0.5)
     rows = motion.to_dataframe().shape[0] + motion.to_xarray().sizes["t"] + len(motion.events)
     print(
-        names, several, stored, ended, proof, bounds, race, loaded, marked, known, pictures, pages
+        names,
+        several,
+        stored,
+        ended,
+        proof,
+        bounds,
+        race,
+        loaded,
+        marked,
+        known,
+        pictures,
+        pages,
+        of_class,
     )
     return [*tips, *last, theta, x, slope, off, rate, needed, growth, height, *struck, rows,
             grid["x"].sum(), given.z[-1]]  # fmt: skip

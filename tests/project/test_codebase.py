@@ -86,7 +86,8 @@ CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
     ),
     "oxlint": (
         [SCRIPTS / "oxlint", "--deny-warnings"],
-        ["python/rolling_ellipse/_player", "docs/live"], "unused.js", "const x = 1;\n",
+        ["python/rolling_ellipse/_player", "python/rolling_ellipse/course", "docs/live"],
+        "unused.js", "const x = 1;\n",
     ),
 }  # fmt: skip
 each_tool = pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
+from io import StringIO
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -34,6 +35,7 @@ BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
 MASKED: Any = [[0.0, 0.0], np.ma.array([-1.0, -1.0], mask=[False, True]), [-1.0, -1.0], [0.0, 0.0]]
+SEEDS = [-1, 2**53 + 1, 1.5, "7", True, [1]]
 TABLE = "ROLLING_ELLIPSE_IMPACTS"
 IMPACTS = "theta,x_dot,y_dot,omega,x_dot_after,y_dot_after,omega_after"
 TWO_IMPACTS: Any = np.zeros((3, 2))
@@ -161,6 +163,14 @@ REFUSALS: list[Row] = [
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
            gyration2=[0.0]),
     # the course
+    *wrong(course.sheet, {"number": 1}, number=[0, 11, "1", 1.5, None], seed=SEEDS),
+    *wrong(course.sheet(1).save, {}, path=["sheet.pdf", "", None]),
+    *wrong(course.tasks, {}, seed=SEEDS), *wrong(course.film, {}, seed=SEEDS),
+    *wrong(course.measured_impacts, {}, seed=SEEDS),
+    *wrong(course.mark, {"task": "1.1", "answer": 1.0}, seed=SEEDS),
+    *(("table", lambda _, head=head: course.mark_table(StringIO(head)))
+      for head in ("", "student,seed,task\n", "a b c")),
+    *wrong(course.mark_table, {}, table=[None, 3]),
     *wrong(course.mark, {"answer": 1.0}, task=["0.1", "3,2", 1.1, None, [1.1], ""]),
     *wrong(course.mark, {"task": "1.1"},
            answer=[*NOT_FINITE, "0.2", [0.2], None, 2j, (), {}, True]),

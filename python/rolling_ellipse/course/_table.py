@@ -1,0 +1,114 @@
+"""Marks for the answers of a class, from a table."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .._ask.check import readable
+from ._marks import Mark, mark
+from ._tasks import DATA
+
+COLUMNS = ("student", "seed", "task", "answer")
+
+
+@dataclass(frozen=True)
+class MarkedTable:
+    """The marks of a class.
+
+    Attributes
+    ----------
+    marks : dict of dict of Mark
+        By student and task.
+    points : dict of int
+        Sum of the points of each student.
+    mistakes : dict of int
+        How often each mistake was made, "none" and "other" included, the most frequent first.
+    refused : dict of str
+        Why a line of the table has no mark, by its number in the file; the head is line 1.
+
+    Examples
+    --------
+    >>> import io
+    >>> table = io.StringIO("student,seed,task,answer\\nAda,7,1.1,0.2267\\nBob,8,1.1,about 0.2")
+    >>> marked = rl.course.mark_table(table)
+    >>> marked.refused
+    {3: "answer must be a number, got 'about 0.2'"}
+    """
+
+    marks: dict[str, dict[str, Mark]] = field(repr=False)
+    points: dict[str, int]
+    mistakes: dict[str, int]
+    refused: dict[int, str]
+
+
+def mark_table(table: Any) -> MarkedTable:
+    """Return the marks for a table of answers, one in each line.
+
+    Parameters
+    ----------
+    table : path or file
+        CSV with the columns student, seed, task and answer, between commas, semicolons or tabs,
+        in any order, and with others that are ignored. An empty seed stands for the printed
+        numbers. Decimals may follow a comma. Of several answers to one task the last counts.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing. Lines that cannot be marked are reported in `refused`: a seed that
+        is no whole number or not that of the student's lines before, no such task, no number.
+    TypeError
+        If `table` is no path and no file.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import io
+    >>> table = io.StringIO("student,seed,task,answer\\nAda,7,1.1,0.2267\\nBob,8,1.1,0.2")
+    >>> marked = rl.course.mark_table(table)
+    >>> marked.points, marked.mistakes
+    ({'Ada': 2, 'Bob': 1}, {'none': 1, 'angle': 1})
+    """
+    if hasattr(table, "read"):
+        text = table.read()
+        text = text.decode("utf-8-sig") if isinstance(text, bytes) else text
+    else:
+        text = Path(readable("table", table)).read_text("utf-8-sig", errors="replace")
+    lines = text.splitlines()
+    head = lines[0] if lines else ""
+    reader = csv.DictReader(lines, delimiter=max("\t;,", key=head.count))
+    names = [(name or "").strip().lower() for name in reader.fieldnames or []]
+    if missing := [name for name in COLUMNS if name not in names]:
+        raise ValueError(f"table must have the column {missing[0]}, got {', '.join(names)}")
+    reader.fieldnames = names
+    seeds: dict[str, int | None] = {}
+    marks: dict[str, dict[str, Mark]] = {}
+    refused: dict[int, str] = {}
+    for row in reader:
+        student, word, task, answer = ((row[name] or "").strip() for name in COLUMNS)
+        of = marks.setdefault(student, {})
+        try:
+            seed: Any = int(word) if re.fullmatch("[+-]?[0-9]+", word) else word or None
+            given = mark(task, number_in(answer), seed=seed)
+        except (ValueError, TypeError) as error:
+            refused[reader.line_num] = str(error)
+            continue
+        if (first := seeds.setdefault(student, seed)) == seed:
+            of[task] = given
+        else:
+            refused[reader.line_num] = f"seed must be {first}, as in lines before, got {word}"
+    points = {student: sum(m.points for m in each.values()) for student, each in marks.items()}
+    kinds = Counter(m.mistake for each in marks.values() for m in each.values())
+    return MarkedTable(marks, points, dict(kinds.most_common()), refused)
+
+
+def number_in(text: str) -> Any:
+    """Return the number of a text, as the page of a sheet reads it, or else the text."""
+    word = text.replace("−", "-", 1)
+    is_number = re.fullmatch(DATA["number"], word, re.ASCII)
+    return float(word.replace(",", ".")) if is_number else text

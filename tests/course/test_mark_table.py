@@ -1,0 +1,54 @@
+"""Marks for a table of answers, and what it refuses."""
+
+from io import BytesIO, StringIO
+from pathlib import Path
+
+import pytest
+from course.by_hand import answer
+from rolling_ellipse import course
+
+HEAD = "student,seed,task,answer"
+
+
+def table(*rows: str, head: str = HEAD) -> StringIO:
+    return StringIO("\n".join((head, *rows)))
+
+
+def test_a_class_is_marked_line_by_line() -> None:
+    """Right, one mistake, two, none; what cannot be read is refused by line, and all others marked;
+    the last answer to a task counts."""
+    right, wrong = answer("3.2", (), 7), answer("3.2", ("sign", "inertia"), 8)
+    marked = course.mark_table(
+        table(
+            f"Ada,7,3.2,{1.5 * right}", f"Ada,7,3.2,{right}", f"Ada,7,1.1,{-answer('1.1', (), 7)}",
+            f"Bob,8,3.2,{wrong}", "Bob,8,3.1,twenty", "Bob,9,3.1,20", "Bob,8,3.9,20", "Bob,8,3.1,",
+            "Cid,seven,3.1,20", f"Dan,,3.2,{answer('3.2')}", "Eve,8,3.1,nan", "Eve,-8,3.1,1",
+            "Eve,8,3.1", f"Eve,{2**53 + 1},3.1,1", "Eve,8,3.1,1e999",
+        )
+    )  # fmt: skip
+    assert marked.points == {"Ada": 3, "Bob": 0, "Cid": 0, "Dan": 2, "Eve": 0}
+    assert marked.mistakes == {"none": 2, "sign": 1, "sign and inertia": 1}
+    assert marked.marks["Ada"]["3.2"] == course.mark("3.2", right, seed=7)
+    assert [*marked.refused] == [6, 7, 8, 9, 10, 12, 13, 14, 15, 16]
+    words = [message.split()[0] for message in marked.refused.values()]
+    assert words == ["answer", "seed", "task", "answer", "seed", "answer", "seed", "answer",
+                     "seed", "answer"]  # fmt: skip
+    assert "'twenty'" in marked.refused[6] and "8, as in lines before" in marked.refused[7]
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
+    """Other separators, a decimal comma, a true minus, a byte order mark, columns in any order."""
+    text = f"{answer('3.2', (), 7):.4f}".replace("-", "−").replace(".", ",")
+    rows = ["Answer", "note", " Task", "seed", "student"], [f'"{text}"', "x", "3.2", "7", '"A, B"']
+    content = "\r\n".join(mark.join(row) for row in rows).encode("utf-8-sig")
+    (tmp_path / "answers.csv").write_bytes(content)
+    for given in (tmp_path / "answers.csv", str(tmp_path / "answers.csv"), BytesIO(content)):
+        assert course.mark_table(given).points == {"A, B": 2}
+
+
+@pytest.mark.parametrize("missing", HEAD.split(","))
+def test_a_missing_column_is_named(missing: str) -> None:
+    head = ",".join(name for name in HEAD.split(",") if name != missing)
+    with pytest.raises(ValueError, match=f"table must have the column {missing}, got"):
+        course.mark_table(table("a,b,c", head=head))

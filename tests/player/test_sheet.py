@@ -1,0 +1,84 @@
+"""The page of a sheet marks as Python does, prints, and needs no network."""
+
+import math
+import random
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from oracles.paths import ROOT
+from rolling_ellipse import course
+
+SEED = 20261
+MARKS = """answers => answers.map(([task, text]) => {
+    const field = document.querySelector(`[data-task="${task}"]`);
+    field.value = text;
+    field.dispatchEvent(new Event("change"));
+    const mark = markOf(key, task, text);
+    return [field.closest("label").querySelector("output").textContent, mark];
+})"""
+
+
+@pytest.mark.parametrize("number", [3, 7, 8])
+def test_marks_in_the_browser_equal_those_of_python(
+    number: int, opened: Callable[..., Any]
+) -> None:
+    """A hundred answers about each end of an interval of marks, and texts that are no numbers."""
+    html = course.sheet(number, seed=SEED).html
+    assert "http" not in html.replace("http://www.w3.org", "")
+    page = opened(html)
+    draw = random.Random(number)
+    answers: list[tuple[str, str]] = []
+    for task in course.tasks(SEED):
+        if task.number.startswith(f"{number}."):
+            size = 10.0 ** draw.uniform(-2, 2)
+            values = [draw.choice((-1, 1)) * size * draw.uniform(0.5, 2) for _ in range(10)]
+            values += known(task.number)
+            answers += [(task.number, spelled(value, draw)) for value in values]
+    answers += [(f"{number}.1", text) for text in ("0x1", "1e999", "two", "1 2", "١", "Infinity")]
+    seen = page.evaluate(MARKS, answers)
+    assert len(answers) > 100
+    for (number_of, text), (shown, mark) in zip(answers, seen, strict=True):
+        rows = course.mark_table(as_file(number_of, text))
+        if rows.refused:
+            assert mark is None and shown == "This is no number."
+        else:
+            ours = rows.marks["x"][number_of]
+            assert mark == [ours.points, ours.sentence, ours.mistake], (number_of, text)
+            assert shown.endswith(ours.sentence)
+
+
+def as_file(task: str, text: str) -> Any:
+    from io import StringIO
+
+    return StringIO(f'student,seed,task,answer\nx,{SEED},{task},"{text}"')
+
+
+def known(number: str) -> list[float]:
+    """Numbers close to the ends of the intervals of marks."""
+    from rolling_ellipse.course import _marks
+
+    ends = _marks.key(number, SEED).ends
+    return [v for end in ends for v in (end, math.nextafter(end, 9e9), math.nextafter(end, -9e9))]
+
+
+def spelled(value: float, draw: random.Random) -> str:
+    text = draw.choice((repr, "{:.4g}".format, "{:.3e}".format))(value)
+    return draw.choice((text, text.replace(".", ","), f" {text} ", text.replace("-", "−", 1)))
+
+
+def test_a_page_has_every_formula_and_the_fields_of_its_tasks(opened: Callable[..., Any]) -> None:
+    """No source of a formula is left in the text, and nothing is wider than the page."""
+    for number in range(1, 10):
+        page = opened(course.sheet(number, seed=SEED).html)
+        page.evaluate("document.querySelectorAll('pre').forEach(code => code.remove())")
+        text = page.locator("body").inner_text()
+        assert not re.search(r"[$\\\0]|\*\*|^\||<[a-z]", text, re.MULTILINE), number
+        here = [t for t in course.tasks(SEED) if t.number.startswith(f"{number}.")]
+        assert page.locator("[data-task]").count() == len(here)
+        assert page.evaluate("document.documentElement.scrollWidth") <= 1000
+        source = next(ROOT.glob(f"docs/course/{number:02}_*.md")).read_text(encoding="utf-8")
+        source = re.sub(r"```.*?```|`[^`]+`", "", source, flags=re.DOTALL)
+        drawn = page.locator("svg path").count()
+        assert drawn >= len(re.findall(r"\$\$?[^$]+\$\$?", source)) > 5
