@@ -21,6 +21,8 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
 ]  # fmt: skip
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
+if "teacher" not in tags:  # noqa: F821 - of Sphinx: python -m sphinx -t teacher docs OUT
+    exclude_patterns.append("course/teacher.md")
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
 myst_dmath_double_inline = True  # formulas within a paragraph, as Jupyter shows them
 myst_html_meta = {"description": metadata("rolling-ellipse")["Summary"]}

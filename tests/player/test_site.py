@@ -47,6 +47,13 @@ def test_every_public_name_is_on_an_api_page(site: Path) -> None:
     assert not [n for n in names if not places.get(f"rolling_ellipse.{n}", "").startswith("api/")]
 
 
+def test_the_site_for_students_leaves_out_the_solutions(site: Path) -> None:
+    assert (site / "course/class.html").exists()
+    assert not [path for path in site.rglob("*") if path.stem == "teacher"]
+    found = (site / "searchindex.js").read_text(encoding="utf-8")
+    assert "course/class" in found and "course/teacher" not in found
+
+
 @pytest.fixture(scope="module")
 def pages(site: Path) -> dict[Path, str]:
     return {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
