@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from .._ask.check import readable
 from ._marks import Mark, mark
@@ -46,7 +47,7 @@ class MarkedTable:
     refused: dict[int, str]
 
 
-def mark_table(table: Any) -> MarkedTable:
+def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     """Return the marks for a table of answers, one in each line.
 
     Parameters
