@@ -13,9 +13,9 @@ at other times     ``motion.sol(times)`` for arrays, ``motion.at(t)`` for one ti
 when it happens    ``motion.when(theta=...)``, ``.when(event="impact")``, ``motion.events``, and
                    ``motion.events.table`` as arrays
 ask, not compute   `outcome`, `classify`, `certify`, `thresholds`, `required_friction`, `blow_to`
-draw               `plot`, `plot_strobe`, ..., also ``motion.plot()``, return what they drew, with
-                   ``.axes`` and ``.savefig("motion.png")``; ``rl.plot(motion).theta.axes`` has the
-                   angle over time; the help of `plot_energy` has a second axis in milliseconds
+draw               `plot`, `plot_curves`, `plot_strobe`, ..., also ``motion.plot()``, return what
+                   they drew, with ``.axes`` and ``.savefig("motion.png")``;
+                   ``rl.plot_curves(motions, "theta", "omega")`` draws the curves that you name
 film, page         `animate`: ``rl.animate(motion, "film.mp4")``, or .gif, .webm, .html; in
                    `explore` a hand strikes
 save               ``motion.save("motion.npz")`` and `load`; a scene as text or link:

@@ -31,6 +31,7 @@ from ._motion.status import WorkerError as WorkerError
 from ._motion.trajectory import Trajectory as Trajectory
 from ._pictures import plot as plot
 from ._pictures import plot_constraints as plot_constraints
+from ._pictures import plot_curves as plot_curves
 from ._pictures import plot_energy as plot_energy
 from ._pictures import plot_error as plot_error
 from ._pictures import plot_forces as plot_forces

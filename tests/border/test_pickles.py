@@ -164,8 +164,8 @@ def test_process_pools_return_motions_unchanged(how: str, tmp_path: Path) -> Non
 
 
 PICTURES = (
-    rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_forces,
-    rl.plot_paths, rl.plot_error,
+    rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_curves,
+    rl.plot_forces, rl.plot_paths, rl.plot_error,
 )  # fmt: skip
 
 

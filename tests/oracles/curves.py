@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 PICTURES = {
     "phase": rl.plot_phase,
+    "curves": rl.plot_curves,
     "forces": rl.plot_forces,
     "energy": rl.plot_energy,
     "constraints": rl.plot_constraints,

@@ -51,6 +51,27 @@ def test_curves_over_time_equal_the_trajectory(name: str, trajectory: rl.Traject
         assert np.array_equal(data(line)[1], getattr(at, quantity)), artist
 
 
+def test_each_quantity_has_a_panel_with_a_curve_of_each_motion(
+    several: list[rl.Trajectory],
+) -> None:
+    names = {"theta": "θ [rad]", "z": "z [m]", "turns": "turns", "normal_force": "N [N]"}
+    axes = Figure().subplots(4, sharex=True)
+    shown = rl.plot_curves(several, *names, ax=axes, labels=["one", "two", "three"], lw=3)
+    assert shown.axes == tuple(axes) and legend_of(shown.ax) == ["one", "two", "three"]
+    assert [ax.get_ylabel() for ax in axes] == [*names.values()]
+    assert [ax.get_xlabel() for ax in axes] == ["", "", "", "t [s]"]
+    for name, lines in zip(names, shown.lines, strict=True):
+        assert [line.get_linewidth() for line in lines] == [3] * 3
+        for line, motion in zip(lines, several, strict=True):
+            assert np.array_equal(data(line)[1], getattr(seen(motion, line), name))
+
+
+def test_lengths_of_a_small_body_have_figures_in_its_unit() -> None:
+    coin = rl.simulate(rl.Scene(0.012, 0.01, omega=9.0), 1.0)
+    ax = rl.plot_curves(coin, "contact_x", ax=new_axes()).ax
+    assert ax.get_ylabel() == "contact [mm]" and ax.yaxis.get_major_formatter()(0.01, 0) == "10"
+
+
 # ------------------------------------------------------------------------------- constraints
 
 

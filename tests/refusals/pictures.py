@@ -1,5 +1,6 @@
 """Refusals of pictures, films and the explorer."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -31,8 +32,8 @@ FILM: dict[str, Any] = {"width": 160, "dpi": 50}
 
 
 CURVES: list[Any] = [
-    rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
-    rl.plot_error,
+    rl.plot_paths, rl.plot_phase, rl.plot_curves, rl.plot_forces, rl.plot_energy,
+    rl.plot_constraints, rl.plot_error,
 ]  # fmt: skip
 PAIRS = (rl.plot_forces, rl.plot_constraints)  # pictures with two axes
 
@@ -128,6 +129,8 @@ REFUSALS: list[Row] = [
     *wrong(rl.plot_paths, {"trajectories": [MOTION, LATER]},
            labels=[["a"], ["a", "b", "c"], "ab", [1, 2], 3],
            colors=["red", ["red"], ["red", "no colour"], 3, [1, 2]]),
+    *(("quantities", lambda _, name=name: rl.plot_curves(MOTION, name)) for name in ANYTHING),
+    *wrong(partial(rl.plot_curves, MOTION, "x", "z"), {}, ax=[axes(1), axes(3)]),
     *wrong(rl.plot_energy, {"trajectories": MOTION}, kind=ANYTHING),
     *wrong(rl.plot_error, {"trajectories": MOTION}, quantity=ANYTHING, reference=ANYTHING),
     ("reference", lambda _: rl.plot_error(LATER, reference=MOTION)),

@@ -142,7 +142,7 @@ AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
         ("their set(xlim=...)", lambda: AT_REST.plot_forces(xlim=(0, 1))),
         ("did you mean color?", lambda: AT_REST.plot_phase(colour="r")),
         ("no artist has", lambda: AT_REST.plot_paths(glow=True)),
-        ("plot(motion.t, motion.omega)", lambda: AT_REST.plot("omega")),
+        ("plot_curves(motion, 'omega')", lambda: AT_REST.plot("omega")),
         ("mean stronge?", lambda: ours.impacts.collide(**HIT, a=1, b=1, law="Strong")),
     ],
 )

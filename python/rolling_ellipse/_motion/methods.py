@@ -14,8 +14,8 @@ METHODS = {
     "_motion.export.files": ("save", "load"),
     "_motion.export.tables": ("to_dataframe", "to_xarray"),
     "_pictures": (
-        "plot", "plot_constraints", "plot_energy", "plot_error", "plot_forces", "plot_paths",
-        "plot_phase", "plot_strobe",
+        "plot", "plot_constraints", "plot_curves", "plot_energy", "plot_error", "plot_forces",
+        "plot_paths", "plot_phase", "plot_strobe",
     ),
     "_player": ("animate",),
 }  # fmt: skip

@@ -1,6 +1,7 @@
 """Pictures and films: everything that needs matplotlib, loaded on first use."""
 
 from .animation import animate as animate
+from .curves import plot_curves as plot_curves
 from .errors import plot_constraints as plot_constraints
 from .errors import plot_energy as plot_energy
 from .errors import plot_error as plot_error

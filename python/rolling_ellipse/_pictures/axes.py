@@ -163,15 +163,19 @@ def require_axes(ax: Any) -> Axes:
     return ax
 
 
-def panels_of(ax: Axes | Sequence[Axes] | None, figsize: Any) -> list[Axes]:
-    """Return the one or two Axes given, or two of a new pyplot figure that share a time axis."""
+def panels_of(
+    ax: Axes | Sequence[Axes] | None, figsize: Any, counts: Sequence[int] = (1, 2)
+) -> list[Axes]:
+    """Return the Axes given, or the most of a new pyplot figure, which share a time axis."""
     if ax is None:
-        return list(_new_figure((7, 5), figsize).subplots(2, sharex=True))
+        rows = counts[-1]
+        figure = _new_figure((7, 1.8 + 1.6 * rows), figsize)
+        return list(figure.subplots(rows, sharex=True, squeeze=False).flat)
     panels = listed(ax)
-    wanted = "ax must be one matplotlib Axes or two"
+    wanted = f"ax must be {' or '.join(map(str, counts))} matplotlib Axes"
     if not all(isinstance(panel, Axes) for panel in panels):
         raise TypeError(f"{wanted}, got {shown(ax)}")
-    if len(panels) not in (1, 2):
+    if len(panels) not in counts:
         raise ValueError(f"{wanted}, got {len(panels)} of them")
     return panels
 
@@ -215,7 +219,7 @@ def picture_file(path: Any) -> str | None:
     if any(name == each.name for each in QUANTITIES):
         raise ValueError(
             f"path must name a file such as '{name}.png', got {name!r}, which is a quantity: alone "
-            f"it is drawn by matplotlib's plot(motion.t, motion.{name})"
+            f"it is drawn by plot_curves(motion, {name!r})"
         )
     return name
 

@@ -14,23 +14,20 @@ from matplotlib.lines import Line2D
 from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
 from .._motion.constraints import constraint_errors, energy_error, losses, may_lose_energy, worst
-from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .axes import Artists, axes_of, name_curves, panels_of, picture, some_of
 from .comparison import MARKERS, Comparison, Style
 from .palette import palette_of
-from .panels import DASHES, dot, draw_curves, finish
+from .panels import DASHES, dot, draw_curves, finish, label_of
 from .sampling import are_ranges, for_dots, over_time, ranges
 
 KINDS = ("energies", "error", "losses")
 ENERGIES = {"energy": "total", "kinetic_energy": "kinetic", "potential_energy": "potential"}
 LOSSES = {"rolling": "by rolling", "sliding": "by sliding", "impacts": "by impacts"}
-QUANTITIES = {  # quantities and their symbols
-    "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
-    "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
-    "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
-}  # fmt: skip
-_UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
+QUANTITIES = (
+    "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
+    "friction_force", "energy", "kinetic_energy", "potential_energy",
+)  # fmt: skip
 _ROUNDING = 1e-13  # the axis of errors reaches ten times this or more, so that rounding looks small
 _LEAST = 1e-17  # lower end of the axis of errors
 
@@ -274,7 +271,7 @@ def plot_error(
     >>> errors = rl.plot_error(runs, labels=[f"step {step} s" for step in steps])
     >>> plt.show()
     """
-    quantity = choice("quantity", quantity, tuple(QUANTITIES))
+    quantity = choice("quantity", quantity, QUANTITIES)
     compared = Comparison(trajectories, labels, colors, ax, options)
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
     compared.sampled(over_time)
@@ -284,7 +281,7 @@ def plot_error(
         for (motion, style), right in zip(compared, references, strict=True)
     )
     none = f"no error beside the {'exact motion' if reference is None else 'reference'}"
-    label = f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}"
+    label = f"error of {label_of(quantity)}"
     errors = draw_errors(ax, compared, missed, label, none, dashed=True)
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
     return Error((ax,), errors, references, marks)

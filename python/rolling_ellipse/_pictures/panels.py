@@ -19,6 +19,7 @@ from matplotlib.lines import Line2D
 from .._ask.check import FloatArray
 from .._core import EventKind, Mode
 from .._motion.events import Event
+from .._motion.quantities import QUANTITIES
 from .._motion.status import Status
 from .._motion.trajectory import Trajectory
 from .axes import name_curves, title_beside_legend
@@ -35,8 +36,19 @@ _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, a
     Mode.FLIGHT: (0.1, 0.1, ""),
     Mode.REST: (0.02, 0.28, "..."),
 }
+_UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in QUANTITIES}
+_SYMBOLS = {
+    "theta": "θ", "omega": "ω", "omega_dot": "dω/dt", "psi": "ψ", "contact_x": "contact",
+    "normal_force": "N", "friction_force": "F", "friction_needed": "F/N",
+}  # fmt: skip
 _FEW_EVENTS = 8  # more of them are counted, not named
 _ROW = 0.05  # height of the row of one motion, as a share of the axes' height
+
+
+def label_of(quantity: str) -> str:
+    """Return the symbol of a quantity, or its name, with its unit."""
+    name = quantity if quantity.endswith("dot") else quantity.replace("_", " ")
+    return f"{_SYMBOLS.get(quantity, name)}{_UNITS.get(quantity, '')}"
 
 
 def dot(t: FloatArray) -> dict[str, Any]:
@@ -192,12 +204,13 @@ def entries_of(marks: Sequence[Artist]) -> list[Artist]:
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Style one panel or two; the first gets the title and a legend of `handles` and marks."""
+    """Style panels; the first gets the title and a legend of `handles` and marks."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])
-    if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
-        panels[0].set_xlabel("")
+    if len(panels) > 1 and panels[0].get_shared_x_axes().joined(panels[0], panels[-1]):
+        for panel in panels[:-1]:
+            panel.set_xlabel("")
         panels[0].figure.align_ylabels(panels)
     name_curves(panels[0], [*handles, *entries_of(marks)])
     title_beside_legend(panels[0], note_of(shown))
