@@ -42,7 +42,14 @@ def use(folder: Path) -> list[float]:
     rolls.save(folder / "motion.npz")
     loaded = rl.load(folder / "motion.npz") == rolls and rl.Scene.from_json(body.to_json()) == body
     given = rl.Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
-    pictures = [rl.plot(motion), motion.plot_phase(), rl.plot_phase_map(resolution=4), fit.plot()]
+    pictures = [motion.plot_curves("theta", "omega"), rl.ends([body], 1.0).plot("x")]
+    pictures = [
+        *pictures,
+        rl.plot(motion),
+        motion.plot_phase(),
+        rl.plot_phase_map(resolution=4),
+        fit.plot(),
+    ]
     pages = [rl.animate(rolls).figure, rl.explore(body), rl.examples(folder / "examples")]
     marked, known = course.mark("3.2", 1.9).right, benchmark.run(lambda p, t, s: p.exact(t))
     course.sheet(1, seed=7).save(folder / "sheet.html")

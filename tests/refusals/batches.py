@@ -14,7 +14,7 @@ from oracles.files import put_together, taken_apart
 from rolling_ellipse import Impulse, Scene, scenes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
 
-from refusals import Row, wrong
+from refusals import ANYTHING, Row, wrong
 from refusals.functions import WORKERS
 
 SCENE = Scene(2.0, 1.0, omega=1.0)
@@ -179,6 +179,9 @@ REFUSALS: list[Row] = [
            max_events=[-1, 0.5, "x"], rest_speed=[-1.0, "x"], workers=WORKERS,
            blows=[3, [(2.0, Impulse())]]),
     ("blows", many([], blows=[(-1.0, Impulse())])),
+    *wrong(rl.ends(MIXED, 1.0).plot, {}, quantity=[*ANYTHING, "energy"], path=["", "theta"]),
+    ("ends", lambda _: rl.ends({"a": 2.0, "b": 1.0}, 1.0).plot()),
+    ("ends", lambda _: rl.ends([], 1.0).plot()),
     ("arguments", lambda _: rl.ends(MANY, [1.0, 2.0, 3.0])),
     ("t", lambda _: rl.ends(iter(MIXED), [1.0, 2.0, 3.0])),
     (rl.WorkerError, lambda _: rl.ends(MANY, 1.0, workers=Broken(1))),

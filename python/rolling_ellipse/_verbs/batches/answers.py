@@ -57,7 +57,7 @@ HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
 _LOST = max(STATUSES) + 1  # ending code of a scene whose worker was lost
 # In code order, starting with REFUSED
 _ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
-_UNITS = SCENE_UNITS | _core.FIELDS["Impulse"]
+_UNITS = SCENE_UNITS | _core.FIELDS["Impulse"] | {TIME.name: TIME.unit}
 
 
 @dataclass(frozen=True)
@@ -325,16 +325,24 @@ def dataset_of(
     dataset: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
     for name, array in values.items():
         dataset[name] = dims, array, attributes(_KNOWN[name]) if name in _KNOWN else {}
+    for name, along, grid, unit in coordinates_of(of, scenes, **more):
+        if along:
+            dataset.coords[name] = along, grid, {"units": unit}
+        elif grid.size and not np.isnan(grid):
+            dataset.attrs[name] = float(grid)
+    return dataset
+
+
+def coordinates_of(
+    of: Any, scenes: FloatArray, **more: Any
+) -> Iterator[tuple[str, list[str], FloatArray, str]]:
+    """Yield the name of each argument, the axes along which it varies, its values and its unit."""
     columns = dict(zip((*NAMES, *BLOW), scenes.T, strict=True)) | more
     for argument, column in columns.items():
         name, grid = name_of(argument), column.reshape(of.status.shape)
         along = [axis for k, axis in enumerate(of.axes) if axis == name or _varies(grid, k)]
-        if along:
-            place = tuple(slice(None) if axis in along else 0 for axis in of.axes)
-            dataset.coords[name] = along, grid[place], {"units": _UNITS.get(argument) or "1"}
-        elif grid.size and not np.isnan(grid.flat[0]):
-            dataset.attrs[name] = float(grid.flat[0])
-    return dataset
+        place = tuple(slice(None) if axis in along else 0 for axis in of.axes)
+        yield name, along, grid[place] if grid.size else grid, _UNITS.get(argument) or "1"
 
 
 def _varies(grid: FloatArray, axis: int) -> bool:

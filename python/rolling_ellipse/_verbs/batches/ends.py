@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ... import _core
-from ..._ask.check import FloatArray, array, copied, require
+from ..._ask.check import FloatArray, array, choice, copied, require
 from ..._ask.habits import understood
 from ..._ask.impulse import Impulse
 from ..._ask.progress import reporting
@@ -21,7 +21,7 @@ from ..._ask.settings import DEFAULTS, Settings
 from ..._motion.status import IntegrationError, WorkerError
 from ..._motion.trajectory import Trajectory
 from ..workers import Task
-from .answers import HELD, counts_of, dataset_of, endings_of, solve
+from .answers import HELD, coordinates_of, counts_of, dataset_of, endings_of, solve
 from .asked import WIDTH, Chunk, SceneGrid, asked, scene_of
 from .many import parts
 
@@ -29,7 +29,10 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
+    from ..._pictures.ends import EndsChart
+
 Codes = npt.NDArray[np.int32]
+RESULTS = (*STATE_UNITS, "mode", "events", "first")  # arrays of Ends by name
 _ENDLESS = "finite [s], since most motions go on for ever and have no last state"
 _NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((4, 0), np.int32)}
 
@@ -102,10 +105,8 @@ class Ends(FieldsOnly):
         >>> data.x.sel(omega0=4.0).values.round(3)
         array([7.271, 7.269, 7.269])
         """
-        scenes = self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
-        names = (*STATE_UNITS, "mode", "events", "first")
-        values = {name: getattr(self, name) for name in names}
-        return dataset_of(self, self.axes, values, scenes, t=self.t)
+        values = {name: getattr(self, name) for name in RESULTS}
+        return dataset_of(self, self.axes, values, self._table(), t=self.t)
 
     def to_dataframe(self) -> DataFrame:
         """Return `to_xarray` as a pandas DataFrame: one row per scene.
@@ -121,6 +122,46 @@ class Ends(FieldsOnly):
         """
         found = self.to_xarray()
         return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
+
+    def plot(
+        self, quantity: str = "theta", path: Any = None, *, ax: Any = None, figsize: Any = None
+    ) -> EndsChart:
+        """Draw one quantity over the one or two axes of the scenes, and return the artists.
+
+        Over one axis it is a line with dots, over two a map of colours, with the last axis
+        horizontal. Where a motion ended before its time, nothing is drawn.
+
+        Parameters
+        ----------
+        quantity : str
+            "theta", "omega", "x", "z", "x_dot", "z_dot", "mode", "events" or "first".
+        path, ax, figsize
+            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_energy`, with their errors.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> omega, friction = np.linspace(1.0, 6.0, 26)[:, None], np.linspace(0.1, 1.0, 19)
+        >>> last = rl.ends({"a": 2.0, "b": 1.0, "omega": omega, "friction": friction}, 2.0)
+        >>> chart = last.plot("events")
+        >>> plt.show()
+        """
+        from ..._pictures.ends import draw_ends
+
+        return draw_ends(self, choice("quantity", quantity, RESULTS), path, ax, figsize)
+
+    def _table(self) -> FloatArray:
+        return self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
+
+    def _coordinates(self) -> list[tuple[str, FloatArray]]:
+        """Return a label and the values of the argument of each axis; a list is numbered."""
+        known = {
+            name: (name if unit == "1" else f"{name} [{unit}]", values)
+            for name, along, values, unit in coordinates_of(self, self._table(), t=self.t)
+            if along == [name]
+        }
+        sizes = zip(self.axes, self.theta.shape, strict=True)
+        return [known.get(axis, (axis, np.arange(float(size)))) for axis, size in sizes]
 
     def __repr__(self) -> str:
         return f"<Ends of shape {self.theta.shape}: {counts_of(self.status)}>"
