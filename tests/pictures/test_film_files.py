@@ -1,5 +1,6 @@
 """A picture or film that fails leaves no file behind; films have any valid name and writer."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -97,4 +98,38 @@ def test_a_body_too_far_away_to_be_seen_is_rejected(draw: Any) -> None:
         draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
     assert not plt.get_fignums()
     draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
+    plt.close("all")
+
+
+class Place:
+    """An os.PathLike that is no pathlib.Path."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __fspath__(self) -> str:
+        return str(self.path)
+
+
+def test_all_that_write_files_take_text_and_any_path(tmp_path: Path) -> None:
+    motion = rl.simulate(rl.scenes.report, np.linspace(0.1, 1.0, 12))
+    scores = rl.benchmark.run(lambda p, t, s: p.exact(t), problems="roll.rock", ladder=[1.0])
+    fit = rl.fit_motion(motion.t, motion.x, scene=motion.scene, free=("theta",), sigma=1e-3)
+    race = rl.work_precision(motion.scene, 0.5, methods=["flow"], rounds=1, max_seconds=0.1)
+    film = rl.animate(motion, width=160, dpi=50.0, t_end=0.1)
+    page = rl.explore(motion.scene)
+    writers: dict[str, Callable[[Any], object]] = {
+        "plot.png": motion.plot, "strobe.svg": motion.plot_strobe().savefig,
+        "ends.png": lambda path: rl.ends([motion.scene], 1.0).plot("x", path),
+        "scores.png": scores.plot, "fit.png": fit.plot, "race.png": race.plot().savefig,
+        "roll.gif": lambda path: motion.animate(path, width=160, dpi=50.0, t_end=0.1),
+        "film.gif": film.save, "frame.png": lambda path: film.frame(0.0, path),
+        "a.html": page.to_html, "b.html": page.save, "folder": rl.benchmark.export,
+        "notebooks": rl.examples, "race.json": race.save, "motion.npz": motion.save,
+    }  # fmt: skip
+    for name, write in writers.items():
+        for kind in (str, Place):
+            path = tmp_path / f"{kind.__name__}_{name}"
+            write(kind(path))
+            assert path.exists(), name
     plt.close("all")
