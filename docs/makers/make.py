@@ -8,6 +8,7 @@ Boost's headers; it takes about an hour, and all results then come from one comm
     engines    docs/data/engines.json, by the adapters of rolling_ellipse.benchmark
     added      scores of problems that the file lacks; all other scores stay
     pictures   docs/*.png and *.gif, by pictures.py; paper/*.png, by paper/figures.py
+    gallery    docs/gallery/*.png, by the code of docs/gallery.md
     problems   docs/problems/* and the table in docs/benchmark.md, by problems.py
     notebooks  the outputs of all notebooks; 06 needs the races and the peers
     text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
@@ -135,6 +136,10 @@ def pictures(quick: bool) -> None:
     run(ROOT / "paper" / "figures.py")
 
 
+def gallery(quick: bool) -> None:
+    run(HERE / "gallery.py")
+
+
 def problems(quick: bool) -> None:
     import problems
 
@@ -160,8 +165,8 @@ def notebooks(quick: bool) -> None:
             resources = {"metadata": {"path": folder}}
             NotebookClient(notebook, None, resources=resources, timeout=None).execute()
         notebook.metadata = metadata
-        for cell in notebook.cells:
-            cell.metadata = {}
+        for cell in notebook.cells:  # tags say what the site folds
+            cell.metadata = {"tags": cell.metadata.tags} if "tags" in cell.metadata else {}
         nbformat.write(notebook, path)
 
 
@@ -179,7 +184,7 @@ def dae(quick: bool) -> None:
 
 STEPS: dict[str, Callable[[bool], None]] = {
     step.__name__: step
-    for step in (races, batches, engines, added, pictures, problems, notebooks, text, dae)
+    for step in (races, batches, engines, added, pictures, gallery, problems, notebooks, text, dae)
 }
 
 # ------------------------------------------------------------------------------ marked parts

@@ -27,6 +27,18 @@ PAGES = {  # with the files that their code writes
     "docs/speed.md": set(),
     "docs/constraints.md": set(),
     "docs/film.md": set(),
+    "docs/recipes.md": {
+        "motion.npz",
+        "motion.csv",
+        "plain.csv",
+        "mine.png",
+        "slow.html",
+        "slow.gif",
+        "still.png",
+        "forces.pdf",
+        "strike.html",
+        "motions",
+    },
     "docs/embed.md": {"roll.html", "schlag.html", "roll.gif", "motion.png"},
 }
 

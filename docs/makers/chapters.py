@@ -1,0 +1,40 @@
+"""Split the copy of a notebook into chapters: the site calls `split`, since one page is too long.
+
+The notebook itself stays one file. Its page on the site keeps what is before the first chapter and
+the last section, and lists the chapters in between, each a page of its own.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+Cell = dict[str, Any]
+
+
+def split(path: Path) -> None:
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    cells: list[Cell] = notebook["cells"]
+    starts = [k for k, cell in enumerate(cells) if source(cell).startswith("## ")]
+    names = [f"{path.stem}_{k}" for k in range(1, len(starts))]
+    for name, first, end in zip(names, starts[:-1], starts[1:], strict=True):
+        chapter = notebook | {"cells": [raised(cell) for cell in cells[first:end]]}
+        write(path.with_name(f"{name}.ipynb"), chapter)
+    listed = "\n".join(["## Chapters", "", "```{toctree}", ":maxdepth: 2", "", *names, "```"])
+    links: Cell = {"cell_type": "markdown", "id": "chapters", "metadata": {}, "source": listed}
+    write(path, notebook | {"cells": [*cells[: starts[0]], links, *cells[starts[-1] :]]})
+
+
+def source(cell: Cell) -> str:
+    return "".join(cell["source"]) if cell["cell_type"] == "markdown" else ""
+
+
+def raised(cell: Cell) -> Cell:
+    """A cell of a chapter, whose headings are one level higher."""
+    if cell["cell_type"] != "markdown":
+        return cell
+    return cell | {"source": re.sub("^##", "#", source(cell), flags=re.MULTILINE)}
+
+
+def write(path: Path, notebook: dict[str, Any]) -> None:
+    path.write_text(json.dumps(notebook, ensure_ascii=False), encoding="utf-8")
