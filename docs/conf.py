@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 HERE = Path(__file__).parent
 rmtree(HERE / "notebooks", ignore_errors=True)  # copies, which git ignores
 copytree(HERE.parent / "notebooks", HERE / "notebooks")
+run_path(str(HERE / "makers" / "chapters.py"))["split"](HERE / "notebooks" / "02_physics.ipynb")
 
 project, language = "rolling_ellipse", "en"
 author = copyright = "The rolling_ellipse developers"
@@ -23,6 +24,7 @@ extensions = [
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
 if "teacher" not in tags:  # noqa: F821 - of Sphinx: python -m sphinx -t teacher docs OUT
     exclude_patterns.append("course/teacher.md")
+nb_code_prompt_show, nb_code_prompt_hide = "Show the code", "Hide the code"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
 myst_dmath_double_inline = True  # formulas within a paragraph, as Jupyter shows them
 myst_html_meta = {"description": metadata("rolling-ellipse")["Summary"]}

@@ -10,6 +10,7 @@ from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
 LIMIT = 1_500_000  # bytes; a larger file is slow to open on the web
+FOLDED = {"tags": ["hide-input"]}  # on the site; the code is behind a line to click on
 WIDTH = 105  # characters of a JupyterLab cell in a window of 1280 pixels
 
 
@@ -34,14 +35,23 @@ def test_a_notebook_has_no_traces_of_a_particular_machine(path: Path) -> None:
     notebook = json.loads(path.read_text(encoding="utf-8"))
     nbformat.validate(notebook)
     assert notebook["metadata"]["kernelspec"]["name"] == "python3"
-    assert not any(cell["metadata"] for cell in notebook["cells"])
+    assert all(cell["metadata"] in ({}, FOLDED) for cell in notebook["cells"])
     lines = [line for cell in code_cells(path) for line in cell.source.splitlines()]
     assert max(map(len, lines)) <= WIDTH
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_ends_in_an_assertion(path: Path) -> None:
-    assert "assert " in code_cells(path)[-1].source
+def test_a_notebook_ends_in_an_assertion_that_the_site_folds(path: Path) -> None:
+    last = code_cells(path)[-1]
+    assert "assert " in last.source and last.metadata == FOLDED
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_page_of_the_site_has_four_words_for_each_line_of_code_that_it_shows(path: Path) -> None:
+    cells = nbformat.read(path, 4).cells
+    words = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
+    shown = [cell.source for cell in code_cells(path) if cell.metadata != FOLDED]
+    assert sum(len(text.splitlines()) for text in shown) <= words / 4
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
