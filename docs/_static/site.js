@@ -1,3 +1,10 @@
+// A frame of a page with a motion is as high as the page says.
+addEventListener("message", ({ data, source }) => {
+  for (const frame of document.querySelectorAll("iframe"))
+    if (frame.contentWindow === source && data?.rollingEllipse) // 2 px for its border
+      frame.style.height = `${data.rollingEllipse.height + 2}px`;
+});
+
 // What scrolls can be scrolled by keys, and the two sidebars have names of their own.
 addEventListener("DOMContentLoaded", () => {
   for (const box of document.querySelectorAll("pre, .table-wrapper, mjx-container[display=true]"))

@@ -89,7 +89,7 @@ def test_the_reference_tables_have_the_stated_number_of_motions() -> None:
 def test_the_readme_is_short_and_its_links_work() -> None:
     linked = re.findall(r"\]\((?:https://.+?/(?:raw|blob)/main/)?([^)#]+)", README)
     assert len(linked) > 20 and all((ROOT / path).exists() for path in linked)
-    assert len(README.splitlines()) <= 129
+    assert len(README.splitlines()) <= 132
 
 
 def test_the_paper_has_its_sections_a_reference_for_each_name_and_the_scores_of_the_data() -> None:

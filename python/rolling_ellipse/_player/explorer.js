@@ -174,7 +174,7 @@ export class Explorer extends Player {
   }
 
   dragged({ offsetX, offsetY }) {
-    const { x, z } = this.strip.motion.at(0), { clientWidth } = this.box;
+    const { x, z } = this.strip.motion.at(0), { clientWidth } = this.canvas;
     const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
     this.change({ d: within(this.axis(0), px - x), F: within(this.axis(1), this.strength(pz - z)) });
   }
@@ -327,7 +327,7 @@ export class Explorer extends Player {
   }
 
   paint() {
-    const { clientWidth: width } = this.box, begun = performance.now();
+    const { clientWidth: width } = this.canvas, begun = performance.now();
     if (!width || !this.map) return;
     const budget = BUDGETS[this.stale ? 1 : 0];
     if (this.stale) {

@@ -197,7 +197,7 @@ export class Player {
     const bodies = this.film.strips.map((strip, i) => {
       const at = strip.motion.at(this.now), { columns = 1 } = this.film;
       const [px, py] = this.views[i].at(at.x, at.z);
-      return { ...at, px: px + (columns > 1 ? (i / columns) * this.box.clientWidth : 0), py };
+      return { ...at, px: px + (columns > 1 ? (i / columns) * this.canvas.clientWidth : 0), py };
     });
     return { t: this.now, playing: this.playing, bodies };
   }
@@ -214,7 +214,7 @@ export class Player {
 
   paint() {
     const { film, canvas, box } = this;
-    const width = box.clientWidth, height = Math.round(width * film.shape);
+    const width = canvas.clientWidth, height = Math.round(width * film.shape);
     if (!width) return;
     canvas.style.height = `${height}px`;
     const ink = sized(canvas, height);
