@@ -47,6 +47,7 @@ html_theme, html_title, pygments_dark_style = "furo", project, "github-dark"
 html_logo = html_favicon = "_static/logo.svg"
 templates_path, html_static_path = ["_templates"], ["_static"]
 html_css_files, html_js_files = ["site.css"], ["site.js"]
+html_search_scorer = str(HERE / "scorer.js")
 html_show_search_summary = False  # browsers forbid it to read pages from files
 
 

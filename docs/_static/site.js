@@ -1,8 +1,8 @@
 // A frame of a page with a motion is as high as the page says.
 addEventListener("message", ({ data, source }) => {
   for (const frame of document.querySelectorAll("iframe"))
-    if (frame.contentWindow === source && data?.rollingEllipse) // 2 px for its border
-      frame.style.height = `${data.rollingEllipse.height + 2}px`;
+    if (frame.contentWindow === source && data?.rollingEllipse)
+      frame.style.height = `${data.rollingEllipse.height}px`;
 });
 
 // What scrolls can be scrolled by keys, and the two sidebars have names of their own.

@@ -16,6 +16,13 @@ NOWHERE = dict.fromkeys(("http_proxy", "https_proxy", "all_proxy"), "http://127.
 ADDRESS = re.compile(r"<(?:script|img|link|iframe|source)\b[^>]*?(?:src|href)=\"(?:https?:)?//")
 FORMULA = r"<(span|div) class=\"math\b.*?</\1>"
 CODE = r"<(script|style|pre|code)\b.*?</\1>"
+ASKED = {  # words for the search, and the page that must come first
+    "friction": "start", "default friction": "start", "restitution": "start",
+    "degrees": "recipes", "csv": "recipes", "parquet": "recipes", "save": "recipes",
+    "load": "recipes", "second blow": "recipes", "slow motion": "recipes", "jupyter": "recipes",
+    "marimo": "recipes", "latex": "recipes", "cluster": "recipes", "own axes": "recipes",
+    "simulate": "api/motion", "plot_curves": "api/pictures",
+}  # fmt: skip
 WIDE = """[...document.querySelectorAll("mjx-container[display=true]")]
     .filter(box => box.scrollWidth > box.clientWidth + 1).map(box => box.textContent)"""
 
@@ -76,7 +83,8 @@ def test_no_page_shows_a_path_on_the_build_machine(pages: dict[Path, str]) -> No
 
 
 def test_no_line_of_code_or_output_is_cut_off(site: Path, chromium: Any) -> None:
-    names = ("architecture", "api/benchmark", "api/pictures", "notebooks/06_speed_and_accuracy")
+    names = ("architecture", "api/benchmark", "api/pictures", "notebooks/06_speed_and_accuracy",
+             "gallery", "recipes")  # fmt: skip
     wider = (
         "[...document.querySelectorAll('article pre')].filter(e => e.scrollWidth > e.clientWidth)"
     )
@@ -93,6 +101,38 @@ def test_no_page_links_to_its_own_title(pages: dict[Path, str]) -> None:
     for page, html in pages.items():
         for title in re.findall(r'<div class="title">(.*?)</div>', html):
             assert f"<title>{title} - " not in html, page
+
+
+def test_each_formula_is_in_one_chapter_whose_set_up_is_folded(pages: dict[Path, str]) -> None:
+    chapters = {page.name: text for page, text in pages.items() if "02_physics_" in page.name}
+    found = [int(n) for text in chapters.values() for n in re.findall(r"<h2>\((\d+)\)", text)]
+    assert sorted(found) == list(range(1, 67)) and len(chapters) > 9
+    assert all('hide above-input">' in text for text in chapters.values())
+
+
+def test_a_word_leads_first_to_the_page_that_answers(site: Path, chromium: Any) -> None:
+    page = chromium.new_page()
+    first = "document.querySelector('#search-results li a')?.getAttribute('href')"
+    for words, wanted in ASKED.items():
+        page.goto((site / "search.html").as_uri() + f"?q={words.replace(' ', '+')}")
+        page.get_by_text("Search finished").wait_for()
+        page.wait_for_function(first)
+        assert page.evaluate(first).partition(".html")[0] == wanted, words
+    page.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_live_frame_takes_the_height_that_its_page_needs(
+    site: Path, chromium: Any, width: int
+) -> None:
+    page = chromium.new_page(viewport={"width": width, "height": 800})
+    page.goto((site / "explore.html").as_uri())
+    inner = page.frames[1]
+    inner.locator(".rolling-ellipse .map").wait_for(state="attached")
+    needed = inner.evaluate("document.body.offsetHeight")
+    page.wait_for_function(f"document.querySelector('iframe').clientHeight === {needed}")
+    assert needed > 820 and inner.evaluate("document.documentElement.scrollHeight") == needed
+    page.close()
 
 
 def test_formulas_fit_and_films_and_search_work_from_files(

@@ -18,7 +18,10 @@ PROSE = {
     name: (ROOT / name).read_text(encoding="utf-8")
     for name in (
         "README.md",
-        *(f"docs/{page}.md" for page in ("index", "start", "speed", "constraints", "many", "benchmark")),
+        *(
+            f"docs/{page}.md"
+            for page in ("index", "start", "speed", "constraints", "many", "benchmark")
+        ),
     )
 }
 RACE = DATA / "peers_R_10.37.json"
