@@ -327,6 +327,23 @@ def test_a_drag_moves_the_blow_and_shows_its_effect(opened: Opened, name: str) -
         assert over.max() * 168 / np.ptp([-0.5, 1.5, *true]) < 1
 
 
+def test_in_a_wide_cell_map_and_curves_are_beside_the_film(opened: Opened) -> None:
+    """The whole is no taller than a cell of marimo, 610 pixels; the hand is where it is seen."""
+    fragment = rl.explore(rl.scenes.report, t_end=1.0)._repr_html_()
+    size = {"width": 1132, "height": 800}  # 1100 without the margins of the page
+    page = opened(document("", fragment), viewport=size, reduced_motion="reduce")
+    stage, chart, field, whole = (
+        page.locator(name).first.bounding_box()
+        for name in (".player > canvas", ".map", ".plot", ".rolling-ellipse")
+    )
+    assert stage["x"] + stage["width"] <= chart["x"] == field["x"] < field["x"] + field["width"]
+    assert abs(chart["y"] - stage["y"]) < 10 and whole["height"] <= 610
+    before = blow(page)
+    drag(page, (-60, 20), steps=4)
+    page.mouse.up()
+    assert blow(page)[0] < before[0] and blow(page)[1] < before[1]
+
+
 def test_the_map_the_sliders_and_the_text_follow_the_blow(opened: Opened) -> None:
     page = opened(document("", rl.explore(rl.scenes.report)._repr_html_()))
     box = page.locator(".map canvas").bounding_box()

@@ -60,7 +60,7 @@ KINDS = {
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",
-                       "tests/player/test_site.py")),
+                       "tests/player/test_site.py", "tests/project/test_gallery.py")),
     "a verb": Kind(of_room("_verbs"), (
         "python/rolling_ellipse/__init__.py", "tests/project/test_docstrings.py",
         "tests/border/test_layout.py",
