@@ -24,7 +24,8 @@ table              ``motion.to_dataframe()``, which has ``.to_csv``; ``motion.to
 grid of scenes     `simulate_many`, with ``returns="theta"`` as arrays over the grid; `ends` keeps
                    only last states, `load_many` reads a folder
 fit to a film      `read_track`, `fit_motion`; to measured impacts: `impacts`
-derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`
+derivatives        ``motion.sensitivity(wrt="omega")``, `flow_jacobian`; how fast changes grow,
+                   and until when doubles know a chaotic motion: ``motion.growth()``
 your own solver    `rolling_equation`: the ODE; `flow`: its solution; `work_precision`: a race;
                    ``Trajectory.from_arrays`` takes your arrays, to draw, film or compare them
                    (`plot_error`)

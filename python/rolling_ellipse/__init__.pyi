@@ -23,6 +23,7 @@ from ._motion.constraints import kinematics as kinematics
 from ._motion.event_table import EventTable as EventTable
 from ._motion.events import Event as Event
 from ._motion.export import load as load
+from ._motion.growth import Growth as Growth
 from ._motion.samples import Sample as Sample
 from ._motion.sensitivity import Sensitivity as Sensitivity
 from ._motion.status import IntegrationError as IntegrationError

@@ -39,6 +39,7 @@ def use(folder: Path) -> list[float]:
     fit = rl.fit_motion(*track, scene=motion.scene, free=("omega",), sigma=1e-3)
     race = rl.work_precision(body, 0.5, methods=["flow"], rounds=1, max_seconds=0.1)
     growth = motion.sensitivity(wrt="omega").state[-1].sum() + rolls.sol(0.3).x[0] + rolls.at(0.3).x
+    grown: rl.Growth = motion.growth(wrt="theta")
     rolls.save(folder / "motion.npz")
     loaded = rl.load(folder / "motion.npz") == rolls and rl.Scene.from_json(body.to_json()) == body
     given = rl.Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
@@ -74,4 +75,4 @@ def use(folder: Path) -> list[float]:
         of_class,
     )
     return [*tips, *last, theta, x, slope, off, rate, needed, growth, height, *struck, rows,
-            grid["x"].sum(), given.z[-1]]  # fmt: skip
+            grid["x"].sum(), given.z[-1], *grown.exponents]  # fmt: skip

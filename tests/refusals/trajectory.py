@@ -79,6 +79,13 @@ REFUSALS: list[Row] = [
         (NOISY, "theta"))),
     *(("motion", lambda _, motion=motion: motion.sensitivity("theta"))
       for motion in (STARTED, AT_REST, JAMMED, GIVEN)),
+    *wrong(DROPPED.growth, {}, wrt=[[], "psi", 5, ["theta", "theta"], "friction", "t"]),
+    *wrong(MOTION.growth, {}, wrt=["x_dot", "z", "z_dot"]),  # which follow rolling
+    ("wrt", lambda _: rl.simulate(DROPPED.scene, DROPPED.events[0].t).growth("theta")),
+    *(("motion", lambda _, motion=motion: motion.growth())
+      for motion in (STARTED, AT_REST, JAMMED, GIVEN, rl.simulate(scenes.drop, 0))),
+    *(("wrt", lambda _, motion=motion: motion.growth(("omega", "theta")))
+      for motion in (NOISY, TURNING)),  # rough differences; one change outgrows the other
     ("changes", lambda _: DROPPED.sensitivity("theta").forecast(omega=1.0)),
     *wrong(DROPPED.sensitivity("theta").forecast, {}, theta=["x"]),
     *wrong(DROPPED.sensitivity("theta").at, {}, t=[-1.0, 9.0, "now"]),

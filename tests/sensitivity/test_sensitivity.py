@@ -197,7 +197,8 @@ def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
             continue
         parts = chain_of_parts.chained(motion, tuple(wrt), 0)
         assert parts is not None
-        starts = [part.scene.initial_state.mode for part, _ in chain_of_parts._parts(motion)[1:]]
+        later = chain_of_parts.parts_of(motion, chain_of_parts.EVENTS)[1:]
+        starts = [part.motion.scene.initial_state.mode for part in later]
         modes |= set(starts)
         for k, name in enumerate(wrt):
             whole, _ = neighbours(motion, name, 0)

@@ -9,12 +9,14 @@ has the same events, up to a growth of 1e13.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from .._ask.check import FloatArray
+from .._ask.scene import Scene
 from .._core import EventKind, Mode
 from .differences import at_shares, kinds_of, knots_of, neighbours, settings_of, size
 from .inputs import BODY, STATE, size_of, units_of
@@ -22,6 +24,9 @@ from .samples import FREE
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events of a part
+# Duration of the shortest flight with a cut, in units of sqrt(L/g): it rises to L/1000, a hundred
+# times as high as steps of differences with ten digits. A lower hop depends on smaller changes.
+_HOP = 0.1
 # Relative difference between the derivatives along the computed arcs and the exact ones, in units
 # of rounding times the growth of the motion: at most 42 in 120 motions growing by up to 4e12
 _ROUNDINGS = 64
@@ -39,9 +44,10 @@ class Chained(NamedTuple):
     parted: FloatArray  # (n + m, k)
 
 
-class _Part(NamedTuple):
+class Part(NamedTuple):
     motion: Trajectory  # has the whole motion's samples, and one at the start of the next part
     rows: FloatArray  # indices of its samples and events in the whole motion
+    end: float  # time of its end in the whole motion
 
 
 def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | None:
@@ -54,13 +60,14 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
     # For each earlier part: the derivatives of the current state with respect to the state at its
     # end, and its own errors
     since: list[tuple[FloatArray, FloatArray]] = []
-    for index, (part, own) in enumerate(_parts(motion)):
+    for index, (part, own, _) in enumerate(parts_of(motion, EVENTS)):
         last = len(part.t) - 1
         inputs = [name if index == 0 or name in BODY else None for name in names]
-        by_inputs, by_state = _derivatives(part, inputs, side), _by_state(part, fixed=index == 0)
-        if by_inputs is None or by_state is None:
+        try:
+            value, error = _derivatives(part, inputs, side)
+            step, step_error = by_state(part, free_of(part.scene) if index else ())
+        except ValueError:
             return None
-        (value, error), (step, step_error) = by_inputs, by_state
         value = value + np.einsum("crs,sk->crk", step, start)
         error = error + step_error @ np.abs(start)
         sizes = [size(value) * scales, *(np.abs(step @ change) for change, _ in since[:1])]
@@ -77,37 +84,48 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
     return whole
 
 
-def _by_state(part: Trajectory, *, fixed: bool) -> tuple[FloatArray, FloatArray] | None:
-    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if fixed."""
+def free_of(scene: Scene) -> tuple[str, ...]:
+    """Return the coordinates that a start leaves free: those that neither ground nor grip give."""
+    mode = (scene if scene.impulse is None else scene.replace(impulse=None)).initial_state.mode
+    given = [name for name in FREE[mode] if scene.z is not None or getattr(scene, name) is not None]
+    return "theta", "omega", "x", *given
+
+
+def by_state(part: Trajectory, free: Iterable[str]) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if not free.
+
+    They are in natural units on both sides.
+    """
     # No arc depends on x
-    free = () if fixed else ("theta", "omega", *FREE[part.scene.initial_state.mode])
-    derivatives = _derivatives(part, [name if name in free else None for name in STATE], 0)
-    if derivatives is None:
-        return None
-    value, error = derivatives
+    names = [name if name in free and name != "x" else None for name in STATE]
+    value, error = _derivatives(part, names, 0)
     units = units_of(part.scene)
-    value[0, : len(part.t), 0] = 0 if fixed else 1 / units[0]  # x shifts with its start
+    value[0, : len(part.t), 0] = ("x" in free) / units[0]  # x shifts with its start
     return value * units, error * units
 
 
 def _derivatives(
     part: Trajectory, names: list[str | None], side: int
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None.
+
+    ValueError gives the reason for a missing one.
+    """
     rows = len(part.t) + len(part.events)
     value, error = np.zeros((len(STATE), rows, len(names))), np.zeros((rows, len(names)))
     for k, name in enumerate(names):
         if name is not None:
             best, problem = neighbours(part, name, side)
             if problem:
-                return None
+                raise ValueError(f"by {name}, {problem}") from problem
             value[..., k], error[:, k] = best.value, best.error
     return value, error
 
 
-def _parts(motion: Trajectory) -> list[_Part]:
-    """Return the parts; one whose events differ from the motion's is merged into the previous."""
-    cuts = _cuts(motion)
+def parts_of(motion: Trajectory, events: int) -> list[Part]:
+    """Return parts of so many events; one whose events differ from the motion's is merged into the
+    previous."""
+    cuts = _cuts(motion, events)
     while True:
         parts = [_part(motion, *pair) for pair in pairwise(cuts)]
         known = [part for part in parts if part is not None]
@@ -116,21 +134,22 @@ def _parts(motion: Trajectory) -> list[_Part]:
         del cuts[max(parts.index(None), 1)]
 
 
-def _cuts(motion: Trajectory) -> list[int]:
+def _cuts(motion: Trajectory, events: int) -> list[int]:
     """Return how many events precede each cut, from 0 to all; cuts are in the middle of an arc."""
-    cuts = [0]
+    cuts, spin = [0], float(units_of(motion.scene)[-1])
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode
         # A flight that does not end with an impact is the sum of many bounces
         plain = mode is not Mode.REST and (
-            mode is not Mode.FLIGHT or after.kind is EventKind.IMPACT
+            mode is not Mode.FLIGHT
+            or (after.kind is EventKind.IMPACT and (after.t - before.t) * spin > _HOP)
         )
-        if plain and count - cuts[-1] >= EVENTS:
+        if plain and count - cuts[-1] >= events:
             cuts.append(count)
     return [*cuts, len(motion.events)]
 
 
-def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
+def _part(motion: Trajectory, first: int, last: int) -> Part | None:
     """Return the part between two cuts, given as event counts, or None if its events differ."""
     knots, whole = knots_of(motion), last == len(motion.events)
     start = float(knots[first : first + 2].mean()) if first else 0.0
@@ -143,4 +162,4 @@ def _part(motion: Trajectory, first: int, last: int) -> _Part | None:
     between = np.array([start, *knots[first + 1 : last + 1], end])
     times = at_shares(motion.t[inside], between, knots_of(part))
     rows = [*np.flatnonzero(inside), *(len(motion.t) + np.arange(first, last))]
-    return _Part(part.sol(np.append(times, part.t_end)), np.array(rows))
+    return Part(part.sol(np.append(times, part.t_end)), np.array(rows), end)

@@ -8,6 +8,7 @@ from typing import Any
 #: Names of methods by module; the functions have the same names.
 METHODS = {
     "_motion.from_arrays": ("from_arrays",),
+    "_motion.growth": ("growth",),
     "_motion.passages": ("when",),
     "_motion.sensitivity": ("sensitivity",),
     "_motion.strobe_svg": ("_repr_html_",),

@@ -207,6 +207,19 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     names = distinct("wrt", wrt, INPUTS)
     if whole("side", side) not in RULES:
         raise ValueError(f"side must be 0, 1 or -1, got {side!r}")
+    require_its_own(motion)
+    value, error = _derivatives(motion, names, side)
+    n, units = len(motion.t), units_of(motion.scene)
+    return Sensitivity(
+        motion, names, side, np.swapaxes(value[:, :n], 0, 1) * units[:, None],
+        value[0, n:] * (units[0] / units[3]),
+        _relative(motion, names, value[:, :n], error[:n]),
+        _relative(motion, names, value[:, n:], error[n:]),
+    )  # fmt: skip
+
+
+def require_its_own(motion: Trajectory) -> None:
+    """Raise ValueError unless the motion is that of its scene, moves, and goes on to its end."""
     if motion.start is not None or motion.method == GIVEN:
         source = "arrays" if motion.start is None else "coordinates"
         raise ValueError(f"motion must be that of its scene, got one from {source}")
@@ -217,14 +230,6 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
         raise ValueError(
             "motion must not start at rest, where derivatives differ, got REST at t = 0 s"
         )
-    value, error = _derivatives(motion, names, side)
-    n, units = len(motion.t), units_of(motion.scene)
-    return Sensitivity(
-        motion, names, side, np.swapaxes(value[:, :n], 0, 1) * units[:, None],
-        value[0, n:] * (units[0] / units[3]),
-        _relative(motion, names, value[:, :n], error[:n]),
-        _relative(motion, names, value[:, n:], error[n:]),
-    )  # fmt: skip
 
 
 def _derivatives(
@@ -266,7 +271,7 @@ def _derivatives(
             place = motion.t[error[:n, k].argmax()]
             only = f"steps agree to {worst[k]:.1g} only at t = {place:.6g} s"
             problem = None if k in taken else problems[k]
-            raise _without_derivative(name, problem or only) from problem
+            raise without_derivative(name, problem or only) from problem
         if k in taken:
             _require_near(motion, name, size(value[:, :n, k]) * size_of(motion.scene, name))
     return np.delete(value, n, axis=1), np.delete(error + others, n, axis=0)
@@ -281,14 +286,14 @@ def _require_near(motion: Trajectory, name: str, growth: FloatArray) -> None:
     """Raise ValueError where changes of an input have grown too much for doubles."""
     if (far := growth > _FARTHEST).any():
         first = motion.t[far].min()
-        raise _without_derivative(
+        raise without_derivative(
             name,
             f"changes grow {growth.max():.2g} times, and from {_FARTHEST:.0e} times on (at t = "
             f"{first:.6g} s) the motion in doubles is not the exact one",
         )
 
 
-def _without_derivative(name: str, reason: object) -> ValueError:
+def without_derivative(name: str, reason: object) -> ValueError:
     return ValueError(f"wrt must be inputs with a derivative, got {name!r}: {reason}")
 
 

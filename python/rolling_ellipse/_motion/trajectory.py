@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
     from .._pictures import curves, errors, forces, overview, phase, stills
     from .._pictures.animation import RollingAnimation
+    from . import growth as growing
     from . import passages, strobe_svg
     from . import sensitivity as derivatives
     from .export import files, tables
@@ -391,7 +392,7 @@ class Trajectory(FieldsOnly):
     # -- methods of other modules, bound by `methods` ---------------------------------------------
 
     if TYPE_CHECKING:
-        when, sensitivity = passages.when, derivatives.sensitivity
+        when, sensitivity, growth = passages.when, derivatives.sensitivity, growing.growth
         save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
         _repr_html_ = strobe_svg._repr_html_
 

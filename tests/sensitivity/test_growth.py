@@ -1,0 +1,120 @@
+"""Growth of changes agrees with saltation matrices, exact orbits, volumes, and neighbours."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.numbers import EPS
+from rolling_ellipse import Scene, scenes, simulate
+from rolling_ellipse._motion.growth import COORDINATES
+from sensitivity import bounces
+from sensitivity.saltation import growths
+from sensitivity.test_sensitivity import CHAOS, OF_BOUNCES, units
+
+FLAT = Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.3)
+HOPS = Scene(0.6, 1.7, friction=0.3, theta=-0.5, omega=1.0, x_dot=6.0)  # lands without a rebound
+BOUNCES = Scene(1.2, 0.8, theta=0.5, z=2.0, omega=3.0, x_dot=1.0, friction=0.3, restitution=0.8)
+SLIDES = Scene(0.5, 1.5, friction=0.2, theta=1.4, omega=-3.7, x_dot=-2.2)
+
+
+@pytest.mark.parametrize(
+    ("scene", "end", "kinds"),
+    [
+        (CHAOS, 6.0, {"IMPACT"}),
+        (HOPS, 4.0, {"SLIP", "STICK", "LIFT_OFF", "IMPACT"}),
+        (BOUNCES, 2.2, {"IMPACT"}),
+        (SLIDES, 4.0, {"STICK", "SLIP", "REVERSE"}),
+        (scenes.jump, 2.0, {"SLIP", "LIFT_OFF", "IMPACT"}),
+    ],
+)
+def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: set[str]) -> None:
+    """Of all columns; those that are lost are lost at the same events.
+
+    A part is known to 1e-11, and the columns after the first divide that by their own size.
+    """
+    motion = simulate(scene, [end])
+    assert {event.kind.name for event in motion.events} == kinds
+    found = motion.growth()
+    true = growths(motion, found.wrt, found.t)
+    assert found.message == "" and found.log.shape == (len(motion.events), len(found.wrt))
+    left = np.isfinite(true)
+    assert np.array_equal(np.isfinite(found.log), left) and (found.log[~left] == -math.inf).all()
+    assert np.abs(np.expm1(found.log.max(axis=1) - true.max(axis=1))).max() < 1e-9
+    assert np.abs(found.log[left] - true[left]).max() < 1e-8
+
+
+def test_growth_is_that_of_the_exact_orbit_until_it_is_not_known() -> None:
+    """The exact orbit in 60 digits departs by roundings that have grown: at most 64 of them."""
+    for end in (9.0, 14.0, 18.0):
+        motion = simulate(CHAOS, [end])
+        found = math.exp(motion.growth("theta").log[-1, 0])
+        exact = bounces.bounces(motion, ["theta"], own=False)[0][:, 0]
+        true = float(np.linalg.norm(exact / units(CHAOS)[OF_BOUNCES]))
+        assert abs(found / true - 1) < 64 * EPS * found, end
+
+
+def test_a_rounding_of_the_start_has_grown_to_a_thousandth_where_it_is_said() -> None:
+    """The neighbour one rounding (1.1e-16) away is between a hundredth and a hundred times 1e-3 of
+    the body away there, by its own roundings, and well within a second before."""
+    motion = simulate(CHAOS, [26.0])
+    until = simulate(CHAOS, [19.5]).growth().known_until
+    near = simulate(CHAOS.replace(theta=np.nextafter(CHAOS.theta, 1)), [26.0])
+    apart = [abs(near.at(t).theta - motion.at(t).theta) for t in (until - 6, until, until + 6)]
+    assert apart[0] < 1e-5 < apart[1] < 0.1 < apart[2]
+    assert simulate(CHAOS, [18.0]).growth("theta").known_until == math.inf
+
+
+def test_elastic_bounces_keep_volumes() -> None:
+    """Of all six coordinates, also where changes grow: each part has an error of some 1e-11."""
+    found = simulate(CHAOS, [9.0]).growth()
+    assert found.log[-1, 0] > 10 and np.abs(found.log.sum(axis=1)).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("scene", "end", "lost"),
+    [
+        (scenes.slip, 3.0, ["x_dot"]),  # STICK
+        (scenes.drop, 2.0, ["x_dot", "z", "z_dot"]),  # lands rolling
+        (Scene(2.0, 1.0, theta=0.5, z=2.5, x_dot=3.0, friction=0.02), 0.8, ["z", "z_dot"]),
+        (BOUNCES.replace(friction=1.0, restitution=0.5), 0.8, ["z_dot"]),  # the slip ends inside
+        (scenes.jump, 2.0, []),
+    ],
+)
+def test_changes_are_lost_where_the_number_of_coordinates_falls(
+    scene: Scene, end: float, lost: list[str]
+) -> None:
+    found = simulate(scene, [end]).growth()
+    assert found.wrt == COORDINATES[: len(found.wrt)]
+    gone = [name for name, log in zip(found.wrt, found.log[-1], strict=True) if log == -math.inf]
+    assert len(gone) == len(lost) and gone == lost, found
+
+
+def test_a_column_has_the_size_of_the_derivatives() -> None:
+    """The first column of R is the growth of the first coordinate, whatever the others are."""
+    motion = simulate(BOUNCES, [1.9])
+    for name in ("omega", "x_dot"):
+        known = motion.sensitivity(name)
+        scale = units(BOUNCES)
+        unit = dict(zip(("x", "z", "theta", "x_dot", "z_dot", "omega"), scale, strict=True))[name]
+        size = np.linalg.norm(known.state[-1, :, 0] / scale) * unit
+        assert motion.growth(name).log[-1, 0] == pytest.approx(math.log(size), abs=1e-9)
+
+
+def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
+    motion = simulate(FLAT, 2.0)
+    found = motion.growth()
+    assert "It ends before the motion" in found.message and "by theta" in found.message
+    assert 0 < found.t[-1] < motion.events[-1].t and np.isfinite(found.log[-1, 0])
+    assert found.message in repr(found) and found.exponents.shape == (6,)
+
+
+def test_a_body_that_settles_loses_all_but_what_rolls() -> None:
+    """A disc, whose angle and place at rest on a line keep their changes; hops are summed."""
+    disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
+    found: Any = simulate(disc, 3.0).growth()
+    assert found.message == "" and np.isneginf(found.log[-1, 3:]).all()
+    known = simulate(disc, [3.0]).sensitivity("omega").state[0, :, 0]
+    size = np.linalg.norm(known / units(disc)) * units(disc)[5]
+    alone = simulate(disc, 3.0).growth("omega").log[-1, 0]
+    assert alone == pytest.approx(math.log(size), abs=1e-9)
