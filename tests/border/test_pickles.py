@@ -77,6 +77,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
         rl.course.tasks()[-1], rl.course.mark("1.1", 0.2), rl.course.sheet(1),
         rl.course.mark_table(StringIO("student,seed,task,answer\nAda,7,1.1,0.2")),
     ),
+    "growth": lambda: MOTIONS["rolling"]().growth("omega"),
     "fit": lambda: rl.fit_motion(
         TIMES, rl.simulate(rl.scenes.rolling, TIMES).x, scene=rl.scenes.rolling, free="omega"
     ),
