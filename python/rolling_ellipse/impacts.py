@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args, overload
 
 import numpy as np
 
@@ -59,6 +59,9 @@ _LEADING = 50  # number of best points for the whole series
 _SPLITS = 25  # number of random halvings of a series, enough for the scatter to a tenth
 _FEWEST = 20  # minimum number of impacts for estimating errors from halves of them
 _BLOCK = 2**20  # impacts predicted in one call
+_COARSE, _FINE = 24, 64  # cells per coefficient of the grids that find a likelihood; of the last
+_DEPTH = 25.0  # they find where the likelihood is more than exp(-25) of its largest
+_ZOOMS = 12  # largest number of them: each is at least a twelfth as wide as the one before
 
 
 def collide(
@@ -183,6 +186,14 @@ class FittedImpacts(Listed):
         its angle. Infinite for fewer than 20 impacts, and where infinite friction fits as well.
     measured, predicted : ndarray, shape (3, n)
         Velocities after each impact [m/s, m/s, rad/s].
+    log_likelihood : float
+        Logarithm of the largest likelihood of any coefficients, per (m/s)^3 for each impact.
+    covariance : ndarray, shape (2, 2)
+        Covariance of restitution and friction about their mean by the likelihood; its last row and
+        column are infinite if the best friction is.
+    log_evidence : float
+        Logarithm of the mean likelihood of all coefficients. A difference of it between two laws is
+        the logarithm of the Bayes factor.
     median_error, rms_error : float
         Median and root mean square of `errors` [m/s].
 
@@ -205,6 +216,9 @@ class FittedImpacts(Listed):
     friction_error: float
     measured: FloatArray = field(compare=False)
     predicted: FloatArray = field(compare=False)
+    log_likelihood: float
+    covariance: FloatArray = field(compare=False)
+    log_evidence: float
     median_error: float = field(init=False)
     rms_error: float = field(init=False)
 
@@ -240,16 +254,23 @@ class FittedImpacts(Listed):
         return draw_impacts(self, path, figure, figsize)
 
 
+@overload
 def fit(
-    before: Sequence[Any],
-    after: Sequence[Any],
-    *,
-    a: float,
-    b: float,
-    gyration2: float | None = None,
-    law: Law = "stronge",
-    minimise: Measure = "median",
-) -> FittedImpacts:
+    before: Sequence[Any], after: Sequence[Any], *, a: float, b: float,
+    gyration2: float | None = None, law: Law = "stronge", minimise: Measure = "median",
+    sigma: float | None = None,
+) -> FittedImpacts: ...  # fmt: skip
+@overload
+def fit(
+    before: Sequence[Any], after: Sequence[Any], *, a: float, b: float,
+    gyration2: float | None = None, law: Literal["all"], minimise: Measure = "median",
+    sigma: float | None = None,
+) -> dict[Law, FittedImpacts]: ...  # fmt: skip
+def fit(
+    before: Sequence[Any], after: Sequence[Any], *, a: float, b: float,
+    gyration2: float | None = None, law: Law | Literal["all"] = "stronge",
+    minimise: Measure = "median", sigma: float | None = None,
+) -> FittedImpacts | dict[Law, FittedImpacts]:  # fmt: skip
     """Return the coefficients of restitution and friction that predict measured impacts best.
 
     The error of an impact is the kinetic speed of predicted minus measured velocities after it; its
@@ -266,14 +287,17 @@ def fit(
         Semi-axes [m].
     gyration2 : float, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
-    law : {"stronge", "poisson", "newton"}
-        See `collide`.
+    law : {"stronge", "poisson", "newton", "all"}
+        See `collide`. "all": each of them.
     minimise : {"median", "rms"}
-        A few outliers do not affect the median.
+        A few outliers do not affect the median. Likelihoods do not depend on it.
+    sigma : float, optional
+        Standard deviation of the measured velocities [m/s], the same in each direction of the
+        kinetic metric, for the likelihood. Default: unknown, with the prior 1/sigma (Jeffreys).
 
     Returns
     -------
-    FittedImpacts
+    FittedImpacts, or dict of them by the names of the laws
 
     Raises
     ------
@@ -289,6 +313,11 @@ def fit(
     chooses among all points tried. Halves scatter about the series as the series does about the
     truth, exactly so for a linear least-squares fit [1]_.
 
+    The likelihood is normal in x_dot, z_dot and k omega, N numbers, three for each impact.
+    Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), S the sum of squares [2]_. For evidence
+    and covariance restitution and the angle of friction have flat priors; the integrals are sums
+    over 64 by 64 cells of a rectangle about all that counts, which coarser grids have found.
+
     The halves are the same every time and depend only on the magnitudes of the values: neither
     the order of the impacts nor mirroring them changes the answer. A coefficient that the impacts
     do not determine is arbitrary: if all of them stick, they only bound friction from below.
@@ -296,6 +325,7 @@ def fit(
     References
     ----------
     .. [1] J. Shao, C. F. J. Wu, Ann. Statist. 17 (1989) 1176: the jackknife that deletes a half.
+    .. [2] H. Jeffreys, Theory of Probability, 3rd ed., Oxford 1961, 3.4 and 5.
 
     Examples
     --------
@@ -303,8 +333,16 @@ def fit(
     >>> fitted = rl.impacts.fit(before, after, a=0.035, b=0.025)
     >>> print(f"e = {fitted.restitution:.3f}, friction = {fitted.friction:.3f}")
     e = 0.517, friction = 0.154
+    >>> by = rl.impacts.fit(before, after, a=0.035, b=0.025, law="all")
+    >>> print(f"ln B = {by['newton'].log_evidence - by['stronge'].log_evidence:.1f}")
+    ln B = -1.6
     """
+    if choice("law", law, (*LAWS, "all")) == "all":
+        body: dict[str, Any] = {"a": a, "b": b, "gyration2": gyration2, "sigma": sigma}
+        return {each: fit(before, after, **body, law=each, minimise=minimise) for each in LAWS}
     measure = _MEASURES[choice("minimise", minimise, get_args(Measure))]
+    if sigma is not None and not 0 < number("sigma", sigma) < math.inf:
+        raise ValueError(f"sigma must be a positive finite speed [m/s] or None, got {sigma!r}")
     start, end = _series("before", before, 4), _series("after", after, 3)
     if start.shape[1] != end.shape[1]:
         raise ValueError(
@@ -323,12 +361,25 @@ def fit(
     order = np.lexsort(np.abs(np.vstack([end, start])))
     halves = _halves(order)
 
-    def measures(points: FloatArray) -> FloatArray:
-        """Return the measures at some points: of all impacts, then of each half."""
+    def off_at(points: FloatArray) -> FloatArray:
         restitution, friction = points[0, :, None], _friction(points[1])[:, None]
         velocities = collide(*start, **law_of, restitution=restitution, friction=friction)
-        off = errors(velocities, end[:, None])
+        return errors(velocities, end[:, None])
+
+    def measures(points: FloatArray) -> FloatArray:
+        """Return the measures at some points: of all impacts, then of each half."""
+        off = off_at(points)
         return np.stack([measure(off[:, chosen]) for chosen in (order, *halves)])
+
+    def densities(points: FloatArray) -> FloatArray:
+        """Return the logarithms of the likelihood at some points."""
+        rows = np.array_split(points, -(-points.shape[1] * order.size // _BLOCK), axis=1)
+        squares = np.concatenate([(off_at(each)[:, order] ** 2).sum(axis=1) for each in rows])
+        count = end.size
+        if sigma is not None:
+            return -squares / (2 * sigma**2) - count / 2 * math.log(2 * math.pi * sigma**2)
+        with np.errstate(divide="ignore"):
+            return math.lgamma(count / 2) - math.log(2) - count / 2 * np.log(math.pi * squares)
 
     points, table = _search(measures, max(1, _BLOCK // order.size))
     best = points[:, np.argmin(table[0])]
@@ -336,9 +387,14 @@ def fit(
     predicted = np.stack(collide(*start, **law_of, restitution=restitution, friction=friction))
     deviations = _standard_errors(points, table) if order.size >= _FEWEST else (math.inf, math.inf)
     off = errors(predicted, end)
+    likeliest, evidence, covariance = _integral(densities)
+    stretch = np.array([1.0, 1 + friction**2])  # derivatives by restitution and friction's angle
     return FittedImpacts(
-        law, restitution, friction, off, *deviations, measured=end, predicted=predicted
-    )
+        choice("law", law, LAWS), restitution, friction, off, *deviations,
+        measured=end, predicted=predicted,
+        log_likelihood=likeliest, covariance=covariance * np.outer(stretch, stretch),
+        log_evidence=evidence,
+    )  # fmt: skip
 
 
 def _halves(places: Any) -> list[Any]:
@@ -349,7 +405,37 @@ def _halves(places: Any) -> list[Any]:
 
 
 def _friction(angle: FloatArray) -> FloatArray:
-    return np.where(angle == math.pi / 2, math.inf, np.tan(angle))
+    return np.where(np.tan(angle) > 1e6, math.inf, np.tan(angle))  # a coefficient's largest
+
+
+def _integral(densities: Callable[[FloatArray], FloatArray]) -> tuple[float, float, FloatArray]:
+    """Return the largest logarithm of a density over restitution and friction angle, that of its
+    mean, and their covariance."""
+    ends = np.array([1.0, math.pi / 2])
+    low, high, cells = np.zeros(2), ends, _COARSE
+    for zoom in range(_ZOOMS + 1):
+        whole, cell = high - low, (high - low) / cells
+        steps = np.indices((cells, cells)).reshape(2, -1) + 0.5
+        points = low[:, None] + steps * cell[:, None]
+        logs = densities(points)
+        if cells == _FINE:
+            break
+        near = points[:, logs >= logs.max() - _DEPTH]
+        low = np.maximum(near.min(axis=1) - 1.5 * cell, 0)
+        high = np.minimum(near.max(axis=1) + 1.5 * cell, ends)
+        if np.prod((high - low) / whole) > 0.5 or zoom == _ZOOMS - 1:
+            cells = _FINE
+    top, best = float(logs.max()), points[:, logs.argmax()]
+    shares = np.exp(logs - top)
+    evidence = top + math.log(shares.sum() * np.prod(cell / ends))
+    covariance = np.cov(points, aweights=shares, ddof=0)
+    for _ in range(4):  # within a cell: the likelihood has kinks where impacts begin to stick
+        cell = cell / 4
+        around = best[:, None] + cell[:, None] * (np.indices((9, 9)).reshape(2, -1) - 4)
+        around = np.clip(around, 0, ends[:, None])
+        logs = densities(around)
+        top, best = float(logs.max()), around[:, logs.argmax()]
+    return top, evidence, covariance
 
 
 def _search(

@@ -20,7 +20,7 @@ from .._ask.scene import Scene
 from .._core import EventKind, Mode
 from .differences import at_shares, kinds_of, knots_of, neighbours, settings_of, size
 from .inputs import BODY, STATE, size_of, units_of
-from .samples import FREE
+from .samples import FREE, Pair
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events of a part
@@ -91,7 +91,7 @@ def free_of(scene: Scene) -> tuple[str, ...]:
     return "theta", "omega", "x", *given
 
 
-def by_state(part: Trajectory, free: Iterable[str]) -> tuple[FloatArray, FloatArray]:
+def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
     """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if not free.
 
     They are in natural units on both sides.
@@ -104,9 +104,7 @@ def by_state(part: Trajectory, free: Iterable[str]) -> tuple[FloatArray, FloatAr
     return value * units, error * units
 
 
-def _derivatives(
-    part: Trajectory, names: list[str | None], side: int
-) -> tuple[FloatArray, FloatArray]:
+def _derivatives(part: Trajectory, names: list[str | None], side: int) -> Pair:
     """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None.
 
     ValueError gives the reason for a missing one.

@@ -15,6 +15,7 @@ from .._core import EventKind
 from .chain import by_state, free_of, parts_of
 from .differences import WORST, size
 from .inputs import STATE, distinct
+from .samples import Pair
 from .sensitivity import require_its_own, without_derivative
 from .trajectory import Trajectory
 
@@ -134,8 +135,7 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     times, logs, message, known_until = [0.0], [log], "", math.inf
     for part, _, end in parts_of(motion.sol(motion.t_end), 1):
         try:
-            changed = free_of(part.scene) if len(logs) > 1 else names
-            basis, r = _stretched(part, basis, changed)
+            basis, r = _stretched(part, basis, free_of(part.scene) if len(logs) > 1 else names)
         except ValueError as reason:
             if len(logs) == 1:
                 raise without_derivative(", ".join(names), reason) from reason
@@ -155,9 +155,7 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     return Growth(names, np.array(times[1:]), np.array(logs[1:]), message, known_until)
 
 
-def _stretched(
-    part: Trajectory, basis: FloatArray, free: tuple[str, ...]
-) -> tuple[FloatArray, FloatArray]:
+def _stretched(part: Trajectory, basis: FloatArray, free: tuple[str, ...]) -> Pair:
     """Return what a part makes of orthonormal columns, orthonormal again, and R of that QR.
 
     A column that is lost is 0 in both from then on. ValueError gives the reason for no answer.

@@ -1,0 +1,122 @@
+"""Likelihoods, covariances and evidences of measured impacts agree with other optimisers, sums and
+closed forms."""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from impacts.test_laws_and_fit import BODY, K2, after, approaching, series, speed
+from oracles.contact import reaction_by_pieces, response
+from rolling_ellipse import impacts
+from scipy.integrate import quad
+from scipy.optimize import minimize
+from scipy.special import logsumexp
+
+RIGHT = math.pi / 2
+
+
+def noisy(law: Any, count: int, noise: float, seed: int) -> tuple[Any, Any]:
+    rng = np.random.default_rng(seed)
+    before = approaching(count, seed)
+    blur = rng.normal(0, noise, (3, count)) / np.array([[1.0], [1.0], [math.sqrt(K2)]])
+    return before, after(before, law, 0.3, 0.6) + blur
+
+
+def squares(law: Any, before: Any, seen: Any, e: Any, angle: Any) -> Any:
+    """Sums of squares for arrays of coefficients."""
+    e, mu = np.asarray(e)[..., None], np.tan(angle)[..., None]
+    moved = impacts.collide(*before, **BODY, friction=mu, restitution=e, law=law)
+    return (speed(np.stack(moved) - seen[:, None, None]) ** 2).sum(axis=-1)
+
+
+def density(total: Any, count: int, sigma: float | None) -> Any:
+    """The logarithm of the likelihood; without sigma by its definition, an integral over 1/sigma,
+    up to a scale: sigma = sqrt(S) s."""
+    if sigma is not None:
+        return -total / (2 * sigma**2) - count * math.log(math.sqrt(2 * math.pi) * sigma)
+    peak = 1 / math.sqrt(count)
+
+    def integrand(s: float) -> float:
+        ratio = peak / s
+        return ratio**count / s * math.exp((1 - ratio**2) * count / 2)
+
+    whole = quad(integrand, 0.2 * peak, 8 * peak, epsabs=0, epsrel=1e-12, points=[peak])[0]
+    scaled = math.log(whole) - count / 2 - count * math.log(peak * math.sqrt(2 * math.pi))
+    return scaled - count / 2 * np.log(total)
+
+
+@pytest.mark.parametrize("sigma", [None, 0.1])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_largest_likelihood_is_that_of_another_optimiser(
+    seed: int, sigma: float | None
+) -> None:
+    """Of Stronge's law, by collisions piece by piece: within 0.1 in chi-square (it is 1e-5)."""
+    before, seen = noisy("stronge", 12, 0.1, seed)
+    at: Any = SimpleNamespace(**BODY, mass=1.0, gyration2=K2)
+
+    def total(point: Any) -> float:
+        e, angle = np.clip(point, 0, [1, RIGHT - 1e-9])
+        found = 0.0
+        for (theta, x_dot, z_dot, omega), end in zip(before.T, seen.T, strict=True):
+            state: Any = SimpleNamespace(theta=theta, x_dot=x_dot, z_dot=z_dot, omega=omega)
+            contact = response(at, state)
+            along, across = reaction_by_pieces(contact, math.tan(angle), e)
+            h = (x_dot - contact.slip) / omega
+            slope = (z_dot - contact.gap_rate) / omega
+            turn = -(h * along + slope * across) / K2
+            off = np.array([x_dot + along, z_dot + across, omega + turn]) - end
+            found += float(speed(off) ** 2)
+        return found
+
+    fitted = impacts.fit(before, seen, **BODY, sigma=sigma, minimise="rms")
+    start = [fitted.restitution, math.atan(fitted.friction)]
+    least = min(minimize(total, [e, a], method="Nelder-Mead").fun for e, a in (start, (0.5, 0.4)))
+    assert abs(density(least, 36, sigma) - fitted.log_likelihood) < 0.1 / 2
+
+
+@pytest.mark.parametrize("law", impacts.LAWS)
+@pytest.mark.parametrize("sigma", [None, 0.15])
+def test_evidence_and_covariance_agree_with_sums_over_the_whole_range(
+    law: Any, sigma: float | None
+) -> None:
+    """A plain sum over 400 by 400 cells, with some twenty per standard deviation. A kink of the
+    likelihood costs the coarser sum less than a hundredth."""
+    before, seen = noisy(law, 30, 0.15, 5)
+    fitted = impacts.fit(before, seen, **BODY, law=law, sigma=sigma)
+    e, angle = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400 * RIGHT)
+    logs = density(squares(law, before, seen, e, angle), 90, sigma)
+    assert fitted.log_evidence == pytest.approx(logsumexp(logs) - 2 * math.log(400), abs=0.01)
+    points = np.stack([e.ravel(), angle.ravel()])
+    true = np.cov(points, aweights=np.exp(logs - logs.max()).ravel(), ddof=0)
+    stretch = np.array([1, 1 + fitted.friction**2])
+    assert fitted.covariance == pytest.approx(true * np.outer(stretch, stretch), rel=0.02)
+
+
+def test_the_evidence_knows_the_law_of_many_impacts() -> None:
+    """With or without sigma; each law alone has the same numbers as among all."""
+    sigmas: Any = (None, 0.05, None)
+    for law, sigma in zip(impacts.LAWS, sigmas, strict=True):
+        before, seen = series(law, 0.05, 60)
+        by: Any = impacts.fit(before, seen, **BODY, law="all", sigma=sigma)
+        assert tuple(by) == impacts.LAWS and all(by[each].law == each for each in by)
+        assert max(by, key=lambda each: by[each].log_evidence) == law
+    assert by[law] == impacts.fit(before, seen, **BODY, law=law)
+
+
+def test_the_likelihood_depends_neither_on_the_measure_nor_on_the_grids() -> None:
+    """Nor do a tiny noise or a right angle of friction hide from the grids; for exact impacts the
+    sum of squares is 0, and the likelihood of sigma alone is left."""
+    before, seen = series("stronge", 1e-6, 40)
+    median, rms = (impacts.fit(before, seen, **BODY, sigma=1e-6, minimise=by) for by in
+                   ("median", "rms"))  # fmt: skip
+    assert (median.log_likelihood, median.log_evidence) == (rms.log_likelihood, rms.log_evidence)
+    nothing = density(0.0, 120, 1e-6)
+    chi2 = 2 * (nothing - rms.log_likelihood)  # of 118 degrees of freedom
+    assert abs(chi2 - 118) < 4 * math.sqrt(2 * 118)
+    assert np.sqrt(np.diag(rms.covariance)).max() < 1e-5
+    state = approaching(50, 9)
+    stuck = after(state, "stronge", math.inf, 0.5)
+    found = impacts.fit(list(state), list(stuck), **BODY, sigma=0.01)
+    assert found.log_likelihood == pytest.approx(density(0.0, 150, 0.01), abs=1e-3)
