@@ -1,0 +1,44 @@
+"""The recipe for the least speed over the tip with slip finds known speeds and says the truth."""
+
+import re
+from typing import Any
+
+import pytest
+from oracles.paths import ROOT
+from rolling_ellipse import Scene, simulate, thresholds
+
+PAGE = (ROOT / "docs" / "many.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def recipe() -> dict[str, Any]:
+    block = re.search(r"<!-- over the tip -->\n```python\n(.*?)```", PAGE, re.DOTALL)
+    assert block
+    names: dict[str, Any] = {"Scene": Scene}
+    exec(block[1], names)
+    return names
+
+
+@pytest.mark.parametrize(
+    ("friction", "speed"),
+    [
+        (0.05, 3.705407360274),  # still slides over the tip
+        (0.1, 3.475473717038),  # rolls before it
+        (0.2, 3.106752254887),
+        (0.3, 2.955400074211),
+    ],
+)
+def test_the_least_speed_is_the_known_one(recipe: Any, friction: float, speed: float) -> None:
+    """To the digits known. A whole motion passes the tip just above it, and never just below: 1e-9
+    is a thousand times what 20 s of following it may cost near the tip, where changes grow most."""
+    assert recipe["least_speed"](friction) == pytest.approx(speed, abs=1e-12)
+    for change, times in ((1e-9, 1), (-1e-9, 0)):
+        scene = Scene(2.0, 1.0, omega=speed + change, friction=friction)
+        assert simulate(scene, 20.0).when(event="roll_over").size == times
+
+
+def test_with_enough_friction_it_is_the_speed_of_rolling(recipe: Any) -> None:
+    """The bisection ends between two neighbours; the proof of rolling is exact to rounding."""
+    assert recipe["least_speed"](1.0) == pytest.approx(
+        thresholds(2.0, 1.0).roll_over_speed, rel=4e-16
+    )
