@@ -14,7 +14,9 @@ from oracles.contact import kinetic_energy, random_blow, random_scenes
 from oracles.geometry import support
 from oracles.numbers import EPS
 from rolling_ellipse import EventKind, Impulse, InitialState, Mode, Scene, Status, Trajectory
+from rolling_ellipse._motion.chain import chained
 from rolling_ellipse._motion.constraints import energy_error, losses
+from rolling_ellipse._motion.differences import neighbours
 
 SPAN, MOST = 4.0, 200
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
@@ -312,6 +314,18 @@ def test_sensitivities_pass_through_a_blow() -> None:
     near = [rl.simulate(scene.replace(omega=1.0 + d), [0.5, 1.5], blows=blows).theta
             for d in (-1e-5, 1e-5)]  # fmt: skip
     assert slope == pytest.approx((near[1] - near[0]) / 2e-5, rel=1e-8)
+
+
+def test_derivatives_part_by_part_pass_through_blows() -> None:
+    """Eight events make three parts: each has the blows of its own time only. Differences of the
+    whole motion are good to 1e-10 of the largest derivative, as long as neighbours bounce alike."""
+    push = Impulse(jx=0.2, jz=0.1)
+    motion = rl.simulate(
+        rl.scenes.bounce, [0.5, 1.5, 3.5], blows=[(0.3, push), (1.2, push), (2.7, push)]
+    )
+    parts, (whole, _) = chained(motion, ("theta",), 0), neighbours(motion, "theta", 0)
+    assert parts is not None and len(motion.events) == 8
+    assert np.abs(parts.value[..., 0] - whole.value).max() <= 1e-10 * np.abs(whole.value).max()
 
 
 def test_the_reason_ends_with_the_first_blow() -> None:

@@ -10,6 +10,7 @@ has the same events, up to a growth of 1e13.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -154,7 +155,9 @@ def _part(motion: Trajectory, first: int, last: int) -> Part | None:
     end = motion.t_end if whole else float(knots[last : last + 2].mean())
     inside = (motion.t >= start) & ((motion.t < end) | whole)
     scene = motion.scene_at(start) if first else motion.scene
-    part = Trajectory.computed(scene, settings_of(motion), np.array([end - start]))
+    blows = tuple((t - start, blow) for t, blow in motion.blows if start <= t <= end)
+    how = replace(settings_of(motion), blows=blows)
+    part = Trajectory.computed(scene, how, np.array([end - start]))
     if kinds_of(part.events) != kinds_of(motion.events[first:last]):
         return None
     between = np.array([start, *knots[first + 1 : last + 1], end])

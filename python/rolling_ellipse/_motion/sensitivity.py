@@ -256,7 +256,7 @@ def _derivatives(
                 others[:, k] = error_of_method(whole, name, side, best)
     off = np.fmax(*(_relative(motion, names, value[:, at], error[at]) for at in _ends(n)))
     rough, taken = np.flatnonzero(~(off <= FINE)), np.array([], int)
-    if rough.size and len(motion.events) > EVENTS and not motion.blows:
+    if rough.size and len(motion.events) > EVENTS:
         some = tuple(names[k] for k in rough)
         if (parts := chained(whole, some, side)) is not None:
             total = parts.error + parts.parted
