@@ -55,6 +55,9 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
             return "rolling is valid until t = " + brief(t) +
                    " s only; after it the motion obeys the rolling equation, but not the laws of "
                    "contact";
+        case Ending::never:
+            return "the motion never stops as asked: from t = " + brief(t) +
+                   " s on it is proved to have no further event";
     }
     return {};
 }

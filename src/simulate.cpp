@@ -59,7 +59,7 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
 // Whether the contact model computes the motion; it proves each arc of rolling only up to the end
 // time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
-    if (asked.model == Model::contact || !asked.blows.empty()) return true;
+    if (asked.model == Model::contact || asked.is_for_events()) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&
            !may_hold_for_ever(scene, from.initial.state);
 }

@@ -70,6 +70,7 @@ class Ending(enum.Enum):
     JAMMED = 5
     UNDETERMINED = 6
     VALIDITY_LOST = 7
+    NEVER = 8
 
 class Quantity(enum.Enum):
     theta = 0

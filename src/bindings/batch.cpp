@@ -187,16 +187,29 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
     return tables;
 }
 
-// The state of each motion at its requested time, NaN if the motion ended earlier, and codes, -1
-// for none: the mode at that time, the number of events, the kind of the first event, and the
-// ending.
+// The state that a motion has at its end, and the time: after the last event if it had too many.
+// There is no state if the motion ended early for another reason than that it was to stop.
+std::pair<std::optional<State>, double> reached_by(const Solution& solution, double t_end) {
+    const auto& [events, ending] = std::tie(solution.motion.events, solution.ending);
+    if (ending == Ending::max_events) return {events.back().after.state, events.back().t};
+    const double t = std::min(t_end, solution.followed_until);
+    const bool stopped = ending == Ending::completed || ending == Ending::never;
+    if (t < t_end && !stopped) return {std::nullopt, t};
+    ContactSample last;
+    Sampler(solution.motion, 1)(&t, 1, &last);
+    return {last.state, t};
+}
+
+// The end of each motion: its state, NaN without one, the time, and the largest normal impulse of
+// its impacts; and codes, -1 for none: mode, numbers of events and impacts, kind of the first
+// event, and ending.
 py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
                     int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     const py::ssize_t each = times.size() == 1 ? 0 : 1;
     if (each) require_length("times", times, n);
-    Array states = matrix(std::size(state_fields), n);
-    py::array_t<std::int32_t> codes({py::ssize_t{4}, n});
+    Array states = matrix(std::size(state_fields) + 2, n);
+    py::array_t<std::int32_t> codes({py::ssize_t{5}, n});
     std::fill_n(states.mutable_data(), states.size(), std::numeric_limits<double>::quiet_NaN());
     std::fill_n(codes.mutable_data(), codes.size(), -1);
     const auto end = [&](py::ssize_t i, const Checkpoint& checkpoint) {
@@ -209,18 +222,27 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
             return;
         }
         const std::vector<Event>& events = solution.motion.events;
+        std::int32_t impacts = 0;
+        double largest = 0.0;
+        for (const Event& event : events) {
+            if (event.kind != EventKind::impact) continue;
+            ++impacts;
+            largest = std::max(largest, event.after.reaction_z);
+        }
         codes.mutable_at(1, i) = static_cast<std::int32_t>(events.size());
-        if (!events.empty()) codes.mutable_at(2, i) = static_cast<int>(events.front().kind);
-        codes.mutable_at(3, i) = static_cast<int>(solution.ending);
-        if (solution.motion.segments.empty() || t > solution.followed_until) return;
-        ContactSample last;
-        Sampler(solution.motion, 1)(&t, 1, &last);
+        codes.mutable_at(2, i) = impacts;
+        if (!events.empty()) codes.mutable_at(3, i) = static_cast<int>(events.front().kind);
+        codes.mutable_at(4, i) = static_cast<int>(solution.ending);
+        if (solution.motion.segments.empty()) return;
+        const auto [state, time] = reached_by(solution, t);
         double* to = states.mutable_data() + i;
         for (const auto& field : state_fields) {
-            *to = last.state.*field.number;
+            if (state) *to = (*state).*field.number;
             to += n;
         }
-        codes.mutable_at(0, i) = static_cast<int>(last.state.mode);
+        *to = time;
+        to[n] = largest;
+        if (state) codes.mutable_at(0, i) = static_cast<int>(state->mode);
     };
     run_each(n, workers, end);
     return py::dict("states"_a = states, "codes"_a = codes);

@@ -84,6 +84,15 @@ void take(py::handle given, Value& value) {
         for (const auto& [t, impulse] : given.cast<std::vector<std::pair<double, Impulse>>>()) {
             value.push_back({t, impulse});
         }
+    } else if constexpr (std::is_same_v<Value, Stop>) {
+        for (const std::string& each : given.cast<std::vector<std::string>>()) {
+            const auto& known = names<EventKind>;
+            const auto at = std::find(known.begin(), known.end(), each);
+            if (at == known.end())
+                value.decided = true;
+            else
+                value.kinds |= 1L << (at - known.begin());
+        }
     } else {
         value = given.cast<Value>();
     }

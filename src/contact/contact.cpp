@@ -31,6 +31,49 @@ InitialState start_after(const Scene& scene, EventKind kind, const State& before
     return start;
 }
 
+// Tells, piece by piece, whether a slide lasts for ever. Without friction its forces depend on the
+// angle alone, and half a turn or two turning points tell. With friction swings repeat themselves
+// as long as the slip keeps its side: it is enough that all slip in one swing exceeds all of the
+// slip in the first.
+class EndlessSlide {
+  public:
+    EndlessSlide(const Slide& slide, double friction)
+        : slide_(slide), friction_(friction), start_(slide.last) {}
+
+    bool is_known() {
+        if (slide_.pieces.empty()) return false;
+        const double omega = slide_.last.omega.high;
+        const double slip = std::abs(slide_.last.slip.high);
+        const bool turns = before_ * omega < 0;
+        before_ = omega;
+        turns_ += turns;
+        const bool stands = start_.omega.high == 0 && omega == 0;
+        if (friction_ == 0) {
+            const double turned = slide_.last.angle.high - start_.angle.high;
+            return stands || turns_ == 2 || std::abs(turned) >= pi;
+        }
+        if (stands) return slip > std::abs(start_.slip.high);
+        if (turns_ < 3) {
+            most_ = std::max(most_, slip);
+        } else if (turns && turns_ % 2 == 1) {
+            if (least_ < infinity && least_ > most_) return true;
+            least_ = slip;
+        } else {
+            least_ = std::min(least_, slip);
+        }
+        return false;
+    }
+
+  private:
+    const Slide& slide_;
+    const double friction_;
+    const SlidePoint start_;
+    double before_ = 0.0;  // angular velocity before the last piece
+    long turns_ = 0;
+    double most_ = 0.0;
+    double least_ = infinity;
+};
+
 // The motion so far, and its state at a time. Times, states and segments are in natural units;
 // settings and events are not.
 class ContactRun {
@@ -43,6 +86,7 @@ class ContactRun {
           settings_(settings),
           t_end_(t_end),
           checkpoint_(checkpoint),
+          left_(settings.count),
           rest_speed_(rest_speed(scene_, units_, settings)),
           motion_{units_, scene_, {}, {}, {}} {
         begin(start);
@@ -51,18 +95,19 @@ class ContactRun {
     Integration<Motion> run() {
         for (const Blow& blow : settings_.blows) {
             follow_until(blow.t);
-            if (ending_) break;
+            if (ending_ || (stops_ && now() * units_.time < blow.t)) break;
             strike(blow);
         }
         follow_until(t_end_);
-        return {std::move(motion_), ending_.value_or(Ending::completed), now() * units_.time,
-                counts_};
+        const double t = ending_ || stops_ ? now() * units_.time : t_end_;
+        return {std::move(motion_), ending_.value_or(Ending::completed), t, counts_};
     }
 
   private:
-    // Follows the motion, left to itself, up to a time [s]: that of a blow, or of the end.
+    // Follows the motion, left to itself, up to a time [s]: that of a blow, or of the end. A motion
+    // that stops is followed through the events of that instant.
     void follow_until(double t) {
-        until_ = std::min(t / units_.time, std::numeric_limits<double>::max());
+        until_ = stops_ ? now() : std::min(t / units_.time, std::numeric_limits<double>::max());
         is_there_ = false;
         while (!ending_ && !is_there_) {
             checkpoint_();
@@ -82,7 +127,20 @@ class ContactRun {
         InitialState after = start;
         after.state.mode = first_continuation(struck, start.state).mode;
         note({blow.t, EventKind::blow, before.state, after});
+        ++struck_;
         if (!ending_) begin(start);
+    }
+
+    void stop() {
+        stops_ = true;
+        until_ = now();
+    }
+
+    // Stops a motion that lasts for ever, or ends it if it is to stop otherwise.
+    void last_for_ever(bool is_decided) {
+        if (!settings_.stop || stops_ || struck_ < settings_.blows.size()) return;
+        if (!settings_.stop.decided || !is_decided) ending_ = Ending::never;
+        stop();
     }
 
     // Begins a motion, and chooses its first law. A body that touches the ground and moves into it
@@ -159,6 +217,7 @@ class ContactRun {
     void rest() {
         add_segment(
             Standing{state_, rolling_force(scene_, geometry(axes(), state_.theta), state_.omega)});
+        last_for_ever(true);
         finish();
     }
 
@@ -180,16 +239,22 @@ class ContactRun {
             end.angle = start.theta + end.heading * epsilon;
         }
         const RollingFlow flow = rolling_flow(start, state_.x);
-        roll(flow, end.validity == Validity::invalid ? time_of_end(flow, end) : infinity);
+        const bool ends = end.validity == Validity::invalid;
+        if (!ends) last_for_ever(true);
+        roll(flow, ends ? time_of_end(flow, end) : infinity);
     }
 
     void roll_on_slope() {
         SlopeFlow flow =
             slope_flow(scene_.body(), scene_.slope, state_.theta, state_.omega, state_.x);
-        const double left = time_left();
-        const LawMeetings met = law_meetings(flow, friction_to_roll(), left);
+        const LawMeetings met =
+            law_meetings(flow, friction_to_roll(), settings_.stop ? infinity : time_left());
         const double lasts = met.broken ? met.broken->time : infinity;
-        prepare(flow, std::min(lasts, left));
+        if (lasts == infinity && settings_.stop) {
+            while (grow(flow)) continue;
+            last_for_ever(period(flow).has_value());
+        }
+        prepare(flow, std::min(lasts, time_left()));
         roll(std::move(flow), lasts);
     }
 
@@ -222,8 +287,7 @@ class ContactRun {
         if (next_.mode == Mode::rolling) rolls_by = friction_to_roll();
         Slide slide = slide_from(scene_, state_, next_.side, sliding_on_, rolls_by);
         sliding_on_.reset();
-        const long steps_left = settings_.max_steps - counts_.steps;
-        const SlideStop stop = slide_on(slide, {time_left(), steps_left}, checkpoint_);
+        const SlideStop stop = extend(slide);
         State last = end_of(slide);
         const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
@@ -250,6 +314,21 @@ class ContactRun {
         if (next_.mode != before.mode) return;
         if (state_.x_dot != before.x_dot) end.x_dot = {state_.x_dot, 0.0};
         sliding_on_ = end;
+    }
+
+    // Extends a slide until something ends it. If the motion is to stop at an event, it also ends
+    // where the slide is known to last for ever.
+    SlideStop extend(Slide& slide) {
+        SlideBounds bounds{time_left(), settings_.max_steps - counts_.steps};
+        if (!settings_.stop) return slide_on(slide, bounds, checkpoint_);
+        EndlessSlide endless(slide, scene_.friction);
+        const SlideStop stop = slide_on(slide, bounds, [&] {
+            checkpoint_();
+            if (endless.is_known()) bounds.most_pieces = 0;
+        });
+        if (bounds.most_pieces > 0) return stop;
+        last_for_ever(scene_.slope == 0);
+        return SlideStop::time_is_over;
     }
 
     // Continues where the rotation has vanished and rolling resistance turns its couple or holds
@@ -383,6 +462,8 @@ class ContactRun {
         }
         if (motion_.events.empty()) motion_.events.reserve(usual_events);
         motion_.events.push_back(event);
+        const bool counts = (settings_.stop.kinds >> int(event.kind) & 1) != 0;
+        if (counts && --left_ == 0) stop();
     }
 
     // The state in SI units, with its total angle.
@@ -426,10 +507,13 @@ class ContactRun {
     const Scene& given_;  // the scene in SI units
     Scene scene_;         // the scene, with axes exchanged after an odd number of quarter turns
     const Settings& settings_;
-    const double t_end_;    // [s]
-    double until_ = 0.0;    // time of the next blow, or of the end
-    bool is_there_ = true;  // whether that time is reached
-    double begun_ = 0.0;    // time of the start, or of the last blow
+    const double t_end_;      // [s]
+    double until_ = 0.0;      // time of the next blow, or of the end
+    bool is_there_ = true;    // whether that time is reached
+    std::size_t struck_ = 0;  // number of blows so far
+    long left_;               // number of events left until the motion stops
+    bool stops_ = false;      // whether it stops now
+    double begun_ = 0.0;      // time of the start, or of the last blow
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_;
@@ -450,9 +534,7 @@ class ContactRun {
 Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint) {
-    Integration<Motion> result = ContactRun(scene, start, settings, t_end, checkpoint).run();
-    if (result.ending == Ending::completed) result.followed_until = t_end;
-    return result;
+    return ContactRun(scene, start, settings, t_end, checkpoint).run();
 }
 
 }  // namespace rolling_ellipse

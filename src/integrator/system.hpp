@@ -99,13 +99,14 @@ enum class Ending {
     max_events,
     jammed,        // a slide has no continuation
     undetermined,  // a slide has two continuations
-    validity_lost
+    validity_lost,
+    never  // the events at which the motion is to stop can no longer happen
 };
 
 template <>
-inline constexpr std::array names<Ending>{"COMPLETED",      "MAX_STEPS",    "STEP_TOO_SMALL",
-                                          "STEP_TOO_LARGE", "MAX_EVENTS",   "JAMMED",
-                                          "UNDETERMINED",   "VALIDITY_LOST"};
+inline constexpr std::array names<Ending>{"COMPLETED",      "MAX_STEPS",     "STEP_TOO_SMALL",
+                                          "STEP_TOO_LARGE", "MAX_EVENTS",    "JAMMED",
+                                          "UNDETERMINED",   "VALIDITY_LOST", "NEVER"};
 
 // An integrated motion and the time up to which it is known.
 template <class Motion>

@@ -85,18 +85,21 @@ void validate_stages(const Settings& settings) {
     if (*settings.stages < 2 || *settings.stages > 4) refuse("stages", "2, 3 or 4", stages);
 }
 
-// Rejects blows that the model cannot follow, out of order, or outside of the span.
-void validate_blows(const Settings& settings, double t_end) {
-    if (settings.blows.empty()) return;
+// Rejects what needs events, for a model that has none.
+void require_events(const Settings& settings, const char* argument, const std::string& none,
+                    const std::string& given) {
     const bool by_rolling = settings.method != Method::automatic;
     if (by_rolling || settings.model == Model::rolling || settings.model == Model::multipliers) {
-        refuse("blows",
-               "() for " +
-                   (by_rolling ? "method " + quoted(name(settings.method))
-                               : "model " + quoted(name(settings.model))) +
-                   " (model 'contact' follows them)",
-               text(settings.blows.front().t) + " s");
+        const std::string what = by_rolling ? "method " + quoted(name(settings.method))
+                                            : "model " + quoted(name(settings.model));
+        refuse(argument, none + " for " + what + " (model 'contact' follows them)", given);
     }
+}
+
+// Rejects blows out of order or outside of the span.
+void validate_blows(const Settings& settings, double t_end) {
+    if (settings.blows.empty()) return;
+    require_events(settings, "blows", "()", text(settings.blows.front().t) + " s");
     double last = 0.0;
     for (const Blow& blow : settings.blows) {
         if (!(blow.t >= last && blow.t <= t_end)) {
@@ -105,6 +108,18 @@ void validate_blows(const Settings& settings, double t_end) {
                    text(blow.t) + (last > 0 ? " after " + text(last) : ""));
         }
         last = blow.t;
+    }
+}
+
+void validate_stop(const Settings& settings) {
+    if (settings.stop) require_events(settings, "stop", "None", "kinds of events");
+    const bool counts = settings.stop.kinds != 0;
+    const long most = counts ? settings.max_events : 1;
+    if (settings.count < 1 || settings.count > most) {
+        refuse("count",
+               counts ? "from 1 to max_events, " + std::to_string(most)
+                      : std::string("1 without kinds of events as stop"),
+               std::to_string(settings.count));
     }
 }
 
@@ -131,6 +146,7 @@ void validate(const Settings& settings, double t_end) {
         refuse("rest_speed", "a positive finite speed [m/s]", *settings.rest_speed);
     }
     validate_blows(settings, t_end);
+    validate_stop(settings);
 }
 
 }  // namespace rolling_ellipse

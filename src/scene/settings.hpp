@@ -36,6 +36,14 @@ struct Blow {
     Impulse impulse;
 };
 
+// Where a motion stops: at events of some kinds, or once it is proved to do the same for ever.
+struct Stop {
+    long kinds = 0;  // the sum of 1 << EventKind
+    bool decided = false;
+
+    explicit operator bool() const { return kinds != 0 || decided; }
+};
+
 struct Settings {
     Model model;
     Method method;
@@ -49,6 +57,10 @@ struct Settings {
     long max_events;
     std::optional<double> rest_speed;  // slower bounces are summed [m/s]; if absent, by size
     std::vector<Blow> blows = {};      // in order of time
+    Stop stop = {};
+    long count = 1;  // the motion stops at this event of the kinds of `stop`
+
+    bool is_for_events() const { return stop || !blows.empty(); }
 };
 
 inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model},
@@ -62,7 +74,9 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
                                             std::pair{"max_steps", &Settings::max_steps},
                                             std::pair{"max_events", &Settings::max_events},
                                             std::pair{"rest_speed", &Settings::rest_speed},
-                                            std::pair{"blows", &Settings::blows}};
+                                            std::pair{"blows", &Settings::blows},
+                                            std::pair{"stop", &Settings::stop},
+                                            std::pair{"count", &Settings::count}};
 
 // Called now and then during a long computation; throws to stop it.
 using Checkpoint = std::function<void()>;

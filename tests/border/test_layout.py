@@ -88,8 +88,12 @@ CALLS: dict[str, Call] = {
         {"F": within(0, 9), "d": within(-2, 2)}),
     "ends": Call(
         lambda t, **s: {name: each for name, each in vars(
-            rl.ends({**s, "friction": 0.4}, t)).items() if name not in ("axes", "_scenes")},
+            rl.ends({**s, "friction": 0.4}, t)).items() if isinstance(each, np.ndarray)},
         {"t": within(0, 2), **BODY, **START}),
+    "Ends.go_on": Call(
+        lambda t, **s: {name: each for name, each in vars(
+            rl.ends(s, 0.5).go_on(t)).items() if isinstance(each, np.ndarray)},
+        {"t": within(1, 2), **BODY, **START}),
     "simulate_many": Call(
         lambda **s: rl.simulate_many({**s, "friction": 0.4}, FIRST / 9, returns=("x", "theta")),
         {**BODY, **START}),

@@ -27,7 +27,9 @@ def use(folder: Path) -> list[float]:
         "scene",
     )
     stored = rl.load_many(rl.simulate_many([body], 1.0, out=folder / "many"))
-    ended = rl.ends([body], 1.0).status == rl.Status.COMPLETED
+    stopped = rl.simulate(rl.scenes.jump, np.inf, stop=(rl.EventKind.IMPACT, "rest"))
+    landed = rl.ends([rl.scenes.jump], np.inf, stop="impact").go_on(stopped.t_end, stop="decided")
+    ended = landed.status == rl.Status.COMPLETED
     theta, _, x = rl.flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0)
     slope = rl.flow_jacobian(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0).sum()
     q, q_dot = rl.kinematics([0.1, 0.2], 1.0, a=2.0, b=1.0)

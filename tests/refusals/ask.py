@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Impulse, Scene, report, scenes
 
@@ -124,7 +125,13 @@ REFUSALS: list[Row] = [
                [("1", PRESS)], [(NAN, PRESS)], [(-1.0, PRESS)], [(INF, PRESS)], [(9.0, PRESS)],
                [(0.5, PRESS), (0.25, PRESS)], [(0.5, Impulse.press(1.0, 9.0))],
                [(0.5, Impulse(jx=1e50))]],
+        stop=["x", "", 42, 1.5, object(), len, ["slip", "x"], ("decided", "rest"), np.ma.masked],
+        count=[0, 2, -1, 1.5, "x"],
     ),
+    *wrong(rl.simulate, {"scene": scenes.jump, "t": INF, "stop": "impact"},
+           t=[-1.0, NAN, [0.0, INF]], count=[0, 10_001], max_events=[0]),
+    *(("stop", run(stop="impact", **how)) for how in (
+        {"model": "rolling"}, {"model": "multipliers"}, {"method": "dopri5"})),
     *(("blows", run(blows=[(0.5, PRESS)], **how)) for how in (
         {"model": "rolling"}, {"model": "multipliers"}, {"method": "dopri5"})),
     *(("model", run(scene=scene, model=model))

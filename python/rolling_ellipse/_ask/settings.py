@@ -19,6 +19,9 @@ MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
 GIVEN: Any = "arrays"  # the method of a trajectory from arrays; no setting has this name
 Blows = tuple[tuple[float, Impulse], ...]
+Stop = str | _core.EventKind | Iterable[str | _core.EventKind] | None
+DECIDED = "decided"  # the stop at no kind of event
+_KINDS = (*_core.EventKind.__members__, DECIDED)
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 
@@ -56,6 +59,8 @@ class Settings(FieldsOnly):
     max_events: int = 10_000
     rest_speed: float | None = None
     blows: Blows = ()
+    stop: tuple[str, ...] = ()
+    count: int = 1
 
     def __post_init__(self) -> None:
         given = self.__dict__
@@ -74,7 +79,10 @@ def settings(*given: Any) -> Settings:
         if _core.hold_the_same(given, known):
             return made
     plain = all(
-        type(value) in _PLAIN or value is DEFAULTS.baumgarte or value is DEFAULTS.blows
+        type(value) in _PLAIN
+        or value is DEFAULTS.baumgarte
+        or value is DEFAULTS.blows
+        or value is DEFAULTS.stop
         for value in given
     )
     if not plain:
@@ -113,6 +121,21 @@ def _blows(name: str, value: Any) -> Blows:
     return tuple((number(f"{name}[{k}][0]", t), j) for k, (t, j) in enumerate(pairs))
 
 
+def _stop(name: str, value: Any) -> tuple[str, ...]:
+    """Return the names of different kinds of events, or DECIDED alone."""
+    kinds = () if value is None else (value,) if isinstance(value, (str, int)) else value
+    try:
+        given = [each.name if isinstance(each, _core.EventKind) else each for each in kinds]
+    except TypeError:
+        raise ValueError(f"{name} must be kinds of events, got {shown(value)}") from None
+    names = tuple(dict.fromkeys(choice(name, each, _KINDS) for each in given))
+    if DECIDED in names and len(names) > 1:
+        raise ValueError(
+            f"{name} must be {DECIDED!r} alone, or kinds of events, got {shown(value)}"
+        )
+    return names
+
+
 def _whole(name: str, value: Any) -> int:
     found = whole(name, value)
     if not -(2**31) <= found < 2**31:
@@ -130,6 +153,7 @@ _CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # the check for each type o
     "int | None": lambda name, value: None if value is None else _whole(name, value),
     "tuple[float, float]": _pair,
     "Blows": _blows,
+    "tuple[str, ...]": _stop,
 }
 _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()

@@ -122,7 +122,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
 def _with_turns(motion: Trajectory) -> Trajectory:
     """Return the motion with next to no rolling resistance, so that its turns are known."""
     resisted = motion.scene.replace(rolling_resistance=_LEAST_LEVER)
-    settings = dataclasses.replace(motion.settings, model="contact", method="auto")
+    settings = dataclasses.replace(settings_of(motion), model="contact", method="auto")
     found = Trajectory.computed(resisted, settings, motion.t)
     if kinds_of(found.events) != kinds_of(motion.events):
         raise ValueError("the contact model has other events")
@@ -141,8 +141,8 @@ def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> Flo
 
 
 def settings_of(motion: Trajectory) -> Settings:
-    """Return the settings of a motion with its own model in place of "auto"."""
-    return dataclasses.replace(motion.settings, model=motion.model)
+    """Return the settings of a motion, with its model in place of "auto", that do not stop it."""
+    return dataclasses.replace(motion.settings, model=motion.model, stop=(), count=1)
 
 
 def _differences(

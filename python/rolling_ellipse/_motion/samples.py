@@ -21,6 +21,7 @@ from .events import MODES
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
+DEFAULT_SAMPLES = 1001  # of a motion whose end time alone is given
 Pair = tuple[FloatArray, FloatArray]  # q and q_dot
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 

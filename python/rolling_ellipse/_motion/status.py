@@ -33,6 +33,7 @@ class Status(enum.Enum):
     STEP_TOO_SMALL = (
         "the integration stopped where no step that changes t meets rtol and atol: loosen them"
     )
+    NEVER = "the motion never stops as asked: no further event can happen"
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
     if TYPE_CHECKING:

@@ -25,6 +25,7 @@ from .events import Event, Events, events
 from .methods import bind_methods
 from .quantities import MATRICES, MODE, QUANTITIES
 from .samples import (
+    DEFAULT_SAMPLES,
     FREE,
     ContactSamples,
     Pair,
@@ -32,6 +33,7 @@ from .samples import (
     contact_samples,
     coordinate_pair,
     details,
+    even_times,
     fields_of,
     frozen,
     sample_at,
@@ -213,11 +215,16 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Solve a scene up to the last of the times, and sample it at all times reached.
 
-        A start (q, q_dot) off the constraints replaces the start of the scene.
+        A start (q, q_dot) off the constraints replaces the start of the scene. A single time, 0-d,
+        is that of the end of a motion that stops, whose samples are even.
         """
-        solution, samples = _core.simulate(scene.core, settings.core, times, start)
-        values = fields_of(samples)
-        values["scene"], values["settings"], values["span"] = scene, settings, float(times[-1])
+        solution, samples = _core.simulate(scene.core, settings.core, times.reshape(-1), start)
+        values, span = fields_of(samples), float(times.flat[-1])
+        if settings.stop:
+            span = min(span, solution.followed_until)
+        if times.ndim == 0:
+            values = sampled(solution, even_times(0.0, solution.followed_until, DEFAULT_SAMPLES))
+        values["scene"], values["settings"], values["span"] = scene, settings, span
         if start is not None:
             values["start"] = coordinate_pair("start", start, (COORDINATES,))
         values["_solution"], values["status"] = solution, STATUSES[solution.ending]

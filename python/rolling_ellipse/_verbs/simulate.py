@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable
 from typing import Any
@@ -15,13 +16,11 @@ from .._ask.check import FloatArray, array, flag, shown
 from .._ask.habits import understood
 from .._ask.impulse import Impulse
 from .._ask.scene import Scene, require_scene
-from .._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
-from .._motion.samples import even_times
+from .._ask.settings import DEFAULTS, Method, Model, Stabilization, Stop, settings
+from .._motion.samples import DEFAULT_SAMPLES, even_times
 from .._motion.stability import advice
 from .._motion.status import COMPLETED, IntegrationError, Status
 from .._motion.trajectory import Trajectory
-
-_DEFAULT_SAMPLES = 1001
 
 
 @understood
@@ -41,6 +40,8 @@ def simulate(
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
     blows: Iterable[tuple[float, Impulse]] = DEFAULTS.blows,
+    stop: Stop = DEFAULTS.stop,
+    count: int = DEFAULTS.count,
     raise_on_failure: bool = True,
 ) -> Trajectory:
     """Return the motion of a scene from t = 0 on, sampled at times.
@@ -105,6 +106,14 @@ def simulate(
         Blows during the motion of "contact", at times [s] that do not fall, from 0 to the last of
         ``t``: an event of the kind BLOW each, after any other event at its time, by the law of the
         blow of a scene in the state then reached. One at t = 0 follows the scene's own.
+    stop : EventKind, str, or iterable of them, optional
+        Kinds of events at which the motion stops, such as "impact" or ("stick", "rest"), after all
+        events of that instant; ``t`` may then be infinite. Or "decided": it stops once nothing but
+        the same can follow: at REST, in rolling or sliding without friction on level ground or in
+        a well that is proved to last for ever (not in a run down a slope, nor, with rolling
+        resistance, before it rests). Samples end at the stop. "auto" is then "contact".
+    count : int
+        Number of such events after which the motion stops, counted together.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; if not, the motion up to then
         is returned.
@@ -171,9 +180,9 @@ def simulate(
     raise_on_failure = flag("raise_on_failure", raise_on_failure)
     how = settings(
         model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
-        rest_speed, blows,
+        rest_speed, blows, stop, count,
     )  # fmt: skip
-    trajectory = Trajectory.computed(scene, how, sample_times(t))
+    trajectory = Trajectory.computed(scene, how, sample_times(t, endless=bool(how.stop)))
     if trajectory.status is not COMPLETED:
         report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=4)
     if sentence := advice(trajectory):
@@ -189,8 +198,11 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
         raise IntegrationError(trajectory)
 
 
-def sample_times(t: Any) -> FloatArray:
-    """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones."""
+def sample_times(t: Any, endless: bool = False) -> FloatArray:
+    """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones.
+
+    A motion that stops has them up to the stop: an end time, which may be infinite, is 0-d then.
+    """
     if (known := _core.sample_times(t)) is not None:
         return known
     times = array("t", t)
@@ -202,12 +214,14 @@ def sample_times(t: Any) -> FloatArray:
         )
     if _core.sample_times(times) is not None:
         return times
-    if not np.all(np.isfinite(times)):
+    if not np.all(np.isfinite(times)) and not (endless and times.ndim == 0 and times == math.inf):
         raise ValueError(f"t must be finite [s], got {shown(t)}")
     if times.size and times.min() < 0:
         raise ValueError(f"t must not be negative [s], got {float(times.min())!r}")
+    if times.ndim == 0 and endless:
+        return times
     if times.ndim == 0:
-        return even_times(0.0, float(times), _DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
+        return even_times(0.0, float(times), DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
     if times.ndim != 1 or times.size == 0:
         raise ValueError(f"t must be an end time or a 1-D array of times, got shape {times.shape}")
     i = int(np.flatnonzero(np.diff(times) <= 0)[0])

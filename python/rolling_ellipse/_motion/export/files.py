@@ -165,7 +165,7 @@ def _with_blows(about: dict[str, Any]) -> dict[str, Any]:
     effects = known[:, -len(_EFFECTS) :].tolist()
     return {
         "schema": _SCHEMA,
-        "settings": strict.without_blows(about["settings"]),
+        "settings": strict.with_events(about["settings"]),
         "events": [[*each, its] for each, its in zip(events, effects, strict=True)],
     }
 

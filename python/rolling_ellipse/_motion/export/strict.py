@@ -119,10 +119,11 @@ def with_resistance(scene: Any) -> Any:
     return scene | {"rolling_resistance": 0.0}
 
 
-def without_blows(settings: Any) -> Any:
-    """Return the values of settings of an older schema, whose motions have no blows."""
-    require_names("settings", settings, {*field_names(Settings)} - {"blows"})
-    return settings | {"blows": []}
+def with_events(settings: Any) -> Any:
+    """Return the values of settings of an older schema, of motions without blows or stops."""
+    new = {"blows": [], "stop": [], "count": 1}
+    require_names("settings", settings, {*field_names(Settings)} - {*new})
+    return settings | new
 
 
 def scene_of(values: Any) -> Scene:

@@ -56,7 +56,7 @@ _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
 _LOST = max(STATUSES) + 1  # ending code of a scene whose worker was lost
 # In code order, starting with REFUSED
-_ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
+ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
 _UNITS = SCENE_UNITS | _core.FIELDS["Impulse"] | {TIME.name: TIME.unit}
 
 
@@ -312,7 +312,7 @@ def endings_of(
 ) -> dict[str, Any]:
     """Return status and errors of motions in a shape, from all codes and the exceptions."""
     errors = {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
-    return {"status": _ENDINGS[codes - REFUSED].reshape(shape), "errors": errors}
+    return {"status": ENDINGS[codes - REFUSED].reshape(shape), "errors": errors}
 
 
 def dataset_of(

@@ -4,25 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ... import _core
-from ..._ask.check import FloatArray, array, choice, copied, require
+from ..._ask.check import FloatArray, array, choice, require, worker_count
 from ..._ask.habits import understood
 from ..._ask.impulse import Impulse
 from ..._ask.progress import reporting
 from ..._ask.records import FieldsOnly
 from ..._ask.scene import STATE_UNITS, Scene
-from ..._ask.settings import DEFAULTS, Settings
-from ..._motion.status import IntegrationError, WorkerError
+from ..._ask.settings import DEFAULTS, Settings, Stop
+from ..._motion.samples import FREE
+from ..._motion.status import STATUSES, IntegrationError, Status, WorkerError
 from ..._motion.trajectory import Trajectory
 from ..workers import Task
-from .answers import HELD, coordinates_of, counts_of, dataset_of, endings_of, solve
-from .asked import WIDTH, Chunk, SceneGrid, asked, scene_of
+from .answers import (
+    ENDINGS,
+    HELD,
+    REFUSED,
+    coordinates_of,
+    counts_of,
+    dataset_of,
+    endings_of,
+    solve,
+)
+from .asked import NAMES, WIDTH, Chunk, SceneGrid, asked, scene_of
 from .many import parts
 
 if TYPE_CHECKING:
@@ -32,9 +42,15 @@ if TYPE_CHECKING:
     from ..._pictures.ends import EndsChart
 
 Codes = npt.NDArray[np.int32]
-RESULTS = (*STATE_UNITS, "mode", "events", "first")  # arrays of Ends by name
-_ENDLESS = "finite [s], since most motions go on for ever and have no last state"
-_NONE = {"states": np.full((len(STATE_UNITS), 0), math.nan), "codes": np.zeros((4, 0), np.int32)}
+# Arrays of Ends by name
+RESULTS = (*STATE_UNITS, "mode", "events", "first", "impacts", "largest_impulse")
+_ENDLESS = "finite [s] without stop, since most motions go on for ever and have no last state"
+_NUMBERS, _CODES = (*STATE_UNITS, "t", "largest_impulse"), ("mode", "events", "impacts", "first")
+_NONE = {
+    "states": np.full((len(_NUMBERS), 0), math.nan),
+    "codes": np.zeros((len(_CODES) + 1, 0), np.int32),
+}
+_FINE = [code for code, each in STATUSES.items() if code in HELD or each is Status.NEVER]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,9 +60,17 @@ class Ends(FieldsOnly):
     Attributes
     ----------
     theta, omega, x, z, x_dot, z_dot : ndarray
-        States [rad, rad/s, m, m, m/s, m/s]; NaN where a motion ended before its time.
+        States at the times ``t`` [rad, rad/s, m, m, m/s, m/s]; NaN where a motion ended early, but
+        not if it stopped as asked, or never would, or had too many events.
+    t : ndarray
+        Times of these states [s]: those asked for, or when a motion stopped or ended early; after
+        ``max_events`` events, the time of the last one.
     mode, first : ndarray of int8
         Codes of `Mode` at the end, and of the `EventKind` of the first event; -1: none.
+    impacts : ndarray of int32
+        Numbers of impacts among the events.
+    largest_impulse : ndarray
+        Largest normal impulse of the ground in an impact [N s]; 0 without one.
     events : ndarray of int32
         Numbers of events, ``len(motion.events)`` of `simulate`; 0 for motion proved to roll. For a
         body that settles in ever smaller bounces these are the impacts down to the first rebound
@@ -55,12 +79,10 @@ class Ends(FieldsOnly):
     status : ndarray of str
         Names of `Status`, or REFUSED.
     errors : dict
-        The exceptions that `simulate` would raise, by the scene's index, a tuple.
+        The exceptions that `simulate` would raise, by the scene's index, a tuple; none for NEVER.
     axes : tuple of str
         Names of the axes, as in `MotionArrays`: "omega0" for a given omega, since omega is also a
         result; "t" where only the times vary.
-    t : ndarray
-        Requested times [s].
 
     Examples
     --------
@@ -86,7 +108,10 @@ class Ends(FieldsOnly):
     errors: dict[tuple[int, ...], Exception]
     axes: tuple[str, ...]
     t: FloatArray
+    impacts: Codes
+    largest_impulse: FloatArray
     _scenes: SceneGrid | FloatArray
+    _request: _Request
 
     def to_xarray(self) -> Dataset:
         """Return an xarray Dataset of the arrays, whose quantities have a method ``plot()``.
@@ -105,8 +130,8 @@ class Ends(FieldsOnly):
         >>> data.x.sel(omega0=4.0).values.round(3)
         array([7.271, 7.269, 7.269])
         """
-        values = {name: getattr(self, name) for name in RESULTS}
-        return dataset_of(self, self.axes, values, self._table(), t=self.t)
+        values = {name: getattr(self, name) for name in RESULTS} | {"t_end": self.t}
+        return dataset_of(self, self.axes, values, self._table(), t=self._asked)
 
     def to_dataframe(self) -> DataFrame:
         """Return `to_xarray` as a pandas DataFrame: one row per scene.
@@ -150,6 +175,84 @@ class Ends(FieldsOnly):
 
         return draw_ends(self, choice("quantity", quantity, RESULTS), path, ax, figsize)
 
+    def go_on(
+        self, t: npt.ArrayLike, *, stop: Stop = None, count: int = 1, workers: int = 1
+    ) -> Ends:
+        """Return the ends of the same motions at later times, from their states and modes on.
+
+        Counts are those from the first start on. States differ from those of a single run by
+        roundings, which the motion may magnify. Events are the same, except for the bounces before
+        the sum of infinitely many: how many of them count depends on `rest_speed`. A motion that
+        jammed stays as it is; one that had too many events may have ``max_events`` more.
+
+        Parameters
+        ----------
+        t : float or array_like
+            Times of the ends on the clock of the first start [s], none earlier than its ``t``.
+        stop, count
+            As for `simulate`; ``t`` may then be infinite.
+        workers : int
+            Number of threads, as for `simulate_many`.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is wrong.
+
+        Examples
+        --------
+        >>> thrown = {"a": 2.0, "b": 1.0, "z": 3.0, "theta": [0.3, 0.5], "restitution": 0.6}
+        >>> landed = rl.ends(thrown, np.inf, stop="impact")
+        >>> landed.go_on(np.inf, stop="impact").impacts
+        array([2, 2], dtype=int32)
+        """
+        given: dict[str, Any] = {"blows": (), "stop": stop, "count": count}
+        how = replace(self._request.settings, **given)
+        for blow, _ in self._request.settings.blows:
+            if np.any(self.t < blow):
+                raise ValueError(f"blows must be over at the times t, got one at {blow!r} s")
+        begun = self.t
+        times = _end_times(t, how)
+        if times.ndim and times.shape != begun.shape:
+            raise ValueError(f"t must be one time or have shape {begun.shape}, got {times.shape}")
+        asked = np.broadcast_to(times, begun.shape)
+        ended = np.isin(self.status, ("REFUSED", Status.JAMMED.name))
+        require("t", "no earlier than the t reached [s]", asked, ended | (asked >= begun))
+        rows = np.flatnonzero(~ended)
+        scenes, left = self._reached()[rows], (asked - begun).ravel()[rows]
+        part = solve(_core.ends_table, scenes, how, left, worker_count(workers))
+        new, codes, old = _fields(**part), part["codes"][-1], vars(self)
+        new["t"] = np.where(new["t"] == left, asked.flat[rows], begun.flat[rows] + new["t"])
+        new["status"] = ENDINGS[codes - REFUSED]
+        first = self.first.flat[rows]
+        new["first"] = np.where(first < 0, new["first"], first)
+        new["largest_impulse"] = np.fmax(new["largest_impulse"], self.largest_impulse.flat[rows])
+        for name in ("events", "impacts"):
+            new[name] += old[name].flat[rows]
+        whole = {name: old[name].copy() for name in new}
+        for name, values in new.items():
+            whole[name].flat[rows] = values
+        errors = {k: error for k, error in self.errors.items() if ended[k]}
+        for k in np.flatnonzero(~np.isin(codes, _FINE)).tolist():
+            place = tuple(map(int, np.unravel_index(rows[k], self.t.shape)))
+            errors[place] = _error(scene_of(scenes[k]), _Request(how, left), k)
+        return replace(self, **whole, errors=errors, _request=_Request(how, asked.ravel()))
+
+    def _reached(self) -> FloatArray:
+        """Return the scenes that continue in the modes reached, one per row."""
+        table = self._table().copy()
+        table[:, len(NAMES) :] = math.nan
+        for name in STATE_UNITS:
+            modes = [m for m, free in FREE.items() if name in ("theta", "omega", "x", *free)]
+            known = np.where(np.isin(self.mode, modes), getattr(self, name), math.nan)
+            table[:, NAMES.index(name)] = known.ravel()
+        return table
+
+    @property
+    def _asked(self) -> FloatArray:
+        times, shape = self._request.times, self.t.shape
+        return np.broadcast_to(times.reshape(shape if times.size == self.t.size else ()), shape)
+
     def _table(self) -> FloatArray:
         return self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
 
@@ -157,7 +260,7 @@ class Ends(FieldsOnly):
         """Return a label and the values of the argument of each axis; a list is numbered."""
         known = {
             name: (name if unit == "1" else f"{name} [{unit}]", values)
-            for name, along, values, unit in coordinates_of(self, self._table(), t=self.t)
+            for name, along, values, unit in coordinates_of(self, self._table(), t=self._asked)
             if along == [name]
         }
         sizes = zip(self.axes, self.theta.shape, strict=True)
@@ -191,6 +294,8 @@ def ends(
     max_events: int = DEFAULTS.max_events,
     rest_speed: float | None = DEFAULTS.rest_speed,
     blows: Iterable[tuple[float, Impulse]] = DEFAULTS.blows,
+    stop: Stop = DEFAULTS.stop,
+    count: int = DEFAULTS.count,
 ) -> Ends:
     """Return the last states and event counts of many motions, bit for bit those of `simulate`.
 
@@ -212,12 +317,14 @@ def ends(
         As for `simulate` [m/s].
     blows : iterable of (float, Impulse)
         As for `simulate`, for all scenes.
+    stop, count
+        As for `simulate`; only with a stop may ``t`` be infinite.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong. Times must be finite: most motions never end, and have no last
-        state.
+        If an argument is wrong. Times must be finite without ``stop``: most motions never end, and
+        have no last state.
     WorkerError
         If a worker was lost.
 
@@ -231,11 +338,8 @@ def ends(
     array([0, 0, 0, 0, 3, 3], dtype=int32)
     """
     given: dict[str, Any] = {"max_events": max_events, "rest_speed": rest_speed, "blows": blows}
-    how = Settings(**given)
-    times = array("t", t)
-    require("t", _ENDLESS, times, times != math.inf)
-    require("t", "finite and not negative [s]", times, (times >= 0) & (times < math.inf))
-    _core.validate_settings(how.core, float(times.max(initial=0.0)))
+    how = Settings(**given | {"stop": stop, "count": count})
+    times = _end_times(t, how)
     wanted = asked(scenes, t=times)
     shape = wanted.shape
     if shape is None and times.ndim and times.shape != (wanted.total,):
@@ -249,20 +353,38 @@ def ends(
             if isinstance(part, WorkerError):
                 raise part
             tables.append(part)
-            for k in (k for k, code in enumerate(part["codes"][-1].tolist()) if code not in HELD):
+            for k in (k for k, code in enumerate(part["codes"][-1].tolist()) if code not in _FINE):
                 place = chunk.begin + k
                 failed[place] = _error(scene_of(chunk.scenes[k]), request, place)
             rows += [chunk.table] if shape is None else []
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (codes.shape[1],) if shape is None else shape
-    mode, events, first, _ = (row.reshape(whole) for row in codes)
-    state = dict(zip(STATE_UNITS, (row.reshape(whole) for row in states), strict=True))
+    found = {name: row.reshape(whole) for name, row in _fields(states, codes).items()}
     return Ends(
-        **state, mode=mode.astype(np.int8), events=events,
-        first=first.astype(np.int8), **endings_of(codes[-1], failed, whole),
-        axes=wanted.axes, t=copied(np.broadcast_to(times, whole)),
+        **found, **endings_of(codes[-1], failed, whole), axes=wanted.axes,
         _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),
+        _request=request,
     )  # fmt: skip
+
+
+def _end_times(t: Any, how: Settings) -> FloatArray:
+    times = array("t", t)
+    if not how.stop:
+        require("t", _ENDLESS, times, times != math.inf)
+    require(
+        "t",
+        "finite and not negative [s]" if not how.stop else "not negative [s]",
+        times,
+        times >= 0,
+    )
+    _core.validate_settings(how.core, float(times.max(initial=0.0)))
+    return times
+
+
+def _fields(states: FloatArray, codes: Codes) -> dict[str, Any]:
+    """Return the arrays of Ends, in one dimension."""
+    found = dict(zip((*_NUMBERS, *_CODES), (*states, *codes[:-1]), strict=True))
+    return found | {name: found[name].astype(np.int8) for name in ("mode", "first")}
 
 
 def _error(scene: Scene, request: _Request, place: int) -> Exception:

@@ -308,7 +308,7 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], results.Request]:
     about, arrays = strict.npz_about(content), strict.npz_arrays(content, {"about", "t"})
     strict.require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
     is_old = about["schema"] <= _WITHOUT_BLOWS
-    settings = strict.without_blows(about["settings"]) if is_old else about["settings"]
+    settings = strict.with_events(about["settings"]) if is_old else about["settings"]
     t = arrays["t"]
     strict.require_array("t", t, np.float64, (t.size,))
     if not t.size or np.any(np.diff(t, prepend=0.0) < 0):

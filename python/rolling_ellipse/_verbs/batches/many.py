@@ -125,6 +125,8 @@ def simulate_many(
     >>> [len(motion.events) for motion in motions]
     [0, 3]
     """
+    for name in {"stop", "count"} & {*options}:
+        raise ValueError(f"{name} must be left out: ends and simulate take it")
     how = Settings(**options)
     times = sample_times(t)
     _core.validate_settings(how.core, float(times[-1]))

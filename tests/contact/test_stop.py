@@ -1,0 +1,182 @@
+"""Motions that stop at events, or once their future is decided, and batches that go on."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.contact import random_scenes
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Impulse, IntegrationError, Mode, Scene, Status
+
+STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
+THROWN = Scene(2.0, 1.0, z=3.0, theta=0.5, restitution=0.6, friction=0.3)
+SCENES = [
+    *random_scenes(40, 3),
+    *random_scenes(40, 4, slope=0.2),
+    *random_scenes(20, 5, struck=1.0),
+]
+LONG = 20.0
+KINDS = [("impact",), ("slip", "stick"), ("lift_off", "rest", "impact")]
+
+
+def followed(scene: Scene, t: Any, **how: Any) -> rl.Trajectory:
+    return rl.simulate(scene, t, raise_on_failure=False, **how)
+
+
+@pytest.mark.parametrize("kinds", KINDS)
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], count: int) -> None:
+    """Up to there it has the bits of the motion that does not stop."""
+    stopped = 0
+    for scene in SCENES:
+        whole = followed(scene, LONG, model="contact")
+        asked = [e.t for e in whole.events if e.kind.name.lower() in kinds]
+        motion = followed(scene, LONG, stop=kinds, count=count)
+        if len(asked) < count:
+            assert motion.t_end == whole.t_end or motion.status is Status.NEVER
+            continue
+        stopped += 1
+        assert motion.t_end == asked[count - 1]
+        table, n = motion.events.table, sum(e.t <= motion.t_end for e in whole.events)
+        assert all(np.array_equal(table[name], whole.events.table[name][:n]) for name in table)
+        jams = motion.events[-1].kind is EventKind.JAM
+        assert motion.status is (Status.JAMMED if jams else Status.COMPLETED)
+        for name in STATE:  # a sample rounds the angle, and what depends on it, once more
+            after = getattr(motion.events[-1].state_after, name)
+            off = abs(getattr(motion.at(motion.t_end), name) - after)
+            assert off <= 4 * EPS * max(1, abs(after))
+    assert stopped > 10
+
+
+def test_samples_end_at_the_stop() -> None:
+    """An end time, also an infinite one, gives 1001 even samples; given times are cut."""
+    to_the_end, cut = (rl.simulate(THROWN, t, stop="impact") for t in (math.inf, [0.1, 0.5, 0.7]))
+    assert to_the_end.t.size == 1001 and to_the_end.t[-1] == to_the_end.t_end == to_the_end.span
+    assert np.all(np.abs(np.diff(to_the_end.t, 2)) <= 2 * EPS)
+    assert cut.t.tolist() == [0.1, 0.5] and cut.t_end == to_the_end.t_end
+
+
+def test_kinds_may_be_named_in_any_way() -> None:
+    ways: list[Any] = ["IMPACT", "impact", EventKind.IMPACT, [EventKind.IMPACT], ("Impact",)]
+    assert len({rl.simulate(THROWN, math.inf, stop=way).t_end for way in ways}) == 1
+
+
+def test_a_blow_can_be_the_stop() -> None:
+    """A blow at the instant of the stop is struck, a later one is not."""
+    hit = rl.simulate(THROWN, math.inf, stop="impact").t_end
+    blows = [(hit, Impulse(jz=1.0)), (hit + 1, Impulse(jz=1.0))]
+    kinds = [e.kind.name for e in rl.simulate(THROWN, LONG, stop="impact", blows=blows).events]
+    assert kinds == ["IMPACT", "BLOW"]
+    last = rl.simulate(THROWN, LONG, stop=EventKind.BLOW, count=2, blows=blows)
+    assert last.t_end == hit + 1 and last.events[-1].kind is EventKind.BLOW
+
+
+@pytest.mark.parametrize(
+    ("scene", "t"),
+    [
+        (rl.scenes.report, 0.0),  # proved to roll
+        (Scene(2.0, 1.0, friction=0.3), 0.0),  # lies still
+        (Scene(2.0, 1.0, theta=0.2, omega=0.5, slope=0.1), 0.0),  # rocks in a well
+        (Scene(2.0, 1.0, omega=1.0, slope=0.01), 0.0),  # runs downhill
+        (Scene(2.0, 1.0, theta=0.3, x_dot=1.0, friction=0.0), 0.0),  # slides without friction
+        (Scene(1.0, 1.0, omega=2.0, friction=0.0), 0.0),
+    ],
+)
+@pytest.mark.parametrize("end", [LONG, math.inf])
+def test_a_motion_that_never_stops_as_asked_is_told_at_once(
+    scene: Scene, t: float, end: float
+) -> None:
+    with pytest.raises(IntegrationError, match="never stops") as caught:
+        rl.simulate(scene, end, stop="impact")
+    motion = caught.value.trajectory
+    assert motion.status is Status.NEVER and motion.t_end == t and not motion.events
+    last = rl.ends([scene], end, stop="impact")
+    assert last.status.tolist() == ["NEVER"] and last.t.tolist() == [t] and not last.errors
+
+
+def test_a_blow_to_come_keeps_the_stop_possible() -> None:
+    blows = [(2.0, Impulse(jz=30.0))]
+    stopped = rl.simulate(rl.scenes.report, math.inf, stop="impact", blows=blows)
+    assert stopped.events[-1].kind is EventKind.IMPACT and stopped.t_end > 2.0
+
+
+def test_after_a_decision_nothing_happens() -> None:
+    """A motion that is decided has no event later, and it has one until then."""
+    decided = 0
+    for scene in SCENES:
+        motion = followed(scene, math.inf, stop="decided", max_events=400)
+        if motion.status is not Status.COMPLETED:
+            assert motion.status in (Status.MAX_EVENTS, Status.JAMMED, Status.NEVER)
+            assert motion.status is not Status.NEVER or scene.slope != 0
+            continue
+        decided += 1
+        later = followed(scene, motion.t_end + 30.0, model="contact")
+        assert len(later.events) == len(motion.events)
+        assert motion.t_end == (motion.events[-1].t if motion.events else 0.0)
+    assert decided > 20
+
+
+def test_resistance_is_decided_by_rest_alone() -> None:
+    scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, rolling_resistance=0.05)
+    motion = rl.simulate(scene, math.inf, stop="decided")
+    assert motion.events[-1].kind is EventKind.REST and motion.mode[-1] == Mode.REST
+
+
+@pytest.mark.parametrize("how", [{"stop": "impact", "count": 2}, {"stop": "decided"}, {}])
+def test_ends_stop_as_simulate_does(how: dict[str, Any]) -> None:
+    end = math.inf if how else 5.0
+    last = rl.ends(SCENES, end, max_events=100, **how)
+    for k, scene in enumerate(SCENES):
+        motion = followed(scene, end, model="contact", max_events=100, **how)
+        impacts = [e for e in motion.events if e.kind is EventKind.IMPACT]
+        assert last.status[k] == motion.status.name and last.impacts[k] == len(impacts)
+        impulses = [e.state_after.reaction_z for e in impacts]
+        assert last.largest_impulse[k] == max(impulses, default=0.0)
+        full = motion.status is Status.MAX_EVENTS
+        state = motion.events[-1].state_after if full else motion.at(motion.t_end)
+        assert last.t[k] == (motion.events[-1].t if full else motion.t_end)
+        if motion.status is Status.JAMMED:
+            continue
+        assert [getattr(last, name)[k] for name in STATE] == [getattr(state, n) for n in STATE]
+
+
+def effects_of_roundings(at: rl.Ends, end: float) -> Any:
+    """How far a rounding of each part of the states moves those at the end, summed, (6, n)."""
+    last, moved = at.go_on(end), np.zeros((len(STATE), *at.t.shape))
+    for name in STATE:
+        values = getattr(at, name)
+        near = rl.Ends(**{**vars(at), name: values + 1e4 * EPS * np.maximum(np.abs(values), 1.0)})
+        other = near.go_on(end)
+        off = [getattr(other, n) - getattr(last, n) for n in STATE]
+        same = (other.events == last.events) & (other.mode == last.mode)
+        moved = moved + np.where(same, np.abs(off) / 1e4, math.inf)
+    return moved
+
+
+def test_a_batch_in_five_pieces_equals_one_run() -> None:
+    """To within 8 units, each the sum of the effects of roundings of all states handed on."""
+    end = 6.0
+    whole, last = rl.ends(SCENES, end), rl.ends(SCENES, 0.0)
+    unit = effects_of_roundings(last, end)
+    for t in (1.0, 2.5, 3.0, 4.5):
+        last = last.go_on(t)
+        unit = unit + effects_of_roundings(last, end)
+    last = last.go_on(end)
+    assert np.array_equal(last.status, whole.status)
+    known = np.isfinite(unit).all(0)
+    off = np.abs([getattr(last, name) - getattr(whole, name) for name in STATE])
+    assert np.all(off[:, known] <= 8 * unit[:, known] + 8 * EPS)
+    assert known.mean() > 0.8
+
+
+def test_a_motion_with_too_many_events_goes_on() -> None:
+    whole = rl.ends([THROWN], 10.0)
+    part = rl.ends([THROWN], 10.0, max_events=5)
+    assert part.status.tolist() == ["MAX_EVENTS"] and part.events.tolist() == [5]
+    while part.status[0] == "MAX_EVENTS":
+        part = part.go_on(10.0)
+    assert part.events.tolist() == whole.events.tolist() and part.first[0] == whole.first[0]
+    assert part.impacts.tolist() == whole.impacts.tolist() and part.t.tolist() == [10.0]
+    assert part.largest_impulse[0] == pytest.approx(whole.largest_impulse[0], rel=1e-14)
