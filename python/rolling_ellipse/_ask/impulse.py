@@ -162,8 +162,8 @@ def one_blow(name: str, value: Any) -> _core.Impulse:
         raise TypeError(f"{name} must be an Impulse, got {shown(value)}")
     if value.shape != ():
         raise ValueError(
-            f"{name} must be one blow, got an Impulse of shape {value.shape}: outcome(scene, "
-            "impulse) takes many"
+            f"{name} must be one blow, got an Impulse of shape {value.shape}: "
+            "use outcome(scene, impulse)"
         )
     return value.core
 
