@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
@@ -88,9 +89,8 @@ class ContactRun {
           checkpoint_(checkpoint),
           left_(settings.count),
           rest_speed_(rest_speed(scene_, units_, settings)),
-          motion_{units_, scene_, {}, {}, {}} {
-        begin(start);
-    }
+          motion_{units_, scene_, {}, {}, {}},
+          start_(start) {}
 
     Integration<Motion> run() {
         for (const Blow& blow : settings_.blows) {
@@ -109,6 +109,7 @@ class ContactRun {
     void follow_until(double t) {
         until_ = stops_ ? now() : std::min(t / units_.time, std::numeric_limits<double>::max());
         is_there_ = false;
+        if (start_) begin(*std::exchange(start_, std::nullopt));
         while (!ending_ && !is_there_) {
             checkpoint_();
             follow();
@@ -128,7 +129,7 @@ class ContactRun {
         after.state.mode = first_continuation(struck, start.state).mode;
         note({blow.t, EventKind::blow, before.state, after});
         ++struck_;
-        if (!ending_) begin(start);
+        start_ = start;
     }
 
     void stop() {
@@ -519,6 +520,7 @@ class ContactRun {
     double gap_rate_;
     const double rest_speed_;
     Motion motion_;
+    std::optional<InitialState> start_;     // of the motion that begins next
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
     DoubleDouble turned_;                   // quarter turns subtracted from theta
     LowParts low_;                          // low parts of state_, kept from impact to impact
