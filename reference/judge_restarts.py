@@ -136,14 +136,14 @@ def scene_of(v: Values, i: int) -> rl.Scene | None:
 
 
 def ends(v: Values, t: Any) -> tuple[Any, Any]:
-    """States and codes (mode, events, first, ending) of `rl.ends`; nan, -1 for refused starts."""
+    """States and codes of `rl.ends` (mode, events, first, ending); NaN, -1 for refused starts."""
     columns = [  # values not drawn have a scene's defaults; NumPy turns None into NaN
         v[name] if name in v else np.full(len(t), getattr(rl.Scene, name), float)
         for name in _core.FIELDS["Scene"]
     ]
     table = np.column_stack(columns + [np.full(len(t), np.nan)] * 4)  # no impulse
     found = _core.ends_table(table, DEFAULTS.core, t, 1)
-    return found["states"], found["codes"]
+    return found["states"][: len(STATE)], found["codes"]
 
 
 def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:

@@ -201,8 +201,8 @@ std::pair<std::optional<State>, double> reached_by(const Solution& solution, dou
 }
 
 // The end of each motion: its state, NaN without one, the time, and the largest normal impulse of
-// its impacts; and codes, -1 for none: mode, numbers of events and impacts, kind of the first
-// event, and ending.
+// its impacts; and codes, -1 for none: mode, number of events, kind of the first event, ending, and
+// number of impacts.
 py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
                     int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -230,9 +230,9 @@ py::dict ends_table(const Array& scenes, const Settings& settings, const Array& 
             largest = std::max(largest, event.after.reaction_z);
         }
         codes.mutable_at(1, i) = static_cast<std::int32_t>(events.size());
-        codes.mutable_at(2, i) = impacts;
-        if (!events.empty()) codes.mutable_at(3, i) = static_cast<int>(events.front().kind);
-        codes.mutable_at(4, i) = static_cast<int>(solution.ending);
+        if (!events.empty()) codes.mutable_at(2, i) = static_cast<int>(events.front().kind);
+        codes.mutable_at(3, i) = static_cast<int>(solution.ending);
+        codes.mutable_at(4, i) = impacts;
         if (solution.motion.segments.empty()) return;
         const auto [state, time] = reached_by(solution, t);
         double* to = states.mutable_data() + i;

@@ -212,7 +212,8 @@ def test_arguments_that_could_be_valid_are_accepted_with_no_scenes(given: dict[s
 
 
 def test_simulate_many_takes_the_arguments_of_simulate() -> None:
-    own = {"scene", "scenes", "workers", "progress", "out", "returns"}
+    """All but those that stop a motion: all motions have the same sample times."""
+    own = {"scene", "scenes", "workers", "progress", "out", "returns", "stop", "count"}
     mine, others = (
         {name: each for name, each in inspect.signature(of).parameters.items() if name not in own}
         for of in (simulate_many, simulate)

@@ -45,10 +45,14 @@ Codes = npt.NDArray[np.int32]
 # Arrays of Ends by name
 RESULTS = (*STATE_UNITS, "mode", "events", "first", "impacts", "largest_impulse")
 _ENDLESS = "finite [s] without stop, since most motions go on for ever and have no last state"
-_NUMBERS, _CODES = (*STATE_UNITS, "t", "largest_impulse"), ("mode", "events", "impacts", "first")
+_NUMBERS, _CODES = (
+    (*STATE_UNITS, "t", "largest_impulse"),
+    ("mode", "events", "first", "ending", "impacts"),
+)
+_ENDING = _CODES.index("ending")
 _NONE = {
     "states": np.full((len(_NUMBERS), 0), math.nan),
-    "codes": np.zeros((len(_CODES) + 1, 0), np.int32),
+    "codes": np.zeros((len(_CODES), 0), np.int32),
 }
 _FINE = [code for code, each in STATUSES.items() if code in HELD or each is Status.NEVER]
 
@@ -221,7 +225,7 @@ class Ends(FieldsOnly):
         rows = np.flatnonzero(~ended)
         scenes, left = self._reached()[rows], (asked - begun).ravel()[rows]
         part = solve(_core.ends_table, scenes, how, left, worker_count(workers))
-        new, codes, old = _fields(**part), part["codes"][-1], vars(self)
+        new, codes, old = _fields(**part), part["codes"][_ENDING], vars(self)
         new["t"] = np.where(new["t"] == left, asked.flat[rows], begun.flat[rows] + new["t"])
         new["status"] = ENDINGS[codes - REFUSED]
         first = self.first.flat[rows]
@@ -353,7 +357,9 @@ def ends(
             if isinstance(part, WorkerError):
                 raise part
             tables.append(part)
-            for k in (k for k, code in enumerate(part["codes"][-1].tolist()) if code not in _FINE):
+            for k in (
+                k for k, code in enumerate(part["codes"][_ENDING].tolist()) if code not in _FINE
+            ):
                 place = chunk.begin + k
                 failed[place] = _error(scene_of(chunk.scenes[k]), request, place)
             rows += [chunk.table] if shape is None else []
@@ -361,7 +367,7 @@ def ends(
     whole = (codes.shape[1],) if shape is None else shape
     found = {name: row.reshape(whole) for name, row in _fields(states, codes).items()}
     return Ends(
-        **found, **endings_of(codes[-1], failed, whole), axes=wanted.axes,
+        **found, **endings_of(codes[_ENDING], failed, whole), axes=wanted.axes,
         _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),
         _request=request,
     )  # fmt: skip
@@ -383,7 +389,8 @@ def _end_times(t: Any, how: Settings) -> FloatArray:
 
 def _fields(states: FloatArray, codes: Codes) -> dict[str, Any]:
     """Return the arrays of Ends, in one dimension."""
-    found = dict(zip((*_NUMBERS, *_CODES), (*states, *codes[:-1]), strict=True))
+    found = dict(zip((*_NUMBERS, *_CODES), (*states, *codes), strict=True))
+    del found["ending"]
     return found | {name: found[name].astype(np.int8) for name in ("mode", "first")}
 
 
