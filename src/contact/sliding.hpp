@@ -154,9 +154,9 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// The state of a scene with its angle measured again, for new axes, so that h and h' change by
-// rounding. A gap of that order is kept, and so are the slip and the rate of the gap on the ground:
-// a contact remains a contact, and a body without slip remains without slip.
+// The state of a scene with its angle measured for new axes, which changes h and h' by rounding.
+// The gap is kept and, in contact, so are its rate and the slip: a contact remains a contact, and a
+// body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // How a body continues from its start, which may be in the air.

@@ -121,7 +121,7 @@ struct Rolling {
     }
 };
 
-// Rounding errors of an energy and of the polynomials of the motion.
+// Relative rounding error of energies and of the polynomials of a motion.
 constexpr double rounding = 16 * epsilon;
 // Each correction is a step of Newton's method for an extremum; more than two are rarely needed.
 constexpr int most_corrections = 50;

@@ -184,7 +184,7 @@ def test_blows_of_auto_are_of_the_contact_model_and_keep_the_bits_of_rolling() -
 
 
 def test_a_blow_at_the_start_follows_that_of_the_scene() -> None:
-    """Two presses that stick, at one point, turn the body twice as fast as one of them."""
+    """Two sticking presses at one point turn the body twice as fast as a single one."""
     struck = rl.scenes.report
     both = struck.replace(impulse=Impulse.press(96.0, 1.5))
     motion = rl.simulate(struck, [0.0, 0.5], blows=((0.0, Impulse.press(48.0, 1.5)),))

@@ -106,7 +106,7 @@ def test_wrong_films_are_rejected_and_their_misreading_is_named(kind: str, sigma
 
 
 def test_no_misreading_explains_the_film_of_a_body_in_thick_air() -> None:
-    """Residuals are correlated: errors grow by more than the root of 3, the factor for c = 1/2."""
+    """Correlated residuals widen errors by more than sqrt(3), the factor at correlation 1/2."""
     tracks = film(11)
     fit = fitted(tracks | WRONG["in air"][0](tracks, None), sigma=None)
     assert "does not fit" in fit.message and "it fits" not in fit.message

@@ -1,6 +1,6 @@
 """Each stabilization of the model "multipliers" at its knots and between them.
 
-tests/stability has the drift of constraints without stabilization, and the cost of feedback.
+tests/stability covers the drift without stabilization and the cost of feedback.
 """
 
 import math

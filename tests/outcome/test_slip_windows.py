@@ -44,7 +44,7 @@ class Body(NamedTuple):
 
 
 def friction_at_rest(a: float, b: float, gyration2: float) -> float:
-    """The least friction with which a body at rest slips at no angle: max h |h'| / (k^2 + h^2)."""
+    """The least friction that prevents slip from rest at any angle: max h |h'| / (k^2 + h^2)."""
     theta = np.linspace(0, math.pi / 2, 4001)
     h2 = (a * np.sin(theta)) ** 2 + (b * np.cos(theta)) ** 2
     lead = abs(a * a - b * b) * np.sin(theta) * np.cos(theta)  # h |h'|

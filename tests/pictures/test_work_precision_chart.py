@@ -202,7 +202,7 @@ def test_each_small_multiple_shows_one_library_on_the_same_axes() -> None:
 
 
 @pytest.mark.parametrize(("x", "y"), [("linf", "samples_time"), ("gap", "evaluations")])
-def test_any_cost_can_be_plotted_over_any_error(x: str, y: str) -> None:
+def test_any_cost_can_be_plotted_against_any_error(x: str, y: str) -> None:
     found = replace(FOUND, runs=(run("method2", 1e-3, 2.0, evaluations=7),))
     found = replace(found, runs=(replace(found.runs[0], errors=Errors(*[1e-3] * 6)),))
     line: Any = found.plot(x, y, ax=Figure().add_subplot()).lines["method2"]

@@ -55,7 +55,7 @@ def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> Non
     tolerance = 2e-3 * size
     found = track(motion, [(0.0, end)], tolerance)
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
-    # an impact keeps its time up to the rounding of t: within it no error is bounded
+    # the time of an impact is rounded like t: no bound holds as close to it as that
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
     for event in motion.events:
         times = times[np.abs(times - event.t) > near]

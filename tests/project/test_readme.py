@@ -45,7 +45,7 @@ PAGES = {  # with the files that their code writes
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # the guides show it
 @pytest.mark.parametrize("page", PAGES)
-def test_the_code_of_a_page_runs(
+def test_the_code_on_a_page_runs(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

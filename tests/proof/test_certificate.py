@@ -44,7 +44,7 @@ class Judged(NamedTuple):
         return truth.normal / truth.normal_error, np.where(lost, -np.inf, grip)
 
     def distance(self) -> Long:
-        """Relative distance to the nearer threshold: of friction, or of N/(m g) to 0."""
+        """Relative distance to the nearer threshold: the friction needed, or N/(m g) = 0."""
         friction, needed = self.sample.friction, self.truth.needed
         known = np.isfinite(friction) & np.isfinite(needed) & (needed > 0)
         off = np.abs(np.where(known, friction, np.inf) / np.where(known, needed, 1) - 1)

@@ -43,7 +43,7 @@ _NOT_FINITE = re.compile(
 )
 GRACE = 0.5  # time within which Ctrl-C must end a call [s]
 _LINE = re.compile(r"(?:(\w+) = )?(.*)", re.DOTALL)
-# Factors of the time limit: pictures, whole batches and 1e6 steps take longer than other lines.
+# Multipliers of the time limit: pictures, whole batches and 1e6 steps take longer than other lines.
 _PATIENCE = {
     "plot": 6, "animate": 6, "fit": 3, "report.simulate": 4, "when": 20, "simulate_many": 8,
     "load_many": 8, "to_dataframe": 2, "_html": 20,

@@ -358,8 +358,8 @@ OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is N
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
     """Return the scene with all these arguments, in a state that some motion has reached.
 
-    Down a slope its energy may exceed the constructor's limit, and it may be about to hit the
-    ground.
+    After a descent its energy may exceed the limit of the constructor, and the body may be about
+    to hit the ground.
     """
     scene = object.__new__(Scene)
     known = {each.name: arguments.get(each.name, each.default) for each in fields(Scene)}

@@ -368,7 +368,7 @@ def scored_ones(
 
 
 def gradients() -> list[Gradient]:
-    """Return the known derivatives of states by arguments of their scenes.
+    """Return the known derivatives of states with respect to arguments of scenes.
 
     Examples
     --------

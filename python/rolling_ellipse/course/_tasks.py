@@ -177,7 +177,7 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
         thrown = Scene(**_EGG | _varied(DATA["thrown"], rng))
         motion = simulate(thrown, times)
         first, last = _slips(motion)
-        # one impact, late enough, in which the slip is far from its end
+        # one impact, late enough, that keeps over a quarter of the slip
         if len(motion.events) == 1 and last / first > 0.25 and times[7] < motion.events[0].t:
             break
     tracks = {"t": times}
