@@ -180,3 +180,13 @@ def test_a_motion_with_too_many_events_goes_on() -> None:
     assert part.events.tolist() == whole.events.tolist() and part.first[0] == whole.first[0]
     assert part.impacts.tolist() == whole.impacts.tolist() and part.t.tolist() == [10.0]
     assert part.largest_impulse[0] == pytest.approx(whole.largest_impulse[0], rel=1e-14)
+
+
+def test_a_motion_too_fast_for_doubles_stays_as_it_is() -> None:
+    """It has no state to go on from, and keeps its events, time and exception; others go on."""
+    fast = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
+    at = rl.ends([fast, THROWN], [1e300, 1.0])
+    later = at.go_on([1e301, 2.0])
+    assert later.status.tolist() == ["STEP_TOO_SMALL", "COMPLETED"] and later.mode[0] == -1
+    assert later.events[0] == at.events[0] > 5 and later.impacts[0] == at.impacts[0]
+    assert later.t.tolist() == [at.t[0], 2.0] and later.errors == at.errors

@@ -187,7 +187,8 @@ class Ends(FieldsOnly):
         Counts are those from the first start on. States differ from those of a single run by
         roundings, which the motion may magnify. Events are the same, except for the bounces before
         the sum of infinitely many: how many of them count depends on `rest_speed`. A motion that
-        jammed stays as it is; one that had too many events may have ``max_events`` more.
+        jammed, or became too fast for doubles, stays as it is; one that had too many events may
+        have ``max_events`` more.
 
         Parameters
         ----------
@@ -220,7 +221,7 @@ class Ends(FieldsOnly):
         if times.ndim and times.shape != begun.shape:
             raise ValueError(f"t must be one time or have shape {begun.shape}, got {times.shape}")
         asked = np.broadcast_to(times, begun.shape)
-        ended = np.isin(self.status, ("REFUSED", Status.JAMMED.name))
+        ended = (self.mode == -1) | (self.status == Status.JAMMED.name)
         require("t", "no earlier than the t reached [s]", asked, ended | (asked >= begun))
         rows = np.flatnonzero(~ended)
         scenes, left = self._reached()[rows], (asked - begun).ravel()[rows]
