@@ -32,10 +32,11 @@ InitialState start_after(const Scene& scene, EventKind kind, const State& before
     return start;
 }
 
-// Tells, piece by piece, whether a slide lasts for ever. Without friction its forces depend on the
-// angle alone, and half a turn or two turning points tell. With friction swings repeat themselves
-// as long as the slip keeps its side: it is enough that all slip in one swing exceeds all of the
-// slip in the first.
+// Tells, piece by piece, whether a slide lasts for ever. Without friction the energy gives omega^2,
+// and with it all forces, as functions of the angle alone: half a turn or two turning points tell.
+// With friction swings repeat themselves as long as the slip keeps its side, and each full swing
+// adds the same slip: it is enough that all slip in one of them exceeds all slip up to the end of
+// the first.
 class EndlessSlide {
   public:
     EndlessSlide(const Slide& slide, double friction)
@@ -323,11 +324,13 @@ class ContactRun {
         SlideBounds bounds{time_left(), settings_.max_steps - counts_.steps};
         if (!settings_.stop) return slide_on(slide, bounds, checkpoint_);
         EndlessSlide endless(slide, scene_.friction);
+        bool lasts_for_ever = false;
         const SlideStop stop = slide_on(slide, bounds, [&] {
             checkpoint_();
-            if (endless.is_known()) bounds.most_pieces = 0;
+            lasts_for_ever = endless.is_known();
+            if (lasts_for_ever) bounds.most_pieces = 0;
         });
-        if (bounds.most_pieces > 0) return stop;
+        if (!lasts_for_ever) return stop;
         last_for_ever(scene_.slope == 0);
         return SlideStop::time_is_over;
     }

@@ -182,6 +182,16 @@ def test_a_motion_with_too_many_events_goes_on() -> None:
     assert part.largest_impulse[0] == pytest.approx(whole.largest_impulse[0], rel=1e-14)
 
 
+def test_a_slide_that_begins_without_steps_left_is_not_endless() -> None:
+    """As without a stop, MAX_STEPS is reported for every number of steps that is too small."""
+    scene = Scene(3.6, 0.7, theta=-2.7, slope=0.4, friction=0.5)
+    whole = followed(scene, 3.0, model="contact")
+    assert whole.success and len(whole.events) > 3
+    for steps in range(1, whole.stats["steps"]):
+        how = {"max_steps": steps, "stop": "jam"}
+        assert followed(scene, 3.0, **how).status is Status.MAX_STEPS, steps
+
+
 def test_a_motion_too_fast_for_doubles_stays_as_it_is() -> None:
     """It has no state to go on from, and keeps its events, time and exception; others go on."""
     fast = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
