@@ -200,3 +200,12 @@ def test_a_motion_too_fast_for_doubles_stays_as_it_is() -> None:
     assert later.status.tolist() == ["STEP_TOO_SMALL", "COMPLETED"] and later.mode[0] == -1
     assert later.events[0] == at.events[0] > 5 and later.impacts[0] == at.impacts[0]
     assert later.t.tolist() == [at.t[0], 2.0] and later.errors == at.errors
+
+
+def test_a_motion_whose_continuation_is_refused_keeps_its_counts() -> None:
+    """A body that has landed and rolls cannot be followed for 1e15 half turns."""
+    at = rl.ends([Scene(2.0, 1.0, z=1.5, theta=0.3, omega=3.0)], 3.0)
+    later = at.go_on(1e17)
+    assert at.events[0] > 0 and later.status.tolist() == ["REFUSED"] and later.mode[0] == -1
+    assert later.events[0] == at.events[0] and later.impacts[0] == at.impacts[0] > 0
+    assert "half turns" in str(later.errors[(0,)])

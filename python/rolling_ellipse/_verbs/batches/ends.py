@@ -233,7 +233,7 @@ class Ends(FieldsOnly):
         new["first"] = np.where(first < 0, new["first"], first)
         new["largest_impulse"] = np.fmax(new["largest_impulse"], self.largest_impulse.flat[rows])
         for name in ("events", "impacts"):
-            new[name] += old[name].flat[rows]
+            new[name] = np.maximum(new[name], 0) + old[name].flat[rows]  # -1 where refused
         whole = {name: old[name].copy() for name in new}
         for name, values in new.items():
             whole[name].flat[rows] = values
