@@ -378,12 +378,8 @@ def _end_times(t: Any, how: Settings) -> FloatArray:
     times = array("t", t)
     if not how.stop:
         require("t", _ENDLESS, times, times != math.inf)
-    require(
-        "t",
-        "finite and not negative [s]" if not how.stop else "not negative [s]",
-        times,
-        times >= 0,
-    )
+    finite = "" if how.stop else "finite and "
+    require("t", f"{finite}not negative [s]", times, times >= 0)
     _core.validate_settings(how.core, float(times.max(initial=0.0)))
     return times
 

@@ -71,12 +71,13 @@ def gathered_events(
     shape: tuple[int, ...] | None,
 ) -> EventArrays:  # fmt: skip
     """Return the events; the arguments are those of `gathered`."""
-    found = [_events_in(0, np.empty((0, len(_core.COLUMNS["scenes"]))), None)]
+    found = [_events_in(0, np.empty((0, len(_core.COLUMNS["scenes"]))), _NONE)]
 
     def read() -> Iterator[tuple[FloatArray, Any]]:
         begin = 0
         for table, tables in parts:
-            found.append(_events_in(begin, table, tables))
+            if isinstance(tables, dict):  # they are not lost
+                found.append(_events_in(begin, table, tables))
             begin += len(table)
             yield table, tables
 
@@ -87,10 +88,8 @@ def gathered_events(
     )
 
 
-def _events_in(begin: int, table: FloatArray, tables: Tables | Exception | None) -> dict[str, Any]:
+def _events_in(begin: int, table: FloatArray, tables: Tables) -> dict[str, Any]:
     """Return the columns of the events of scenes from the index `begin` on."""
-    if not isinstance(tables, dict):  # they are lost
-        table, tables = table[:0], _NONE
     place = begin + _places_of(tables)
     return {"scene": place} | columns_of(tables["events"], bodies_of(table, tables))
 
