@@ -7,11 +7,6 @@
 namespace rolling_ellipse {
 namespace {
 
-SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
-    const auto [quarters, angle] = quarter_view(body.side * view.sin, view.cos);
-    return {{}, quarters, angle, body.side * omega * body.time, {}};
-}
-
 // The sum with which the motion starts; null if it starts with a series.
 const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
@@ -207,7 +202,9 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     flow.omega = omega;
     flow.x = x;
     flow.body = slope_body(body, slope);
-    flow.start = first_place(flow.body, flat_view(body.axes(), theta), omega);
+    const FlatView view = flat_view(body.axes(), theta);
+    const auto [quarters, angle] = quarter_view(flow.body.side * view.sin, view.cos);
+    flow.start = {{}, quarters, angle, flow.body.side * omega * flow.body.time, {}};
     flow.datum = datum_of(flow.body, flow.start);
     flow.acceleration = acceleration_at(flow.body, flow.datum.at, flow.start.omega);
     const bool is_circle = flow.body.c2 == 0;
