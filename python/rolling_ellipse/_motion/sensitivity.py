@@ -242,6 +242,7 @@ def _derivatives(
     Whether the motion is split into parts depends on its events and its end, not on its samples.
     """
     n = len(motion.t)
+    ends = slice(n, n + 1), slice(n + 1, None)  # rows of the end and of the events, after samples
     whole = motion.sol(np.append(motion.t, motion.t_end))
     value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
     error, others = np.zeros((2, *value.shape[1:]))  # errors of the steps, and of the motion
@@ -254,13 +255,13 @@ def _derivatives(
             value[..., k], error[:, k] = best.value, best.error
             if motion.method != "exact" and not problems[k]:
                 others[:, k] = error_of_method(whole, name, side, best)
-    off = np.fmax(*(_relative(motion, names, value[:, at], error[at]) for at in _ends(n)))
+    off = np.fmax(*(_relative(motion, names, value[:, at], error[at]) for at in ends))
     rough, taken = np.flatnonzero(~(off <= FINE)), np.array([], int)
     if rough.size and len(motion.events) > EVENTS:
         some = tuple(names[k] for k in rough)
         if (parts := chained(whole, some, side)) is not None:
             total = parts.error + parts.parted
-            by_parts = (_relative(motion, some, parts.value[:, at], total[at]) for at in _ends(n))
+            by_parts = (_relative(motion, some, parts.value[:, at], total[at]) for at in ends)
             better = np.fmax(*by_parts) < off[rough]
             taken = rough[better]
             value[..., taken], error[:, taken] = parts.value[..., better], parts.error[:, better]
@@ -275,11 +276,6 @@ def _derivatives(
         if k in taken:
             _require_near(motion, name, size(value[:, :n, k]) * size_of(motion.scene, name))
     return np.delete(value, n, axis=1), np.delete(error + others, n, axis=0)
-
-
-def _ends(n: int) -> tuple[slice, slice]:
-    """Return the rows of the end and of the events, which follow n samples."""
-    return slice(n, n + 1), slice(n + 1, None)
 
 
 def _require_near(motion: Trajectory, name: str, growth: FloatArray) -> None:
