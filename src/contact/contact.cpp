@@ -318,8 +318,8 @@ class ContactRun {
         sliding_on_ = end;
     }
 
-    // Extends a slide until something ends it. If the motion is to stop at an event, it also ends
-    // where the slide is known to last for ever.
+    // Extends a slide until something ends it or, if the motion is to stop at an event, until the
+    // slide is known to last for ever.
     SlideStop extend(Slide& slide) {
         SlideBounds bounds{time_left(), settings_.max_steps - counts_.steps};
         if (!settings_.stop) return slide_on(slide, bounds, checkpoint_);
@@ -335,8 +335,8 @@ class ContactRun {
         return SlideStop::time_is_over;
     }
 
-    // Continues where the rotation has vanished and rolling resistance turns its couple or holds
-    // the body. It is an event only if the mode changes.
+    // Continues where rotation has stopped and rolling resistance reverses its couple or holds the
+    // body. Only a change of mode is an event.
     void turn_back() {
         const Continuation next = continuation(scene_, state_);
         const bool goes_on = next.mode == state_.mode && next.paradox == Painleve::determined;
