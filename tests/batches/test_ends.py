@@ -1,5 +1,6 @@
 """`ends` gives the last samples and the events of `simulate`, for any shape and any workers."""
 
+import math
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -72,6 +73,19 @@ def test_a_motion_that_stops_early_has_an_exception_in_place_of_its_end() -> Non
     assert isinstance(error, rl.IntegrationError) and found.events[1] == 10_000
     assert error.trajectory.settings.rest_speed == 0.01
     assert seen == [(2, 2)]
+
+
+def test_the_exceptions_of_a_batch_hold_no_arcs() -> None:
+    """An arc takes kilobytes, and a motion has up to max_events of them: they are solved again."""
+    slips = rl.Scene(2.0, 1.0, friction=0.3, restitution=0.8, z=2.1, theta=0.2)
+    cases: list[tuple[Any, Any]] = [([1e6], None), (math.inf, "decided")]
+    for t, stop in cases:
+        kept = rl.ends([slips], t, max_events=50, stop=stop).errors[0,]
+        assert isinstance(kept, rl.IntegrationError) and "_solution" not in vars(kept.trajectory)
+        with pytest.raises(rl.IntegrationError) as raised:
+            rl.simulate(slips, t, max_events=50, stop=stop)
+        assert str(kept) == str(raised.value)
+        assert kept.trajectory.events == raised.value.trajectory.events
 
 
 @pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])

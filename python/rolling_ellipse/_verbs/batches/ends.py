@@ -15,7 +15,7 @@ from ..._ask.check import FloatArray, array, choice, require, worker_count
 from ..._ask.habits import understood
 from ..._ask.impulse import Impulse
 from ..._ask.progress import reporting
-from ..._ask.records import FieldsOnly
+from ..._ask.records import FieldsOnly, trusted
 from ..._ask.scene import STATE_UNITS, Scene
 from ..._ask.settings import DEFAULTS, Settings, Stop
 from ..._motion.samples import FREE
@@ -395,6 +395,8 @@ def _error(scene: Scene, request: _Request, place: int) -> Exception:
     """Return the exception that `simulate` raises for a scene."""
     t = request.times[0 if request.times.size == 1 else place]
     try:
-        return IntegrationError(Trajectory.computed(scene, request.settings, np.array([t])))
+        motion = Trajectory.computed(scene, request.settings, np.array([t]))
     except ValueError as error:  # a time beyond what a double resolves
         return error
+    # Without its arcs, as after pickling: those of thousands of motions would fill the memory
+    return IntegrationError(trusted(Trajectory, motion.__getstate__()))
