@@ -218,11 +218,12 @@ class Trajectory(FieldsOnly):
         A start (q, q_dot) off the constraints replaces the start of the scene. A single time, 0-d,
         is that of the end of a motion that stops, whose samples are even.
         """
-        solution, samples = _core.simulate(scene.core, settings.core, times.reshape(-1), start)
-        values, span = fields_of(samples), float(times.flat[-1])
+        until = times if times.ndim else times.reshape(1)
+        solution, samples = _core.simulate(scene.core, settings.core, until, start)
+        values, span = fields_of(samples), float(until[-1])
         if settings.stop:
             span = min(span, solution.followed_until)
-        if times.ndim == 0:
+        if until is not times:
             values = sampled(solution, even_times(0.0, solution.followed_until, DEFAULT_SAMPLES))
         values["scene"], values["settings"], values["span"] = scene, settings, span
         if start is not None:

@@ -182,7 +182,7 @@ def simulate(
         model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
         rest_speed, blows, stop, count,
     )  # fmt: skip
-    trajectory = Trajectory.computed(scene, how, sample_times(t, endless=bool(how.stop)))
+    trajectory = Trajectory.computed(scene, how, sample_times(t, how.stop))
     if trajectory.status is not COMPLETED:
         report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=4)
     if sentence := advice(trajectory):
@@ -198,7 +198,7 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
         raise IntegrationError(trajectory)
 
 
-def sample_times(t: Any, endless: bool = False) -> FloatArray:
+def sample_times(t: Any, stop: tuple[str, ...] = ()) -> FloatArray:
     """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones.
 
     A motion that stops has them up to the stop: an end time, which may be infinite, is 0-d then.
@@ -214,11 +214,11 @@ def sample_times(t: Any, endless: bool = False) -> FloatArray:
         )
     if _core.sample_times(times) is not None:
         return times
-    if not np.all(np.isfinite(times)) and not (endless and times.ndim == 0 and times == math.inf):
+    if not np.all(np.isfinite(times)) and not (stop and times.ndim == 0 and times == math.inf):
         raise ValueError(f"t must be finite [s], got {shown(t)}")
     if times.size and times.min() < 0:
         raise ValueError(f"t must not be negative [s], got {float(times.min())!r}")
-    if times.ndim == 0 and endless:
+    if times.ndim == 0 and stop:
         return times
     if times.ndim == 0:
         return even_times(0.0, float(times), DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
