@@ -10,8 +10,6 @@ from .. import _core
 from .._ask.check import file_name
 from .._motion.export.new_files import write_new
 
-_ARCHIVE = "examples.zip"  # next to the core, written by notebooks/pack.py in every build
-
 
 def examples(folder: str | PathLike[str]) -> list[Path]:
     """Write the notebooks, without outputs, and the tables of reference states into a folder.
@@ -46,6 +44,13 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     ['01_first_roll.ipynb', '02_physics.ipynb']
     """
     place = Path(file_name("folder", folder))
-    with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    return write_new(place, files)
+    return write_new(place, packed("examples.zip"))
+
+
+def packed(archive: str, start: str = "") -> dict[str, bytes]:
+    """Return the files of an archive that notebooks/pack.py puts next to the core in every build.
+
+    Only those whose names begin with `start` are read.
+    """
+    with ZipFile(Path(str(_core.__file__)).with_name(archive)) as files:
+        return {name: files.read(name) for name in files.namelist() if name.startswith(start)}

@@ -6,16 +6,14 @@ import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from zipfile import ZipFile
 
 import numpy as np
 
-from .. import _core
 from .._ask.check import file_name, shown, whole_within
 from .._motion.export.atomic import write
+from .._verbs.examples import packed
 from ._tasks import DATA, Task, checked, film, measured_impacts, numbered, sheet_of
 
-_ARCHIVE = "course.zip"  # next to the core, written by notebooks/pack.py in every build
 _TASKS = re.compile(r"(<!-- tasks ([\d. ]+) -->\n).*?(<!-- end of tasks -->\n)", re.DOTALL)
 _OWN = "*Numbers of seed {}. Pictures and examples in the text keep numbers of their own.*"
 _TABLES = {  # heads of the numbers that all tasks of a sheet share
@@ -98,10 +96,8 @@ def sheet(number: int, *, seed: int | None = None) -> Sheet:
     *Numbers of seed 7
     """
     number = whole_within("number", number, 10)
-    with ZipFile(Path(str(_core.__file__)).with_name(_ARCHIVE)) as archive:
-        names = [name for name in archive.namelist() if name.startswith(f"{number:02}")]
-        files = {name: archive.read(name) for name in names}
-    (text,) = (files.pop(name).decode() for name in names if name.endswith(".md"))
+    files = packed("course.zip", f"{number:02}")
+    (text,) = (files.pop(name).decode() for name in [*files] if name.endswith(".md"))
     return Sheet(number, checked(seed), filled(text, checked(seed)), files)
 
 
