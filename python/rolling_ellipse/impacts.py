@@ -337,7 +337,8 @@ def fit(
     >>> print(f"ln B = {by['newton'].log_evidence - by['stronge'].log_evidence:.1f}")
     ln B = -1.6
     """
-    if choice("law", law, (*LAWS, "all")) == "all":
+    law = choice("law", law, (*LAWS, "all"))
+    if law == "all":
         body: dict[str, Any] = {"a": a, "b": b, "gyration2": gyration2, "sigma": sigma}
         return {each: fit(before, after, **body, law=each, minimise=minimise) for each in LAWS}
     measure = _MEASURES[choice("minimise", minimise, get_args(Measure))]
@@ -390,8 +391,7 @@ def fit(
     likeliest, evidence, covariance = _integral(densities)
     stretch = np.array([1.0, 1 + friction**2])  # derivatives by restitution and friction's angle
     return FittedImpacts(
-        choice("law", law, LAWS), restitution, friction, off, *deviations,
-        measured=end, predicted=predicted,
+        law, restitution, friction, off, *deviations, measured=end, predicted=predicted,
         log_likelihood=likeliest, covariance=covariance * np.outer(stretch, stretch),
         log_evidence=evidence,
     )  # fmt: skip
@@ -405,7 +405,8 @@ def _halves(places: Any) -> list[Any]:
 
 
 def _friction(angle: FloatArray) -> FloatArray:
-    return np.where(np.tan(angle) > 1e6, math.inf, np.tan(angle))  # a coefficient's largest
+    friction = np.tan(angle)
+    return np.where(friction > 1e6, math.inf, friction)  # a coefficient's largest
 
 
 def _integral(densities: Callable[[FloatArray], FloatArray]) -> tuple[float, float, FloatArray]:
