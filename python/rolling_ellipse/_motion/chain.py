@@ -88,8 +88,8 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 def free_of(scene: Scene) -> tuple[str, ...]:
     """Return the coordinates that a start leaves free: those that neither ground nor grip give."""
     mode = (scene if scene.impulse is None else scene.replace(impulse=None)).initial_state.mode
-    given = [name for name in FREE[mode] if scene.z is not None or getattr(scene, name) is not None]
-    return "theta", "omega", "x", *given
+    in_air = scene.z is not None
+    return tuple(name for name in FREE[mode] if in_air or getattr(scene, name) is not None)
 
 
 def by_state(part: Trajectory, free: Iterable[str]) -> Pair:

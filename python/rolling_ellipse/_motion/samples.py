@@ -37,10 +37,11 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
-# Components of a state that the ground leaves free besides theta, omega and x
+# Components of a state that the ground leaves free
+_ON_GROUND = ("theta", "omega", "x")
 FREE: dict[Mode, tuple[str, ...]] = {
-    Mode.ROLLING: (), Mode.REST: (), Mode.SLIDING: ("x_dot",),
-    Mode.FLIGHT: ("z", "x_dot", "z_dot"),
+    Mode.ROLLING: _ON_GROUND, Mode.REST: _ON_GROUND, Mode.SLIDING: (*_ON_GROUND, "x_dot"),
+    Mode.FLIGHT: (*_ON_GROUND, "z", "x_dot", "z_dot"),
 }  # fmt: skip
 _OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
 

@@ -392,8 +392,7 @@ class Trajectory(FieldsOnly):
         'ROCKS'
         """
         at = self.sol(number("t", t))
-        names = ("theta", "omega", "x", *FREE[_core.Mode(int(at.mode[0]))])
-        state = {name: float(getattr(at, name)[0]) for name in names}
+        state = {name: float(getattr(at, name)[0]) for name in FREE[_core.Mode(int(at.mode[0]))]}
         constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
         return reached_scene(self.scene.__getstate__() | constrained | state)
 

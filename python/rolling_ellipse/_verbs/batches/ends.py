@@ -248,7 +248,7 @@ class Ends(FieldsOnly):
         table = self._table().copy()
         table[:, len(NAMES) :] = math.nan
         for name in STATE_UNITS:
-            modes = [m for m, free in FREE.items() if name in ("theta", "omega", "x", *free)]
+            modes = [mode for mode, free in FREE.items() if name in free]
             known = np.where(np.isin(self.mode, modes), getattr(self, name), math.nan)
             table[:, NAMES.index(name)] = known.ravel()
         return table
