@@ -311,8 +311,14 @@ def endings_of(
     codes: npt.NDArray[Any], failed: Mapping[int, Exception], shape: tuple[int, ...]
 ) -> dict[str, Any]:
     """Return status and errors of motions in a shape, from all codes and the exceptions."""
-    errors = {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
-    return {"status": ENDINGS[codes - REFUSED].reshape(shape), "errors": errors}
+    return {"status": ENDINGS[codes - REFUSED].reshape(shape), "errors": errors_of(failed, shape)}
+
+
+def errors_of(
+    failed: Mapping[int, Exception], shape: tuple[int, ...]
+) -> dict[tuple[int, ...], Exception]:
+    """Return exceptions by their indices in a shape, from those by their places in C order."""
+    return {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
 
 
 def dataset_of(

@@ -30,6 +30,7 @@ from .answers import (
     counts_of,
     dataset_of,
     endings_of,
+    errors_of,
     solve,
 )
 from .asked import NAMES, WIDTH, Chunk, SceneGrid, asked, scene_of
@@ -237,10 +238,9 @@ class Ends(FieldsOnly):
         whole = {name: old[name].copy() for name in new}
         for name, values in new.items():
             whole[name].flat[rows] = values
+        failed = _failed(codes, scenes, _Request(how, left), 0)
         errors = {k: error for k, error in self.errors.items() if ended[k]}
-        for k in np.flatnonzero(~np.isin(codes, _FINE)).tolist():
-            place = tuple(map(int, np.unravel_index(rows[k], self.t.shape)))
-            errors[place] = _error(scene_of(scenes[k]), _Request(how, left), k)
+        errors |= errors_of({rows[k]: error for k, error in failed.items()}, self.t.shape)
         return replace(self, **whole, errors=errors, _request=_Request(how, asked.ravel()))
 
     def _reached(self) -> FloatArray:
@@ -282,7 +282,7 @@ class _Request:
     settings: Settings
     times: FloatArray
     samples: int = 1
-    size: int = 8 * (len(STATE_UNITS) + 2)
+    size: int = 8 * len(_NUMBERS) + 4 * len(_CODES)
 
     def task(self, chunk: Chunk) -> Task:
         times = self.times if self.times.size == 1 else self.times[chunk.begin : chunk.end]
@@ -352,17 +352,14 @@ def ends(
     if shape is not None and times.ndim:
         times = np.broadcast_to(times, shape)
     request = _Request(how, times.ravel())
-    tables, failed, rows = [_NONE], {}, [np.empty((0, WIDTH))]
+    failed: dict[int, Exception] = {}
+    tables, rows = [_NONE], [np.empty((0, WIDTH))]
     with reporting(progress, "scenes") as report:
         for chunk, part in parts(request, wanted, workers, report):
             if isinstance(part, WorkerError):
                 raise part
             tables.append(part)
-            for k in (
-                k for k, code in enumerate(part["codes"][_ENDING].tolist()) if code not in _FINE
-            ):
-                place = chunk.begin + k
-                failed[place] = _error(scene_of(chunk.scenes[k]), request, place)
+            failed |= _failed(part["codes"][_ENDING], chunk.scenes, request, chunk.begin)
             rows += [chunk.table] if shape is None else []
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (codes.shape[1],) if shape is None else shape
@@ -389,6 +386,12 @@ def _fields(states: FloatArray, codes: Codes) -> dict[str, Any]:
     found = dict(zip((*_NUMBERS, *_CODES), (*states, *codes), strict=True))
     del found["ending"]
     return found | {name: found[name].astype(np.int8) for name in ("mode", "first")}
+
+
+def _failed(codes: Codes, scenes: Any, request: _Request, begin: int) -> dict[int, Exception]:
+    """Return the exceptions for scenes by their endings, and by their places from `begin` on."""
+    places = np.flatnonzero(~np.isin(codes, _FINE)).tolist()
+    return {begin + k: _error(scene_of(scenes[k]), request, begin + k) for k in places}
 
 
 def _error(scene: Scene, request: _Request, place: int) -> Exception:
