@@ -170,9 +170,8 @@ class Workshop:
             return False
         package = self.site / "rolling_ellipse"
         shutil.copytree(self.copy / "python" / "rolling_ellipse", package, dirs_exist_ok=True)
-        for module in self.objects.glob("_core*"):
-            if module.is_file():
-                shutil.copy2(module, package)
+        for built in [*self.objects.glob("_core*.*"), *self.objects.glob("*.zip")]:
+            shutil.copy2(built, package)
         (self.site / "sitecustomize.py").write_text(NOT_EDITABLE, encoding="utf-8")
         return True
 
