@@ -1,11 +1,9 @@
 """Engines read MJCF and SDF as intended, with contacts 1e-6 m deep; adapters answer problems."""
 
 import math
-import re
 
 import numpy as np
 import pytest
-from oracles.paths import ROOT
 from oracles.simulators import adapter
 from rolling_ellipse import Scene, benchmark, flow, geometry
 
@@ -102,13 +100,3 @@ def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
         return abs(float(found.states[0, 2]) - flow(5.0, a=2.0, b=1.0, theta=0.2, omega=3.2)[0])
 
     assert error(1e-3) < 0.5 * error(4e-3) and error(1e-3) < 0.1 * error(1e-3, None)
-
-
-def test_mjx_reproduces_the_derivatives_on_the_page(capsys: pytest.CaptureFixture[str]) -> None:
-    """The page's program prints the page's numbers, to the accuracy of its differences."""
-    pytest.importorskip("mujoco.mjx")
-    page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
-    (program,) = re.findall(r"```python\n(import jax\n.*?)```", page, flags=re.DOTALL)
-    exec(program, {})
-    printed = re.findall(r"-\d\.\d{4}", capsys.readouterr().out)
-    assert printed == ["-4.5795"] * 2 + ["-1.4839"] * 2
