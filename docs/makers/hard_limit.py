@@ -275,20 +275,25 @@ def tables():
     """Marked parts of the page, by name."""
     rows, rungs = read("hard_limit.csv"), read("stiffness.csv")
     number = "{:.15g}".format
-    head = ["case", "e", "μ", "ẋ [m/s]", "ż [m/s]", "ω [rad/s]", "angle [rad]", "latch", "dashpot"]
-    impacts, lasting = [head], [["case", "μ", "lever [m]", "t [s]", "x [m]", "θ [rad]", "ẋ [m/s]",
-                                 "ω [rad/s]", "dashpot"]]  # fmt: skip
+    impacts = [
+        ["case", "e", "μ", "latch", "dashpot", "ẋ [m/s]", "ż [m/s]", "ω [rad/s]", "angle [rad]"]
+    ]
+    lasting = [
+        ["case", "μ", "lever [m]", "dashpot", "t [s]", "x [m]", "θ [rad]", "ẋ [m/s]", "ω [rad/s]"]
+    ]
     for row in rows:
-        laws = [limit(row, law, rungs) for law in ("latch", "dashpot")]
+        latch, dashpot = (limit(row, law, rungs) for law in ("latch", "dashpot"))
         after = {name: number(row[name]).replace("nan", "–") for name in (*AFTER, "angle")}
+        e, mu, lever = (
+            f"{row[name]:g}" for name in ("restitution", "friction", "rolling_resistance")
+        )
+        case = row["case"].replace(" ", "\N{NO-BREAK SPACE}")
         if row["event"] == "IMPACT":
-            given = [f"{row[name]:g}" for name in ("restitution", "friction")]
             answers = [after[name] for name in (*AFTER[3:], "angle")]
-            impacts.append([row["case"], *given, *answers, *laws])
+            impacts.append([case, e, mu, latch, dashpot, *answers])
         else:
-            given = [f"{row[name]:g}" for name in ("friction", "rolling_resistance")]
             answers = [after[name] for name in (*AFTER[:4], "omega_after")]
-            lasting.append([row["case"], *given, *answers, laws[1]])
+            lasting.append([case, mu, lever, dashpot, *answers])
     return {"impacts": table(impacts), "lasting": table(lasting)}
 
 
@@ -311,8 +316,8 @@ def with_tables(page):
 def main():
     rows = [{"case": name, "event": event} | exact(event, given) for name, event, given in cases()]
     write("hard_limit.csv", rows)
-    rungs = [rung for row in rows for rung in ladder(row)]
-    write("stiffness.csv", rungs)
+    write("stiffness.csv", [rung for row in rows for rung in ladder(row)])
+    rungs = read("stiffness.csv")
     for row in rows:
         laws = [f"{law} {limit(row, law, rungs)}" for law in ("latch", "dashpot")]
         print(row["case"], *(row[name] for name in INPUTS[3:6]), *laws)

@@ -33,7 +33,8 @@ def report(folder: Path, *names: str, old: str = "", new: str = "") -> tuple[int
     """Exit code and output of pytest on files of the page, one of which may be changed."""
     assert any(old in BLOCKS[name] for name in names)
     for name in names:
-        (folder / name).write_text(BLOCKS[name].replace(old, new) if old else BLOCKS[name])
+        text = BLOCKS[name].replace(old, new) if old else BLOCKS[name]
+        (folder / name).write_text(text, encoding="utf-8")
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     return done.returncode, done.stdout
