@@ -17,32 +17,68 @@ Settings settings_of_page() {
     return settings;
 }
 
-// The last scene that was simulated, its motion, and the last answers, which stay valid until the
-// next call.
-Scene scene;
+// The scene of a motion, its end time, and its settings with the blows during the motion.
+struct Question {
+    Scene scene;
+    double end;
+    Settings settings;
+};
+
+// The last question, its motion, and the last answers, which stay valid until the next call.
+Question question;
 Solution solution;
 std::string answer;
 std::vector<double> numbers;
 
-// The scene with these numbers, in the order of `columns`; an absent number is NaN, as is jx in a
-// scene without a blow.
-Scene scene_from(const double* asked) {
+Impulse impulse_from(const double*& asked) {
+    Impulse found;
+    for (const auto& field : impulse_fields) found.*field.number = *asked++;
+    return found;
+}
+
+// The question in these numbers: those of the scene, in the order of `columns`, the end time, the
+// number of blows, and the time and impulse of each. An absent number is NaN, as is jx in a scene
+// without a blow.
+Question question_from(const double* asked) {
     SceneNumbers known;
     for (auto& number : known) {
         const double value = *asked++;
         if (!std::isnan(value)) number = value;
     }
-    Impulse blow;
-    for (const auto& field : impulse_fields) blow.*field.number = *asked++;
-    const Scene found = scene_of(known, std::isnan(blow.jx) ? std::nullopt : std::optional(blow));
-    validate(found);
+    const Impulse blow = impulse_from(asked);
+    const auto first = std::isnan(blow.jx) ? std::nullopt : std::optional(blow);
+    Question found{scene_of(known, first), *asked++, settings_of_page()};
+    validate(found.scene);
+    for (double left = *asked++; left > 0; --left) {
+        const double t = *asked++;
+        found.settings.blows.push_back({t, impulse_from(asked)});
+    }
     return found;
 }
 
-// The motion of the scene with these numbers up to an end time, which follows them.
-Solution motion_of(const Scene& of, const double* asked) {
-    const double end = asked[std::size(scene_fields) + std::size(impulse_fields)];
-    return simulate(of, settings_of_page(), end, [] {});
+Solution motion_of(const Question& of) {
+    return simulate(of.scene, of.settings, of.end, [] {});
+}
+
+// The number of events of the last motion up to its last blow; 0 if there was no blow during it.
+std::size_t events_until_blow() {
+    const auto& events = solution.motion.events;
+    std::size_t count = events.size();
+    while (count > 0 && events[count - 1].kind != EventKind::blow) --count;
+    return count;
+}
+
+// The part of a question from the last blow of the last motion on: a scene in the state before that
+// blow, with the impulse that the question has for it. Without a blow it is the whole question.
+Question from_blow(const Question& of) {
+    const std::size_t count = events_until_blow();
+    if (count == 0) return of;
+    const Event& last = solution.motion.events[count - 1];
+    Question found{reached(of.scene, last.before), of.end - last.t, settings_of_page()};
+    for (const auto& [t, impulse] : of.settings.blows) {
+        if (t <= last.t) found.scene.impulse = impulse;
+    }
+    return found;
 }
 
 std::string key(const std::optional<Outcome>& first) { return first ? name(*first) : "IN_THE_AIR"; }
@@ -62,7 +98,8 @@ std::string json(const char* brackets, const Values& values, const Write& write)
 }
 
 std::string json(const Event& event) {
-    const double place = event.after.state.x + geometry(scene.axes(), event.after.state.theta).dh;
+    const State& state = event.after.state;
+    const double place = state.x + geometry(question.scene.axes(), state.theta).dh;
     return '[' + json(event.t) + ',' + json(name(event.kind)) + ',' + json(place) + ']';
 }
 
@@ -78,9 +115,17 @@ std::string json(const Values& values) {
     return json("[]", values, [](const auto& each) { return json(each); });
 }
 
+// The time of the last blow, what it does, and the motion after it.
 std::string json_of_description() {
-    const Description found = describe(scene, solution, [] {});
-    return ",\"first\":" + json(key(found.first)) + ",\"headline\":" + json(found.headline) +
+    const Scene struck = from_blow(question).scene;
+    const std::size_t count = events_until_blow();
+    std::vector<Event>& events = solution.motion.events;
+    std::vector<Event> later(events.begin() + count, events.end());
+    std::swap(events, later);
+    const Description found = describe(struck, solution, [] {});
+    std::swap(events, later);
+    return ",\"blow\":" + json(count > 0 ? events[count - 1].t : 0.0) +
+           ",\"first\":" + json(key(found.first)) + ",\"headline\":" + json(found.headline) +
            ",\"reasons\":" + json(found.reasons);
 }
 
@@ -98,12 +143,12 @@ extern "C" const char* columns() {
     return answer.c_str();
 }
 
-// Simulates a scene up to an end time, the last of the numbers. The answer is JSON, with sentences
-// if `in_words` is set, or the text of a refusal.
+// Simulates the motion of a question. The answer is JSON, with sentences if `in_words` is set, or
+// the text of a refusal.
 extern "C" const char* ask(const double* asked, int in_words) {
     try {
-        scene = scene_from(asked);
-        solution = motion_of(scene, asked);
+        question = question_from(asked);
+        solution = motion_of(question);
         answer = "{\"ending\":" + json(name(solution.ending)) +
                  ",\"until\":" + json(solution.followed_until) +
                  ",\"events\":" + json(solution.motion.events);
@@ -115,14 +160,15 @@ extern "C" const char* ask(const double* asked, int in_words) {
     return answer.c_str();
 }
 
-// The first outcome that `ask` would tell, or the text of a refusal. Only a body that starts in the
-// air is simulated; the last motion stays.
+// The first outcome after the last blow that `ask` would report for the last motion with another
+// last blow, or the text of a refusal. Only a body that is struck in the air is simulated; the last
+// motion stays.
 extern "C" const char* first(const double* asked) {
     try {
-        const Scene of = scene_from(asked);
-        answer = key(initial_state(of).touching
-                         ? outcome(of, [] {})
-                         : outcome_after_landing(of, motion_of(of, asked), [] {}));
+        const Question struck = from_blow(question_from(asked));
+        answer = key(initial_state(struck.scene).touching
+                         ? outcome(struck.scene, [] {})
+                         : outcome_after_landing(struck.scene, motion_of(struck), [] {}));
     } catch (const std::exception& error) {
         answer = error.what();
     }
@@ -135,6 +181,7 @@ extern "C" const double* samples(const double* asked, int n) {
     for (double& t : times) t = std::min(t, solution.followed_until);
     std::vector<ContactSample> found(n);
     Sampler(solution.motion, n)(times.data(), n, found.data());
+    const Scene& scene = question.scene;
     const auto [into, along] = scene.ground_gravity();
     numbers.clear();
     for (const auto& [state, force] : found) {

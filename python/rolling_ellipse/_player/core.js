@@ -1,5 +1,6 @@
 // The exact core as WebAssembly: a scene in; samples, events and sentences out. All numbers are in SI
-// units. It needs no other module.
+// units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. It needs no other
+// module.
 
 const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
 
@@ -34,7 +35,8 @@ export class Core {
 
   /** The numbers of a scene and an end, for a call. */
   numbers(scene, end) {
-    return [...this.names.scene.map((name) => scene[name] ?? NaN), end];
+    const { blows = [] } = scene;
+    return [...this.names.scene.map((name) => scene[name] ?? NaN), end, blows.length, ...blows.flat()];
   }
 
   /** Simulate a scene up to an end, with sentences if requested; an error states why it cannot. */
@@ -43,10 +45,11 @@ export class Core {
     if (!answer.startsWith("{")) throw new RangeError(answer);
     const found = JSON.parse(answer);
     for (const event of found.events) event[1] = event[1].toLowerCase().replace("_", " ");
+    if (found.blow) found.headline.unshift(["after_the_blow", { t: found.blow }]);
     return found;
   }
 
-  /** The first outcome of a scene up to an end, as `ask` tells it; the last motion stays. */
+  /** The first outcome after the last blow, as `ask` reports it; the last motion stays. */
   first(scene, end) {
     const answer = this.text(this.call("first", this.numbers(scene, end)));
     if (answer !== answer.toUpperCase()) throw new RangeError(answer);
