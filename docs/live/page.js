@@ -4,31 +4,46 @@
 const FULL = 6; // half turns of the strongest colours
 const SETTLED = 300; // time without a change after which the address has the scene [ms]
 const NO_BLOW = { jx: 0, jz: 0, dx: 0, dz: 0 };
-const NOT_NAMED = [...Object.keys(NO_BLOW), "t"]; // among the arguments of Scene
+const NOT_NAMED = [...Object.keys(NO_BLOW), "blows", "t"]; // among the arguments of Scene
 
 export class Workbench extends Explorer {
   constructor(host, film) {
     const { page } = film, linked = film.linked ?? inAddress(location.hash, page.usual);
     const language = linked.lang in page.languages ? linked.lang : film.words.lang;
     const own = { ...page.given, friction: page.given.friction ?? Infinity };
-    super(host, { ...film, ...page.languages[language], own, axes: ["dx", "jz"],
-      given: { ...own, ...known(linked, own) } });
+    super(host, { ...film, ...page.languages[language], own, linked, axes: ["dx", "jz"],
+      given: own });
     addEventListener("hashchange", () => {
-      const { lang, ...numbers } = inAddress(location.hash, page.usual);
+      const next = inAddress(location.hash, page.usual), { lang } = next;
       if (!host.isConnected || this.address === location.hash) return;
-      this.change(numbers);
+      this.open(next);
+      this.change({});
       if (lang !== this.film.words.lang) this.speak(lang);
     });
   }
 
   begin() {
-    const { words, own } = this.film;
+    const { words, own, linked } = this.film;
     document.documentElement.lang = words.lang;
     document.title = document.querySelector("h1").textContent = words.live_title;
     super.begin();
-    if (this.found) return;
-    this.given = { ...own }; // the address has a scene that cannot be
+    this.open(linked);
     this.renew();
+    if (!this.refusal) return;
+    this.open(own); // the address has a scene that cannot be
+    this.renew();
+  }
+
+  /** Take the numbers in an address, including the blows during the motion. */
+  open({ blows = "", ...numbers }) {
+    Object.assign(this, { earlier: [], since: 0 });
+    Object.assign(this.given, known(numbers, this.film.own));
+    const texts = blows.split(",");
+    while (texts.length >= 5) {
+      const [since, ...impulse] = texts.splice(0, 5).map(Number);
+      Object.assign(this, { earlier: this.blows(), since });
+      Object.assign(this.given, this.givenOf(impulse));
+    }
   }
 
   hands(find) {
@@ -46,7 +61,7 @@ export class Workbench extends Explorer {
         select.add(new Option(this.say(`in_${name}`), name, false, name === this.axes[k]));
       select.onchange = () => { this.axes[k] = select.value; this.describe(); this.draw(); };
     });
-    find(".reset").onclick = () => this.change(this.film.own);
+    find(".reset").onclick = () => { this.open(this.film.own); this.change({}); };
     find(".link").onclick = ({ currentTarget }) => {
       this.settle();
       this.copy(currentTarget, location.href);
@@ -82,18 +97,20 @@ export class Workbench extends Explorer {
     return { name, unit, least, most, step, group, row, slider, field };
   }
 
-  /** Take other numbers; they are computed in the next frame. */
+  /** Take other numbers; they are computed in the next frame. Another scene has the same blows. */
   change(numbers) {
     super.change(known(numbers, this.film.own));
+    if (!Object.keys(numbers).some((name) => name in NO_BLOW)) this.seek(0);
     clearTimeout(this.settling);
     this.settling = setTimeout(() => this.settle(), SETTLED);
   }
 
   /** Write the scene into the address of the page, by the names of Scene. */
   settle() {
-    const numbers = Object.entries(this.sceneOf(this.given)).filter(([, value]) => value !== null);
+    const { blows, ...scene } = this.sceneOf(this.given);
+    const numbers = Object.entries(scene).filter(([, value]) => value !== null);
     this.address = `#${new URLSearchParams({ ...Object.fromEntries(numbers),
-      lang: this.film.words.lang })}`;
+      lang: this.film.words.lang })}${blows.length ? `&blows=${blows}` : ""}`;
     history.replaceState(null, "", this.address);
   }
 
@@ -104,7 +121,8 @@ export class Workbench extends Explorer {
     clearTimeout(this.settling);
     const host = this.host.cloneNode();
     this.host.replaceWith(host);
-    const linked = { ...this.given, lang: language };
+    const [[, ...first], ...blows] = this.blows();
+    const linked = { ...this.given, ...this.givenOf(first), blows: `${blows}`, lang: language };
     const next = new Workbench(host, { ...this.film, linked });
     next.settle();
     next.box.querySelector("button[lang]:not([hidden])").focus();
@@ -156,11 +174,20 @@ export class Workbench extends Explorer {
 
   /** Absent are the height and velocity of a body that touches and rolls, too. */
   sceneOf({ k, height, slip, ...given }) {
-    const { a, b, mass, theta, omega, jx, jz } = given, [h] = support(theta, a, b);
+    const { a, b, mass, theta, omega } = given, [h] = support(theta, a, b);
+    const [[, jx, jz, dx, dz], ...blows] = this.blows(given);
     const flies = height > 0, x_dot = flies ? slip : slip ? h * omega + slip : null;
     return { ...given, inertia: k === 1 ? null : (k * mass * (a * a + b * b)) / 4, x_dot,
       z: flies ? h + height : null, z_dot: flies ? given.z_dot : null,
-      jx: jx || jz ? jx : null, jz: jx || jz ? jz : null };
+      jx: jx || jz ? jx : null, jz: jx || jz ? jz : null, dx, dz, blows };
+  }
+
+  impulseOf({ jx, jz, dx, dz }) {
+    return [jx, jz, dx, dz];
+  }
+
+  givenOf([jx, jz, dx, dz]) {
+    return { jx, jz, dx, dz };
   }
 
   code() {
@@ -168,16 +195,29 @@ export class Workbench extends Explorer {
     const numbers = Object.entries(others).filter(([name, value]) => !NOT_NAMED.includes(name)
       && value !== null && value !== Infinity && value !== usual[name])
       .map(([name, value]) => `, ${name}=${value}`).join("");
-    const { jx, jz, dx, dz } = others;
-    const blow = jx === null ? "" : `blow = rl.Impulse(jx=${jx}, jz=${jz}, dx=${dx}, dz=${dz})\n`;
-    return `import rolling_ellipse as rl\n\n${blow}scene = rl.Scene(${a}, ${b}${numbers}${
-      blow && ", impulse=blow"})\nmotion = rl.simulate(scene, ${this.given.t})\n`;
+    const blow = others.jx === null ? "" : "blow = {blow}\n";
+    const scene = `rl.Scene(${a}, ${b}${numbers}${blow && ", impulse=blow"})`;
+    return super.code(`import rolling_ellipse as rl\n\n${blow}scene = ${scene}\n`
+      + `motion = rl.simulate(scene, ${this.given.t}{blows})\n`);
+  }
+
+  /** Strike a point of the body; a hand without force gets half of the largest one. */
+  strike() {
+    if (!super.strike()) return false;
+    const { jx, jz, dx, dz } = this.given, part = Math.min(1, 0.99 / this.sizeOf([dx, dz]));
+    if (part < 1) Object.assign(this.given, { dx: rounded(part * dx), dz: rounded(part * dz) });
+    if (!jx && !jz) this.given.jz = -rounded(this.film.strongest / 2);
+    return true;
+  }
+
+  codeOf([jx, jz, dx, dz]) {
+    return `rl.Impulse(jx=${jx}, jz=${jz}, dx=${dx}, dz=${dz})`;
   }
 
   // ------------------------------------------------------------------------------ the blow
 
   hand(view) {
-    const { x, z } = this.strip.motion.at(0), { jx, jz, dx, dz } = this.given;
+    const { x, z } = this.strip.motion.at(this.now), { jx, jz, dx, dz } = this.given;
     const F = Math.hypot(jx, jz), far = this.length(F), [u, w] = F ? [jx / F, jz / F] : [0, -1];
     return { F, top: view.at(x + dx - far * u, z + dz - far * w), point: view.at(x + dx, z + dz) };
   }
@@ -185,15 +225,15 @@ export class Workbench extends Explorer {
   holds(event) {
     const { top, point: foot } = this.hand(this.views[0]), at = [event.offsetX, event.offsetY];
     const away = (place) => Math.hypot(place[0] - at[0], place[1] - at[1]);
-    this.byFoot = away(foot) < Math.min(18, away(top));
-    return this.byFoot || super.holds(event);
+    const held = super.holds(event), byFoot = away(foot) < Math.min(18, away(top));
+    this.onBody ||= byFoot;
+    return held || (byFoot && this.canStrike);
   }
 
-  dragged({ offsetX, offsetY }) {
-    const { x, z } = this.strip.motion.at(0), { dx, dz } = this.given, { clientWidth } = this.box;
-    const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
-    if (this.byFoot) return this.change({ dx: rounded(px - x), dz: rounded(pz - z) });
-    const [u, w] = [x + dx - px, z + dz - pz], far = Math.hypot(u, w) || 1;
+  dragged(event) {
+    const [px, pz] = this.placeOf(event), { dx, dz } = this.given;
+    if (this.onBody) return this.change({ dx: rounded(px), dz: rounded(pz) });
+    const [u, w] = [dx - px, dz - pz], far = Math.hypot(u, w) || 1;
     const strength = this.strength(far) / far;
     this.change({ jx: rounded(strength * u), jz: rounded(strength * w) });
   }
@@ -236,9 +276,9 @@ export class Workbench extends Explorer {
     super.fit(width);
   }
 
-  over(ink) {
-    super.over(ink);
-    disc(ink, this.colours.paper, this.colours.plum, this.hand(this.views[0]).point, 4);
+  paintHand(ink, colours, hand) {
+    super.paintHand(ink, colours, hand);
+    disc(ink, colours.paper, colours.plum, hand.point, 4);
   }
 
   paintPlot(ink) {

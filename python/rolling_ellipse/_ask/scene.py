@@ -256,8 +256,8 @@ class Scene(FieldsOnly, Listed):
         ----------
         source : str or path
             Text that begins with ``{`` as `to_json` writes it, or a link that begins with ``#`` or
-            ``http``; its ``t`` and ``lang`` are ignored. A path is an `os.PathLike`, such as
-            ``pathlib.Path("scene.json")``, not a str.
+            ``http``; its ``t``, ``blows`` and ``lang`` are ignored. A path is an `os.PathLike`,
+            such as ``pathlib.Path("scene.json")``, not a str.
 
         Raises
         ------

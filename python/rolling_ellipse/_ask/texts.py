@@ -16,7 +16,7 @@ _Given = dict[str, Any]
 _VERSION = 1
 _NAMES, _BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 LINKS = ("#", "http:", "https:", "file:")
-_BESIDE = ("t", "lang")  # in a link: end of the motion [s], and language of the page
+_BESIDE = ("t", "blows", "lang")  # in a link: end and blows of the motion, language of the page
 _OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older links, and Scene's
 
 

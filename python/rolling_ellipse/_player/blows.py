@@ -73,12 +73,12 @@ def card(scene: Scene, words: dict[str, str]) -> str:
 
 
 def code(scene: Scene, t_end: float) -> str:
-    """Return the Python code of the simulation, with {F} and {d} for the blow."""
+    """Return the Python code of the simulation; {blow} is the first blow, {blows} the others."""
     return (
         "import rolling_ellipse\n\n"
-        "blow = rolling_ellipse.Impulse.press({F}, {d})\n"
+        "blow = {blow}\n"
         f"scene = rolling_ellipse.{scene.replace(impulse=None)!r}.replace(impulse=blow)\n"
-        f"trajectory = rolling_ellipse.simulate(scene, {t_end!r})\n"
+        f"trajectory = rolling_ellipse.simulate(scene, {t_end!r}{{blows}})\n"
     )
 
 

@@ -1,6 +1,6 @@
-// The exact core as WebAssembly: a scene in; samples, events and sentences out. All numbers are in SI
-// units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. It needs no other
-// module.
+// The exact core as WebAssembly: a scene in; samples, events and sentences out. All numbers are in
+// SI units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. It needs no
+// other module.
 
 const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
 
@@ -33,10 +33,10 @@ export class Core {
     return answer;
   }
 
-  /** The numbers of a scene and an end, for a call. */
+  /** The numbers of a scene, an end and the blows before it, for a call. */
   numbers(scene, end) {
-    const { blows = [] } = scene;
-    return [...this.names.scene.map((name) => scene[name] ?? NaN), end, blows.length, ...blows.flat()];
+    const { blows = [] } = scene, numbers = this.names.scene.map((name) => scene[name] ?? NaN);
+    return [...numbers, end, blows.length, ...blows.flat()];
   }
 
   /** Simulate a scene up to an end, with sentences if requested; an error states why it cannot. */

@@ -1,5 +1,5 @@
-// The player with a blow that can be moved over the body, computed in the page by the core, and a
-// map of the outcomes of all blows. Needs all earlier modules.
+// The player with a hand that strikes the body, also while it moves, computed in the page by the
+// core, and a map of the outcomes of all blows. Needs all earlier modules.
 
 const STROBES = 8;
 const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // default and farthest ends of the force plot [weights]
@@ -9,6 +9,7 @@ const STEPS = { // columns and rows of the map moved by each key
 };
 const CELLS = [48, 32]; // columns and rows of the map
 const COARSE = [8, 4, 2, 1]; // sizes of its cells, in turn
+const NEAR = 26; // distance within which a pointer holds the hand [px]
 const BUDGETS = [10, 6]; // time of a frame spent on cells of the map: usually, and
 // while numbers change [ms]
 
@@ -26,8 +27,8 @@ export class Explorer extends Player {
 
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
-    strip.blows = []; // the hand shows the blow
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
+    Object.assign(this, { earlier: [], since: 0 }); // blows before the given one, and its time
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();
   }
@@ -36,6 +37,8 @@ export class Explorer extends Player {
     super.build(shadow);
     const find = (words) => this.box.querySelector(words);
     [this.map, this.plot] = [find(".map canvas"), find(".plot canvas")];
+    find(".strike").onclick = () => this.strike() || this.play();
+    find(".undo").onclick = () => this.undo();
     find(".copy").onclick = ({ currentTarget }) => this.copy(currentTarget, this.code());
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
     const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
@@ -65,9 +68,10 @@ export class Explorer extends Player {
     });
   }
 
-  /** Move on the map with the keys. */
+  /** Move on the map with the keys, or undo the last blow. */
   key(event) {
     const { key, target } = event, steps = STEPS[key];
+    if (key === "Escape" && !target.matches("select, [inputmode]")) this.undo();
     if (!steps || target !== this.map || event.ctrlKey || event.altKey || event.metaKey)
       return super.key(event);
     event.preventDefault();
@@ -77,18 +81,20 @@ export class Explorer extends Player {
 
   /** Call `moved` for a pointer from a press accepted by `holds` to its release, and for a tap. */
   grab(canvas, holds, moved) {
-    let held = false;
+    let held = false, now = 0; // the time at which the pointer strikes
     canvas.addEventListener("pointerdown", (event) => {
       held = holds(event);
       if (!held) return;
       canvas.setPointerCapture(event.pointerId);
+      if (canvas === this.canvas) this.strike();
       moved(event);
+      ({ now } = this);
     });
     canvas.addEventListener("touchstart", (event) => { // a dragging finger must not scroll
       if (held && event.cancelable) event.preventDefault();
     }, { passive: false });
     canvas.addEventListener("pointermove", (event) => {
-      if (held) moved(event);
+      if (held && this.now === now) moved(event);
       else if (canvas === this.canvas) canvas.style.cursor = holds(event) ? "grab" : "";
     });
     const let_go = (event) => {
@@ -107,14 +113,17 @@ export class Explorer extends Player {
   change(numbers) {
     Object.assign(this.given, numbers);
     this.pause();
-    this.t = 0;
+    this.t = this.since;
     this.stale = true;
     this.draw();
   }
 
-  /** The number on an axis of the map, with its name and range. */
+  /** The number on an axis of the map, with its name and range; d covers the struck body. */
   axis(k) {
-    return this.axes[k];
+    if (k > 0) return this.axes[k];
+    const { strip: { a, b }, axes: [{ name, most, step }], film: { core } } = this;
+    const [theta] = core.samples([this.since]).theta, [reach] = support(theta + Math.PI / 2, a, b);
+    return { name, least: -reach, most: reach, step: (step * reach) / most };
   }
 
   /** The given number's position along an axis, as a fraction. */
@@ -131,10 +140,10 @@ export class Explorer extends Player {
     })));
   }
 
-  /** The scene of given numbers, for the core: absent numbers are null. */
-  sceneOf({ d, F }) {
-    const { scene } = this.film;
-    return { ...scene, friction: scene.friction ?? Infinity, jx: 0, jz: -F, dx: d, dz: 0 };
+  /** The scene of given numbers with all blows, for the core: absent numbers are null. */
+  sceneOf(given) {
+    const { scene } = this.film, [[, jx, jz, dx, dz], ...blows] = this.blows(given);
+    return { ...scene, friction: scene.friction ?? Infinity, jx, jz, dx, dz, blows };
   }
 
   /** Compute the motion for the given numbers; an error states why there is none. */
@@ -146,6 +155,49 @@ export class Explorer extends Player {
     Object.assign(this, { found, times, columns, curves: [curve(N), curve(F)] });
     strip.events = found.events;
     this.take(strip, track);
+  }
+
+  // ------------------------------------------------------------------------------ the blows
+
+  /** All blows in order: rows of t, jx, jz, dx and dz. The last one has the given numbers. */
+  blows(given = this.given) {
+    return [...this.earlier, [this.since, ...this.impulseOf(given)]];
+  }
+
+  /** The impulse for given numbers as jx, jz, dx and dz, and the inverse. */
+  impulseOf({ d, F }) {
+    return [0, -F, d, 0];
+  }
+
+  givenOf([, jz, dx]) {
+    const { least, most } = this.axis(0);
+    return { d: Math.min(most, Math.max(least, dx)), F: -jz };
+  }
+
+  /** Make a blow the last one after some earlier ones, and show the body at its time. */
+  follow(earlier, [since, ...impulse]) {
+    Object.assign(this, { earlier, since });
+    this.change(this.givenOf(impulse));
+  }
+
+  /** Whether the hand can strike at the time on the clock. */
+  get canStrike() {
+    return this.now === this.since || this.now < this.strip.motion.end;
+  }
+
+  /** Replace all later blows by one at the time on the clock; false if it is there already. */
+  strike() {
+    const { now, playing } = this, blows = this.blows();
+    if (now === this.since || !this.canStrike) return false;
+    this.follow(blows.filter(([t]) => t < now), [now, ...blows.at(-1).slice(1)]);
+    if (playing) this.play();
+    return true;
+  }
+
+  /** Take back the last of several blows. */
+  undo() {
+    const before = this.earlier.at(-1);
+    if (before) this.follow(this.earlier.slice(0, -1), before);
   }
 
   // ------------------------------------------------------------------------------- the hand
@@ -162,21 +214,36 @@ export class Explorer extends Player {
 
   /** Hand and point of the blow, in pixels. */
   hand(view) {
-    const { x, z } = this.strip.motion.at(0), { d, F } = this.given;
+    const { x, z } = this.strip.motion.at(this.now), { d, F } = this.given;
     return { F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
   }
 
-  holds({ offsetX, offsetY }) {
+  /** Whether a pointer is near the hand or on the body. */
+  holds(event) {
     const { top: [u, v], point: [x, y] } = this.hand(this.views[0]);
-    const [c, s, p, q] = [x - u, y - v, offsetX - u, offsetY - v];
+    const [c, s, p, q] = [x - u, y - v, event.offsetX - u, event.offsetY - v];
     const part = Math.min(1, Math.max(0, (p * c + q * s) / (c * c + s * s)));
-    return Math.hypot(p - part * c, q - part * s) < 26;
+    this.onBody = Math.hypot(p, q) > NEAR && this.sizeOf(this.placeOf(event)) < 1;
+    return this.canStrike && (this.onBody || Math.hypot(p - part * c, q - part * s) < NEAR);
   }
 
-  dragged({ offsetX, offsetY }) {
-    const { x, z } = this.strip.motion.at(0), { clientWidth } = this.canvas;
-    const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
-    this.change({ d: within(this.axis(0), px - x), F: within(this.axis(1), this.strength(pz - z)) });
+  /** Distance of a place from the centre, as a multiple of the radius in its direction. */
+  sizeOf([u, w]) {
+    const { a, b, motion } = this.strip, { theta } = motion.at(this.now);
+    const [c, s] = [Math.cos(theta), Math.sin(theta)];
+    return Math.hypot((c * u - s * w) / a, (s * u + c * w) / b);
+  }
+
+  /** The place of a pointer relative to the centre of the body [m]. */
+  placeOf({ offsetX, offsetY }) {
+    const at = this.strip.motion.at(this.now), [view] = this.viewsOf([at], this.canvas.clientWidth);
+    const [px, pz] = view.ground(offsetX, offsetY);
+    return [px - at.x, pz - at.z];
+  }
+
+  dragged(event) {
+    const [u, w] = this.placeOf(event), d = within(this.axis(0), u);
+    this.change(this.onBody ? { d } : { d, F: within(this.axis(1), this.strength(w)) });
   }
 
   pointed({ offsetX, offsetY }) {
@@ -197,8 +264,9 @@ export class Explorer extends Player {
     const lines = [inWords(headline), inWords(reasons), events.join(", ")];
     const said = this.box.querySelectorAll(".said p");
     lines.forEach((text, k) => { said[k].textContent = text; });
+    this.box.querySelector(".undo").setAttribute("aria-disabled", !this.earlier.length);
     const spoken = this.box.querySelector(".spoken");
-    const kind = [...headline, ...reasons].map(([key]) => key).join();
+    const kind = [...headline, ...reasons].map(([key]) => key).join() + this.since;
     if (spoken.dataset.kind !== kind) spoken.textContent = `${lines[0]} ${lines[1]}`;
     spoken.dataset.kind = kind;
     const [N, shear] = this.curves, peak = Math.max(N.most, shear.most, -shear.least);
@@ -226,9 +294,15 @@ export class Explorer extends Player {
     this.host.dataset.blow = `${d} ${F}`;
   }
 
-  code() {
-    const { d, F } = this.given;
-    return this.film.code.replace("{F}", F).replace("{d}", d);
+  /** Python code in which the first blow, and an argument with later ones, replace braces. */
+  code(lines = this.film.code) {
+    const [[, first], ...later] = this.blows().map(([t, ...impulse]) => [t, this.codeOf(impulse)]);
+    const pairs = later.map((pair) => `(${pair.join(", ")})`).join(", ");
+    return lines.replace("{blow}", first).replace("{blows}", pairs && `, blows=[${pairs}]`);
+  }
+
+  codeOf([, jz, dx]) {
+    return `rolling_ellipse.Impulse.press(${-jz}, ${dx})`;
   }
 
   async copy(button, lines) {
@@ -267,7 +341,7 @@ export class Explorer extends Player {
   fill(until) {
     const axes = [this.axis(0), this.axis(1)], others = { ...this.given };
     for (const { name } of axes) delete others[name];
-    const key = JSON.stringify([axes.map(({ name }) => name), others,
+    const key = JSON.stringify([axes.map(({ name }) => name), others, this.earlier, this.since,
       others.friction === Infinity, this.colours.paper]);
     if (key !== this.mapped) Object.assign(this, { mapped: key, cells: cellsInTurn() });
     const ink = this.image.getContext("2d");
@@ -310,8 +384,13 @@ export class Explorer extends Player {
       ink.globalAlpha = 0.2 + (0.3 * k) / STROBES;
       stroke(ink, colours.blue, 1);
     }
+    ink.globalAlpha = this.now === this.since ? 1 : 0.4; // a pale hand has not struck yet
+    if (this.canStrike) this.paintHand(ink, colours, this.hand(view));
     ink.globalAlpha = 1;
-    const { top, point: foot, F } = this.hand(view), words = `${round(F)} N s`;
+  }
+
+  paintHand(ink, colours, { top, point: foot, F }) {
+    const words = this.now === this.since ? `${round(F)} N s` : "";
     arrow(ink, colours.plum, top, foot, 4);
     disc(ink, colours.plum, colours.paper, top, 11);
     Object.assign(ink, { strokeStyle: colours.paper, lineWidth: 4, lineJoin: "round",
@@ -337,6 +416,7 @@ export class Explorer extends Player {
       this.stale = false;
     }
     this.fit(width);
+    this.strip.blows = this.blows().filter(([t]) => t !== this.now); // the hand shows that one
     super.paint();
     this.paintPlot(sized(this.plot, this.plot.clientHeight));
     this.paintMap(Math.max(begun + budget, performance.now() + 1));
@@ -349,7 +429,7 @@ export class Explorer extends Player {
       high: Math.min(HIGH[1], Math.max(HIGH[0], N.most, F.most)),
       low: Math.max(LOW[1], Math.min(LOW[0], N.least, F.least)),
       end: this.film.end, now: this.t,
-      impacts: events.filter(([, kind]) => kind === "impact").map(([time]) => time),
+      impacts: events.filter(([, kind]) => kind === "impact" || kind === "blow").map(([t]) => t),
     });
   }
 }

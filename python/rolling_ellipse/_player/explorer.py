@@ -39,9 +39,9 @@ def explore(
 ) -> Explorer:
     """Make a page on which the reader strikes the body by dragging a hand over it.
 
-    The hand sets the point and the strength. The page shows the motion with its forces, its first
-    outcome with the reason, its events, and a map of the outcomes of all blows. It needs no kernel
-    and no network.
+    The hand sets the point and the strength, and can strike the moving body again. The page shows
+    the motion with its forces, its first outcome after the last blow with the reason, its events,
+    and a map of the outcomes of all blows. It needs no kernel and no network.
 
     Parameters
     ----------
@@ -72,10 +72,10 @@ def explore(
 
     Notes
     -----
-    The page contains the core, compiled to WebAssembly, and computes each blow with the same
-    results as `simulate`. A button copies the Python code that simulates it. The whole page can be
-    used with a keyboard alone. Where a browser or a policy forbids WebAssembly, or this
-    installation came without the file, it plays the film of the first blow, and says so.
+    The page contains the core, compiled to WebAssembly, and computes all blows with the same
+    results as `simulate` with ``blows``. A button copies the Python code that simulates them. The
+    whole page can be used with a keyboard alone. Where a browser or a policy forbids WebAssembly,
+    or this installation came without the file, it plays the film of the first blow, and says so.
 
     The page follows the light or dark theme of the reader's system, unless it is inside an element
     (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.
