@@ -1,4 +1,4 @@
-"""Shapes and angles that every layer of the suite runs through."""
+"""Fixtures of shapes and angles for the whole suite, and the marks of its quick tests."""
 
 import math
 import signal
@@ -7,7 +7,7 @@ import pytest
 
 pytest.register_assert_rewrite("oracles")
 
-# Shells start background jobs with SIGINT ignored, but tests need it: they send Ctrl-C.
+# Shells start background jobs with SIGINT ignored, but some tests send Ctrl-C.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -27,8 +27,8 @@ SHAPES = {
     "kilometres": (1.1e3, 2.3e3),
 }
 
-# Angles: thousands of turns away from 0; beside and on (as near as a double gets) the multiples of
-# pi/2, where sin or cos nearly vanishes; and next to 0
+# Angles next to 0, on the multiples of pi/2 (to within a double) and beside them, where sin or cos
+# nearly vanishes, and thousands of turns away from 0
 QUARTER = math.pi / 2
 ANGLES = sorted(
     {
@@ -54,7 +54,7 @@ def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
 
 @pytest.fixture
 def angles() -> list[float]:
-    """Rotations theta [rad] that are hard for some formula."""
+    """Rotations theta [rad] at which some formula loses accuracy unless it is written with care."""
     return ANGLES
 
 

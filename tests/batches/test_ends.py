@@ -1,4 +1,5 @@
-"""`ends` gives the last samples and the events of `simulate`, for any shape and any workers."""
+"""`ends` returns the final states and the numbers of events of `simulate`, for arguments of any
+shape and any number of workers."""
 
 import math
 import pickle
@@ -14,33 +15,42 @@ from oracles.pickles import require_same
 
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 JAMS = rl.Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)
-SCENES = [*NAMED, JAMS, rl.Scene(2.0, 1.0), *random_scenes(60, 8), *random_scenes(60, 9, slope=0.2)]
+SCENES = [
+    *NAMED, JAMS, rl.Scene(2.0, 1.0), *random_scenes(60, 8), *random_scenes(60, 9, slope=0.2),
+    *random_scenes(20, 5, struck=1.0),
+]  # fmt: skip
 TIMES = np.linspace(0.0, 6.0, len(SCENES))
+SETTINGS: list[dict[str, Any]] = [
+    {}, {"max_events": 2}, {"max_events": 100, "stop": "impact", "count": 2},
+    {"max_events": 100, "stop": "decided"},
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("most", [10_000, 2])
-def test_ends_equal_simulate_bit_for_bit(most: int) -> None:
-    """A motion with too many events ends with the last one that it may have."""
-    ends = rl.ends(SCENES, TIMES, max_events=most)
-    for k, (scene, t) in enumerate(zip(SCENES, TIMES.tolist(), strict=True)):
-        motion = rl.simulate(scene, [t], max_events=most, raise_on_failure=False)
+@pytest.mark.parametrize("how", SETTINGS, ids=str)
+def test_ends_equal_simulate_bit_for_bit(how: dict[str, Any]) -> None:
+    """A motion with too many events ends at the last event that is allowed."""
+    most = how.get("max_events", 10_000)
+    times = [math.inf] * len(SCENES) if "stop" in how else TIMES.tolist()
+    ends = rl.ends(SCENES, times, **how)
+    for k, (scene, t) in enumerate(zip(SCENES, times, strict=True)):
+        given = t if "stop" in how else [t]
+        motion = rl.simulate(scene, given, raise_on_failure=False, **how)
         assert ends.status[k] == motion.status.name and ends.events[k] == len(motion.events)
         assert ends.first[k] == (motion.events[0].kind.value if motion.events else -1)
-        there = motion.t.size == 1
-        if motion.status is rl.Status.MAX_EVENTS:
-            last = motion.events[-1]
-            assert ends.t[k] == last.t and ends.mode[k] == last.state_after.mode
-            assert [getattr(ends, n)[k] for n in STATE] == [
-                getattr(last.state_after, n) for n in STATE
-            ]
+        hits = [e.state_after.reaction_z for e in motion.events if e.kind is rl.EventKind.IMPACT]
+        assert ends.impacts[k] == len(hits) and ends.largest_impulse[k] == max(hits, default=0.0)
+        if motion.status in (rl.Status.JAMMED, rl.Status.STEP_TOO_SMALL):
+            assert ends.mode[k] == -1 and ends.t[k] == motion.t_end
+            assert all(np.isnan(getattr(ends, name)[k]) for name in STATE)
             continue
-        assert ends.mode[k] == (motion.mode[0] if there else -1) and ends.t[k] == motion.t_end
-        for name in STATE:
-            value = getattr(ends, name)[k]
-            assert value == getattr(motion, name)[0] if there else np.isnan(value), (k, name)
-    assert set(ends.mode) == {-1, 0, 1, 2, 3} and {"COMPLETED", "JAMMED"} <= set(ends.status)
+        full = motion.status is rl.Status.MAX_EVENTS
+        last: Any = motion.events[-1].state_after if full else motion.at(motion.t_end)
+        assert ends.t[k] == (motion.events[-1].t if full else motion.t_end)
+        assert ends.mode[k] == last.mode
+        assert [getattr(ends, name)[k] for name in STATE] == [getattr(last, n) for n in STATE]
+    assert {*ends.mode} == {-1, 0, 1, 2, 3} and "JAMMED" in ends.status
     over = np.flatnonzero(ends.status == "MAX_EVENTS").tolist()
-    assert (len(over) > 5) == (most == 2) and all(ends.events[over] == most)
+    assert bool(over) == (most < 10_000) and all(ends.events[over] == most)
     for k in over:
         error = ends.errors[k,]
         assert isinstance(error, rl.IntegrationError) and len(error.trajectory.events) == most
@@ -62,36 +72,29 @@ def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
     assert "6 COMPLETED" in repr(ends)
 
 
-def test_a_motion_that_stops_early_has_an_exception_in_place_of_its_end() -> None:
-    endless = rl.Scene(1.0, 1.0, z=1.5, friction=0.0, restitution=1.0)
-    seen: list[Any] = []
-    found = rl.ends(
-        [NAMED[0], endless], 1e5, rest_speed=0.01, progress=lambda *done: seen.append(done)
-    )
-    assert found.status.tolist() == ["COMPLETED", "MAX_EVENTS"] and list(found.errors) == [(1,)]
-    error = found.errors[1,]
-    assert isinstance(error, rl.IntegrationError) and found.events[1] == 10_000
-    assert error.trajectory.settings.rest_speed == 0.01
-    assert seen == [(2, 2)]
-
-
-def test_the_exceptions_of_a_batch_hold_no_arcs() -> None:
-    """An arc takes kilobytes, and a motion has up to max_events of them: they are solved again."""
+def test_a_motion_that_stops_early_has_the_exception_of_simulate_in_place_of_its_end() -> None:
+    """The exception keeps no arcs, which take kilobytes each: they are solved again."""
     slips = rl.Scene(2.0, 1.0, friction=0.3, restitution=0.8, z=2.1, theta=0.2)
-    cases: list[tuple[Any, Any]] = [([1e6], None), (math.inf, "decided")]
+    reports: list[Any] = []
+    cases: list[tuple[float, Any]] = [(1e6, None), (math.inf, "decided")]
     for t, stop in cases:
-        kept = rl.ends([slips], t, max_events=50, stop=stop).errors[0,]
-        assert isinstance(kept, rl.IntegrationError) and "_solution" not in vars(kept.trajectory)
+        how: dict[str, Any] = {"stop": stop, "max_events": 20, "rest_speed": 1e-4}
+        ends = rl.ends([NAMED[0], slips], t, progress=lambda *done: reports.append(done), **how)
+        assert list(ends.errors) == [(1,)]
+        error = ends.errors[1,]
+        assert isinstance(error, rl.IntegrationError) and "_solution" not in vars(error.trajectory)
         with pytest.raises(rl.IntegrationError) as raised:
-            rl.simulate(slips, t, max_events=50, stop=stop)
-        assert str(kept) == str(raised.value)
-        assert kept.trajectory.events == raised.value.trajectory.events
+            rl.simulate(slips, t, **how)
+        assert str(error) == str(raised.value)
+        assert error.trajectory.events == raised.value.trajectory.events
+        assert error.trajectory.settings == raised.value.trajectory.settings
+    assert reports == [(2, 2)] * 2
 
 
 @pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])
 def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
-    """The nth rebound of a dropped disc has e^n of its speed; the first one below the rest speed
-    and all later ones count as one event."""
+    """The nth rebound of a dropped disc has e^n times the speed of its first impact. All rebounds
+    below the rest speed count as a single event."""
     e, speed, g = 0.6, 3.0, 9.81
     disc = rl.Scene(1.0, 1.0, z=1.0 + speed**2 / (2 * g), friction=0.0, restitution=e, gravity=g)
     rest_speed = share * np.sqrt(g)

@@ -28,8 +28,8 @@ MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Executor that runs each task at once, fails the tasks in `lost`, and after some tasks hangs
-    or refuses more."""
+    """Executor that runs each task immediately. The tasks in `lost` fail. Tasks from number
+    `hangs_after` on never finish, and from `closes_after` on they are refused."""
 
     def __init__(self, lost: Any = (), hangs_after: int = 10**9, closes_after: int = 10**9) -> None:
         self.lost, self.hangs_after, self.closes_after = lost, hangs_after, closes_after
@@ -48,7 +48,7 @@ class Here(Executor):
 
 
 class Mapping:
-    """A pool with only map and close, as in multiprocessing and MPI."""
+    """Pool with only `map` and `close`, like the pools of multiprocessing and MPI."""
 
     def __init__(self, lost: bool = False) -> None:
         self.lost = lost
@@ -64,7 +64,7 @@ class Mapping:
 
 @pytest.fixture(autouse=True)
 def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A task has 2048 elements at most, so that 5000 elements are several tasks."""
+    """Lower the limit of elements in a task, so that 5000 elements make several tasks."""
     monkeypatch.setattr(workers, "_ELEMENTS", 2048)
 
 
@@ -118,7 +118,7 @@ def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> Non
 
 
 def test_an_executor_gets_128_tasks_before_its_first_result_is_requested() -> None:
-    """Only the scenes of these tasks are taken from the iterable."""
+    """Only the scenes of these 128 tasks are taken from the iterable."""
     taken, executor = itertools.count(), Here()
 
     def look(done: int, of: int | None) -> None:
@@ -152,7 +152,7 @@ class Heavy(Here):
 
 
 class HeavyMap(Mapping):
-    """Pool that counts the bytes of the results of a `map`, which it returns at once."""
+    """Pool that counts the bytes of the results, which `map` returns all together."""
 
     most = largest = 0
 
@@ -174,18 +174,15 @@ class HeavyMap(Mapping):
 def test_pending_results_stay_within_the_byte_limit(
     samples: int, bytes_held: int, way: dict[str, Any], pool: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pending bytes stay below the limit, or are a single result. A chunk may be a sixteenth larger
-    than the one before, and the limit adapts one task later."""
+    """Pending results stay below the limit unless a single result is larger. A chunk may be a
+    sixteenth larger than the previous one, and the limit adapts one task later."""
     monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
     assert executor.most <= max(17 / 16 * bytes_held, executor.largest)
 
 
-# ---------------------------------------------------------------------------------- lost workers
-
-
-FIRST = [first for first, _ in itertools.islice(sizes(1), 40)]  # scenes of the tasks
+FIRST = [first for first, _ in itertools.islice(sizes(1), 40)]  # first scene of each task
 
 
 @pytest.mark.parametrize(
@@ -240,8 +237,9 @@ def test_functions_raise_the_error_that_the_executor_raises() -> None:
 
 
 def test_a_killed_process_loses_only_its_unfinished_scenes(tmp_path: Path) -> None:
-    """A killed process breaks its pool: finished chunks are kept, the other scenes are
-    WorkerErrors. The pool dies after a chunk of scenes at rest, in a scene that takes hours."""
+    """A killed process breaks its pool: finished chunks are kept, and all other scenes become
+    WorkerErrors. The processes are killed after a chunk of scenes at rest, during a scene that
+    would take hours."""
     quick, out = [Scene(2.0, 1.0)] * 16, tmp_path / "out"
     with processes() as pool:
 
@@ -261,12 +259,9 @@ def test_a_killed_process_loses_only_its_unfinished_scenes(tmp_path: Path) -> No
     assert len(kept) == 1 and kept == states(out) and len(list(load_many(out))) == 16
 
 
-# ------------------------------------------------------------------------------------ interrupts
-
-
 def test_an_interrupt_keeps_finished_tasks_and_cancels_the_rest(tmp_path: Path) -> None:
-    """The fifth task never ends; the interrupt comes after the others and cancels all later
-    tasks."""
+    """The fifth task never ends. The interrupt comes after the first four tasks and cancels all
+    tasks after them."""
     executor, out = Here(hangs_after=4), tmp_path / "out"
 
     def look(done: int, of: int | None) -> None:

@@ -19,11 +19,15 @@ from oracles.batches import ENDLESS, NAMED, TIMES, chunks, singly, states
 from oracles.files import put_together, taken_apart
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
-from oracles.programs import run
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
 from rolling_ellipse._verbs.batches import folders  # its version is changed here
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
+UNUSUAL = [  # signs of zeros, infinite friction, arguments left out, last bits of a blow
+    Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
+    Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),
+    Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
+]
 
 
 @pytest.fixture
@@ -32,12 +36,13 @@ def out(tmp_path: Path) -> Path:
 
 
 def require_equal(loaded: Any, expected: Any) -> None:
-    """Require equal motions and errors; events kept by a folder must equal computed events."""
+    """Require equal motions and errors; the events in the folder must equal the computed ones."""
     for one, other in zip(loaded, expected, strict=True):
         assert type(one) is type(other) and str(one) == str(other)
         ours, theirs = (getattr(each, "trajectory", each) for each in (one, other))
         if isinstance(ours, rl.Trajectory):
             assert ours == theirs and ours.stats == theirs.stats
+            assert repr(ours.scene) == repr(theirs.scene)
             assert ours.kept_events == theirs.events
             require_same(ours._bytes(), theirs._bytes())
 
@@ -52,21 +57,10 @@ def require_equal(loaded: Any, expected: Any) -> None:
     ids=str,
 )  # fmt: skip
 def test_motions_and_errors_are_read_back_unchanged(way: dict[str, Any], out: Path) -> None:
-    many = NAMED * 3
+    many = [*UNUSUAL, *NAMED * 3]
     assert simulate_many(many, TIMES, out=out, **way) == str(out)
     assert len(chunks(out)) == 3
     require_equal(load_many(out), singly(many, TIMES, **way))
-
-
-def test_unusual_values_survive_saving_to_a_folder(out: Path) -> None:
-    """Values are signs of zeros, infinite friction, missing arguments, last bits of a blow."""
-    mine = [
-        Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
-        Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),
-        Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
-    ]
-    motions: Any = load_many(simulate_many(mine, [1.0], out=out))
-    assert [repr(each.scene) for each in motions] == [repr(scene) for scene in mine]
 
 
 @pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # 512 * 5e-324 / 1000 rounds to 5e-324
@@ -75,9 +69,6 @@ def test_a_motion_with_coinciding_samples_survives_saving_to_a_folder(
 ) -> None:
     simulate_many([scenes.rocking], end, out=out)
     require_equal(load_many(out), singly([scenes.rocking], end))
-
-
-# -------------------------------------------------------------------------------- continuation
 
 
 def test_finished_chunks_are_not_computed_again(out: Path) -> None:
@@ -92,7 +83,7 @@ def test_finished_chunks_are_not_computed_again(out: Path) -> None:
     assert set(now) == set(everything) and len(reports) == 1
     assert {name for name in now if now[name] != everything[name]} == {first.name}
     require_equal(load_many(out), simulate_many(GRID, TIMES))
-    last.unlink()  # a damaged file of a complete folder is also rebuilt
+    last.unlink()  # a missing chunk of a complete folder is also rebuilt
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
 
@@ -143,8 +134,8 @@ def test_a_folder_from_another_version_is_rejected(
 
 
 @pytest.mark.parametrize(("schema", "cure"), [(1, ""), (5, ": a newer .* pip install .*")])
-def test_a_folder_of_another_schema_is_refused_as_such(schema: int, cure: str, out: Path) -> None:
-    """This holds whatever other names its request has."""
+def test_the_unknown_schema_of_a_folder_is_named(schema: int, cure: str, out: Path) -> None:
+    """The message names the schema even if the request contains unknown names."""
     simulate_many(GRID, TIMES, out=out)
     about, arrays = taken_apart((out / "request.npz").read_bytes())
     about = about | {"schema": schema, "colour": 1}
@@ -171,11 +162,8 @@ def test_anything_but_a_folder_of_motions_is_rejected_and_left_alone(tmp_path: P
         load_many(tmp_path / "none")
     assert sorted(os.listdir(tmp_path)) == [".DS_Store", "lost+found", "mine.txt"]
     (tmp_path / "mine.txt").unlink()
-    simulate_many(GRID, TIMES, out=tmp_path)  # the folder may hold foreign files
+    simulate_many(GRID, TIMES, out=tmp_path)  # the folder may contain foreign files
     require_equal(load_many(tmp_path), simulate_many(GRID, TIMES))
-
-
-# -------------------------------------------------------------------------------------- damage
 
 
 @pytest.fixture
@@ -190,9 +178,9 @@ def remake(folder: Path) -> None:
 
 @pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
 def test_every_damaged_byte_is_detected_or_harmless(name: str, stride: int, small: Path) -> None:
-    """A file with a changed byte is refused by name, or the byte is insignificant, as in the dates
-    of a zip archive. The same call of simulate_many then repairs chunks and end.json. It refuses a
-    damaged request.npz, and continues when that file is removed."""
+    """A file with a changed byte is rejected by name, unless the byte is insignificant, like the
+    dates in a zip archive. Calling simulate_many again repairs chunks and end.json. The call
+    rejects a damaged request.npz, and resumes once that file is removed."""
     path = chunks(small)[0] if name == "chunk" else small / name
     whole, expected = path.read_bytes(), list(load_many(small))
     refused = 0
@@ -238,9 +226,6 @@ def test_an_end_file_with_another_scene_count_is_rejected(count: Any, small: Pat
     assert len(list(load_many(small))) == 3
 
 
-# -------------------------------------------------------------------------- two folders in one
-
-
 @pytest.mark.parametrize(
     "changes",
     [
@@ -260,7 +245,7 @@ def test_two_folders_merged_into_one_are_rejected(changes: Any, out: Path, tmp_p
     for call in (request, request | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
             simulate_many(**call, out=out)
-    for name in (*theirs, "request.npz", "end.json"):  # the error text asks for this removal
+    for name in (*theirs, "request.npz", "end.json"):  # as the error message advises
         (out / name).unlink()
     simulate_many(**request, out=out)
     require_equal(load_many(out), simulate_many(**request))
@@ -275,7 +260,7 @@ def test_parts_of_the_same_folder_can_be_merged(out: Path, tmp_path: Path) -> No
     require_equal(load_many(out), simulate_many(GRID, TIMES))
     simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
     shutil.copytree(tmp_path / "first", out, dirs_exist_ok=True)
-    # the end.json of `first` counts other scenes
+    # the end.json of `first` has another number of scenes
     with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     simulate_many(GRID, TIMES, out=out)
@@ -283,7 +268,7 @@ def test_parts_of_the_same_folder_can_be_merged(out: Path, tmp_path: Path) -> No
 
 
 def test_a_chunk_under_the_name_of_another_request_is_rejected(out: Path, tmp_path: Path) -> None:
-    """A chunk of another request has states at other times."""
+    """The foreign chunk has states at other times."""
     simulate_many(GRID, [2.0, 6.0], out=out)
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
     for mine, other in zip(chunks(out), chunks(tmp_path / "other"), strict=True):
@@ -292,9 +277,6 @@ def test_a_chunk_under_the_name_of_another_request_is_rejected(out: Path, tmp_pa
         list(load_many(out))
     simulate_many(GRID, [2.0, 6.0], out=out)
     require_equal(load_many(out), simulate_many(GRID, [2.0, 6.0]))
-
-
-# -------------------------------------------------------------------------- links and leftovers
 
 
 def test_links_never_lead_to_a_file_outside_the_folder(out: Path, tmp_path: Path) -> None:
@@ -332,9 +314,6 @@ def test_leftovers_of_killed_runs_are_removed_but_not_files_being_written(out: P
     assert (out / "note.txt").read_text() == "whole"
 
 
-# ---------------------------------------------------------------------- full disks, interrupts
-
-
 def test_a_full_disk_leaves_the_request_intact(out: Path) -> None:
     """Files are limited to 15 kB here; the first chunk, of 1600 samples, needs 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
@@ -361,24 +340,3 @@ def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
     before = states(out)
     simulate_many(quick, 1e5, out=out, **ENDLESS)
     assert states(out) == before and len(list(load_many(out))) == 16
-
-
-KILLED = """
-import os, signal, sys
-import rolling_ellipse as rl
-
-def look(done, of):
-    if done > 100:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-rl.simulate_many([rl.scenes.rocking] * 400, [1.0], out=sys.argv[1], progress=look)
-"""
-
-
-def test_a_killed_process_leaves_its_finished_chunks(out: Path) -> None:
-    assert run(KILLED, out).returncode == -signal.SIGKILL
-    before = states(out)
-    assert len(before) > 5
-    simulate_many([scenes.rocking] * 400, [1.0], out=out)
-    assert before.items() <= states(out).items()
-    assert len(list(load_many(out))) == 400

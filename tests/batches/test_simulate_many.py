@@ -1,4 +1,4 @@
-"""`simulate_many` equals `simulate` bit for bit; exceptions stay in place; arrays give scenes."""
+"""`simulate_many` equals `simulate` bit for bit, with exceptions in the places of failed scenes."""
 
 import copy
 import inspect
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.batches import ENDLESS, NAMED, TIMES, chunks, singly
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
@@ -82,8 +82,8 @@ def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
-    """Tables have the shape and names of the arrays, in memory and in a folder; a single argument
-    along an axis names it; several, or scenes of an iterable, become coordinates of "scene"."""
+    """Tables have the axes of the arguments, in memory and in a folder. A single argument gives its
+    name to its axis; several arguments, or the scenes of an iterable, share the axis "scene"."""
     b, speeds = np.linspace(0.5, 2.0, 3), np.array([0.5, 3.0, 6.0, 6.0])
     grid = {"a": 2.0, "b": b[:, None], "omega": speeds, "friction": 0.8}
     data = simulate_many(grid, TIMES, returns=("theta", "z")).to_xarray()
@@ -110,7 +110,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
 def test_motions_are_read_when_they_are_first_used(way: str) -> None:
-    """Motions are read in any order, one by one; then nothing holds the tables of their chunk."""
+    """Motions can be read one by one in any order; the last one frees the tables of their chunk."""
     motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
     assert type(motions) is list and len(motions) == len(expected)
     unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}
@@ -130,10 +130,10 @@ def test_motions_are_read_when_they_are_first_used(way: str) -> None:
 
 def test_threads_that_read_a_motion_at_once_get_the_same_arrays() -> None:
     threads = 4
-    both_there = threading.Barrier(threads)
+    start = threading.Barrier(threads)
 
     def read() -> dict[str, Any]:
-        both_there.wait()
+        start.wait()
         return {"theta": np.zeros(1), "omega": np.zeros(1)}
 
     motion = trusted(rl.Trajectory, {UNREAD: read})
@@ -149,7 +149,7 @@ def test_times_are_accepted_as_in_simulate(t: Any) -> None:
 
 
 def test_bodies_at_the_limits_do_not_affect_their_neighbours() -> None:
-    """Extreme bodies equal `simulate` bit for bit: bodies must not affect their neighbours."""
+    """Bodies of extreme shapes and sizes have the bits of `simulate`."""
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
@@ -171,7 +171,7 @@ def test_arrays_broadcast_in_c_order() -> None:
 
 
 def test_no_two_arguments_of_a_scene_are_swapped() -> None:
-    """Each argument has its own number, not the default, so that any mix-up is detected."""
+    """Each argument has its own value, which is not the default, so that any mix-up is detected."""
     arguments: dict[str, Any] = {
         "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
         "friction": 0.7, "restitution": 0.3, "rolling_resistance": 0.05, "theta": 0.2,
@@ -212,7 +212,7 @@ def test_arguments_that_could_be_valid_are_accepted_with_no_scenes(given: dict[s
 
 
 def test_simulate_many_takes_the_arguments_of_simulate() -> None:
-    """All but those that stop a motion: all motions have the same sample times."""
+    """Only the arguments that stop a motion are missing: all motions have the same sample times."""
     own = {"scene", "scenes", "workers", "progress", "out", "returns", "stop", "count"}
     mine, others = (
         {name: each for name, each in inspect.signature(of).parameters.items() if name not in own}
@@ -250,9 +250,10 @@ def test_progress_is_shown_with_or_without_a_bar(
 
 
 def test_scenes_are_consumed_only_as_needed(tmp_path: Path) -> None:
-    """Only the scenes of the current chunk are alive if an output folder is given."""
+    """Only the scenes of the current chunk are alive if an output folder is given, and each chunk
+    is in the folder when its progress is reported."""
     living: weakref.WeakSet[Scene] = weakref.WeakSet()
-    most = 0
+    most, reports = 0, 0
 
     class Watched(Scene):
         pass
@@ -264,17 +265,18 @@ def test_scenes_are_consumed_only_as_needed(tmp_path: Path) -> None:
             yield scene
 
     def look(done: int, of: int | None) -> None:
-        nonlocal most
-        most = max(most, len(living))
+        nonlocal most, reports
+        most, reports = max(most, len(living)), reports + 1
+        assert len(chunks(tmp_path / "out")) == reports
 
     simulate_many(many(), [1.0], out=tmp_path / "out", progress=look)
     largest = max(size for begin, size in itertools.islice(sizes(1), 200) if begin < 1500)
-    assert 16 <= most <= 2 * largest + 1
+    assert 16 <= most <= 2 * largest + 1 and reports > 5
 
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c_interrupts_scenes_that_would_take_hours(workers: int) -> None:
-    """The interrupt stops a scene within its steps, in any thread, and no thread is left."""
+    """The interrupt stops a scene between two steps, in any thread, and leaves no thread behind."""
     before = len(list(Path("/proc/self/task").iterdir()))
     with ctrl_c_after(0.2):
         simulate_many([scenes.rocking] * 2, 1e6, workers=workers, **ENDLESS)

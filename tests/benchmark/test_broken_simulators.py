@@ -1,7 +1,7 @@
 """Broken simulators are "right" only where the answer does not depend on the fault.
 
-The table `BROKEN` lists each fault, the problems that it leaves unaffected, each with the reason,
-and what the score must say about it elsewhere.
+The table `BROKEN` lists each fault with the problems that it does not affect, the reason for each,
+and the words that the score of any other problem must contain.
 """
 
 import math
@@ -23,7 +23,7 @@ NO_ANGLE = LIES | {"hit.bounce_flat": "theta and omega are 0 all the time"}
 WITHIN_HALF_A_TURN = dict.fromkeys(
     IDS - {"hit.settle", "leave.slip_then_lift", "roll.circle", "roll.roll",
            "slide.slope"},
-    "theta stays between -pi and pi; in brink.over up to the horizon, and it is over a tip anyway",
+    "theta stays between -pi and pi; in brink.over up to the horizon, beyond a tip in any case",
 )  # fmt: skip
 NO_EVENTS = dict.fromkeys(
     ["brink.back", "brink.over", "rest.lie", "roll.circle", "roll.rock", "roll.roll", "roll.thin",
@@ -35,8 +35,7 @@ TURN = 180 / math.pi
 
 
 class Break(NamedTuple):
-    """Effect on right states, the problems left unaffected, and the words of the score
-    elsewhere."""
+    """Effect on correct states, the unaffected problems, and the words in the scores of others."""
 
     of: Change
     independent: dict[str, str]
@@ -57,7 +56,7 @@ def wrapped(one: Any, states: Any) -> Any:
 
 
 def gap(one: Any, states: Any) -> Any:
-    """Report the height of the lowest point, which is 0 on the ground, instead of the centre's."""
+    """Report the height of the lowest point, 0 on the ground, instead of that of the centre."""
     height = support(states[:, 2], a=one.scene.a, b=one.scene.b)
     return states - np.outer(height, [0, 1, 0, 0, 0, 0])
 
@@ -111,7 +110,7 @@ def right(scores: benchmark.Scores) -> set[str]:
 @pytest.mark.parametrize("name", BROKEN)
 @pytest.mark.parametrize("accurate", [True, False])
 def test_only_answers_unaffected_by_the_fault_are_right(name: str, accurate: bool) -> None:
-    """This holds even if the simulator has errors, here from a gravity that is off by 1e-5."""
+    """The same holds for a simulator with errors, here from a gravity that is off by 1e-5."""
     broken = BROKEN[name]
 
     def mine(one: Any, t: Any, _: Any) -> Any:
@@ -174,7 +173,7 @@ def test_mistakes_in_the_output_are_named(name: str) -> None:
 @pytest.mark.parametrize("off", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
 def test_no_output_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
-    """Errors due to another scene are not mistakes in the output."""
+    """Errors from a wrong parameter of the scene do not look like mistakes in the output."""
     for by in (1 - off, 1 + off):
         if field != "restitution" or by < 1:
             mine = changed(**{field: lambda scene, by=by: getattr(scene, field) * by})
@@ -234,11 +233,8 @@ def test_wrong_bounces_are_judged_wrong(change: Any, words: str) -> None:
     assert score.answer == "wrong" and words in score.reason, score
 
 
-# ----------------------------------------------------------------------- each answer
-
-
 def test_the_disc_must_have_rolled_exactly_forty_metres() -> None:
-    """roll.circle asks where the body is, not whether it turned: 32 m is wrong."""
+    """In roll.circle the position counts, not only the rotation: 32 m is wrong."""
 
     scores = benchmark.run(
         lambda one, t, share: one.exact(t) * [share, 1, share, share, 1, share],
@@ -261,7 +257,7 @@ def test_a_resting_body_must_neither_rock_nor_move(column: int, word: str) -> No
 
 
 def test_a_law_is_named_only_if_it_is_by_far_the_nearest() -> None:
-    """A motion between two laws names neither; a motion by a law names that law."""
+    """The score of a motion halfway between two laws names neither of them."""
     one = benchmark.problem("law.which")
     motions = {"stronge": one.states, **one.laws}
     t = one.output_times[np.rint(one.times * 100).astype(int)]
@@ -278,9 +274,6 @@ def test_a_law_is_named_only_if_it_is_by_far_the_nearest() -> None:
 def test_a_simulated_body_that_never_slips_is_judged_wrong() -> None:
     score = score_of(benchmark.problem("slide.slope"), np.outer(np.ones(201), [0, 1, 0, 0, 0, 0]))
     assert score.answer == "wrong" and "missed 1 SLIP" in score.reason
-
-
-# ----------------------------------------------------------------------- times of events
 
 
 @pytest.mark.parametrize("off", [1000.0, -5.0, 0.1, -0.02])

@@ -21,7 +21,7 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [*NAMES, "uphill"])
 def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form: str) -> None:
-    """F is 0 to within 8 ulps of each entry of y and y': roundings of the exact motion and of F.
+    """F is 0 to within 8 ulps of each entry of y and y', for roundings of the motion and of F.
 
     Central differences have errors of step^2/6 = 2e-11 from third derivatives, which for the thin
     body are some (a/b)^4 of the Jacobian, and roundings of 1e-16/step.
@@ -52,8 +52,8 @@ def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form
 def determined(dae: benchmark.Dae, k: int) -> Any:
     """Mask of the entries of y' that F and its first k derivatives determine, at 1 s.
 
-    Number i of the Taylor coefficients of F along the motion has the derivative
-    A[i-j] + j E[i-j+1] by number j of y, where A = F_y and E = F_y' are fitted around 1 s.
+    The derivative of Taylor coefficient i of F along the motion with respect to coefficient j of y
+    is A[i-j] + j E[i-j+1], where the coefficients of A = F_y and E = F_y' are fitted around 1 s.
     """
     nodes, width = chebpts1(17), 0.05
     y = dae.exact(1 + width * nodes)
@@ -83,7 +83,7 @@ def determined(dae: benchmark.Dae, k: int) -> Any:
 def test_the_index_is_the_largest_number_of_differentiations(
     name: str, form: str, least: str
 ) -> None:
-    """The table has the fewest differentiations that determine each entry of y'."""
+    """The strings list how many differentiations are needed to determine each entry of y'."""
     dae = benchmark.problem(name).dae(form)
     found = sum((~determined(dae, k)).astype(int) for k in range(dae.index + 1))
     assert "".join(map(str, found)) == least.replace(" ", "")
@@ -101,8 +101,8 @@ def program(library: str) -> Any:
 
 @pytest.mark.parametrize("form", ["index2", "ggl"])
 def test_solve_dae_stays_within_its_tolerance(form: str) -> None:
-    """The page's program, whose states are columns of a matrix, keeps its tolerance for a second;
-    the page's table covers whole motions."""
+    """The page's program, which stores states as columns, is run for a second; the table on the
+    page covers whole motions."""
     table = PAGE.partition("<!-- radau")[2].partition("<!-- end of radau")[0]
     errors = [float(each) for each in re.findall(rf"\| {form} \| (\S+) \|.* done \|", table)]
     assert len(errors) == 3 and max(errors) <= 1e-8
@@ -114,7 +114,7 @@ def test_solve_dae_stays_within_its_tolerance(form: str) -> None:
 
 
 def test_ida_stays_within_its_tolerance() -> None:
-    """The page's program is run on few problems: all of them, as in its table, take minutes."""
+    """The page's program is run on one problem; all problems of the table would take minutes."""
     errors = re.findall(r"\n\| (\S+) \| (index1|ggl) \|[^|]*\| q, v \| (\S+) \|", PAGE)
     assert {row[:2] for row in errors} == {(name, form) for name in NAMES for form in FORMS[2:]}
     assert max(float(error) for *_, error in errors) <= 1e-8

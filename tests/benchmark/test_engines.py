@@ -1,4 +1,4 @@
-"""Engines read MJCF and SDF as intended, with contacts 1e-6 m deep; adapters answer problems."""
+"""Engines read MJCF and SDF as intended, with contacts 1e-6 m deep; adapters solve problems."""
 
 import math
 
@@ -16,7 +16,7 @@ HEIGHT, AHEAD = (f(0.4, a=2.0, b=0.7) for f in (geometry.support, geometry.suppo
 
 
 def test_mujoco_reads_mjcf_as_intended() -> None:
-    """The point above the centre moves forwards as theta grows, by the Jacobian's last column."""
+    """As theta grows, a point above the centre moves forwards: the last column of the Jacobian."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(SCENE.to_mjcf(timestep=0.002))
     data, above = mujoco.MjData(model), np.zeros((3, 3))
@@ -36,9 +36,9 @@ def test_mujoco_reads_mjcf_as_intended() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.6])
 def test_mujoco_resists_rolling_by_a_lever_in_metres(friction: float) -> None:
-    """A disc that only rolls slows down by delta g/(k^2 + R^2), to the 3 % of MuJoCo's soft cone.
+    """A rolling disc decelerates at delta g/(k^2 + R^2), to within the 3 % of MuJoCo's soft cone.
 
-    On the ground without friction the couple alone slows the rotation, by delta g/k^2.
+    On ground without friction only the couple acts, and the rotation decelerates at delta g/k^2.
     """
     mujoco = pytest.importorskip("mujoco")
     disc = Scene(1.0, 1.0, friction=friction, omega=2.0, rolling_resistance=0.02)
@@ -78,10 +78,10 @@ def test_drake_reads_sdf_as_intended() -> None:
 
 @pytest.mark.parametrize("name", ["mujoco", "drake", "pymunk"])
 def test_through_each_adapter_a_body_falls_and_rests_correctly(name: str) -> None:
-    """Symplectic Euler errs by g t h/2 in the z of a fall; a body that overlaps by 0.002 m stays at
-    rest."""
+    """In free fall, symplectic Euler has an error of g t h/2 in z. A resting body may overlap the
+    ground by 0.002 m."""
     simulate, drop = adapter(name), benchmark.problem("hit.drop_stick")
-    t = drop.output_times[:49]  # before it lands
+    t = drop.output_times[:49]  # before the body lands
     off = np.abs(simulate(drop, t, 0.005).states - drop.exact(t))
     assert np.abs(off - np.outer(9.81 * t * 0.005 / 2, [0, 1, 0, 0, 0, 0])).max() < 1e-12
     rest = simulate(benchmark.problem("rest.lie"), np.arange(200) / 100)

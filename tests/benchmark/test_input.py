@@ -64,7 +64,7 @@ def test_the_nearest_name_is_suggested(typed: str, near: str) -> None:
 def test_values_that_are_not_finite_are_named(
     bad: float, row: int, column: int, tmp_path: Path
 ) -> None:
-    """The message has row and column, in Python and in files; also between the given times."""
+    """The message names row and column, for arrays and for files, also between the given times."""
     one = benchmark.problem("slide.stick")
     states = one.exact(one.output_times)
     states[row, column] = bad

@@ -1,8 +1,9 @@
-"""The numbers of the files are the doubles nearest to the motion of the scene in the file.
+"""The numbers in the problem files are the doubles nearest to the exact motion of their scene.
 
-The methods differ from the maker's power series. Flights before the first impact, bounces of a flat
-body, and a disc that slides down a slope have closed forms. Rolling is the energy integral of
-reference/make_rolling_reference.py in 45 digits, with the forces by Newton's law.
+The files were made with power series; these tests use other methods. Flights before the first
+impact, bounces of a flat body, and a disc that slides down a slope have closed forms. Rolling is
+computed by the energy integral of reference/make_rolling_reference.py in 45 digits, and its forces
+by Newton's law.
 """
 
 import json
@@ -55,7 +56,7 @@ def problem(name: str) -> Any:
 
 
 def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
-    """Numbers for which another double is nearer; midway between two, both count as nearest."""
+    """Numbers with the nearer doubles; midway between two doubles, both count as nearest."""
     return [
         (p, q)
         for p, value in zip(known, exact, strict=True)

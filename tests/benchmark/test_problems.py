@@ -1,9 +1,10 @@
 """The package gives the known answers of reference/make_benchmark.py, which shares no code with it.
 
 The bound: inputs are doubles, off by up to half an ulp (a relative 1.1e-16), and so are the numbers
-in the files. A condition is the change of an answer, in its own scale, caused by that of all
-inputs: a method as good as its problem is off by (condition + 1) / 2 ulps. `ULPS` ulps leave room
-for its roundings and for forces, functions of the state with slopes up to three weights by scale.
+in the files. The condition number is the change of an answer, relative to its scale, divided by the
+relative change of all inputs. A backward stable method is off by (condition + 1)/2 ulps. `ULPS`
+leaves room for roundings of the method and for forces, which change by up to three weights if the
+state changes by its scale.
 """
 
 import json
@@ -29,7 +30,7 @@ each_problem = pytest.mark.parametrize("name", sorted(PROBLEMS))
 
 @cache
 def motion(name: str) -> Trajectory:
-    """The package's motion; a jam at the start ends it there."""
+    """The motion according to the package. A jam at the start ends the motion there."""
     data = PROBLEMS[name]
     return simulate(Scene(**data["scene"]), data["t_end"] or 1.0, model="contact")
 
@@ -83,7 +84,7 @@ def test_other_laws_of_restitution_match_the_known_answers() -> None:
 
 @each_problem
 def test_slightly_changed_problems_have_the_same_events(name: str) -> None:
-    """All inputs change by 1e-12 of their size, zeros of the start by 1e-12 of their scale."""
+    """Each input changes by 1e-12 of its size, or of its scale if it is 0."""
     data, rng = PROBLEMS[name], random.Random(33)
     scene, sizes = data["scene"], dict(zip(STATE, data["scales"], strict=True))
     follow = ["z", "z_dot"] * (Scene(**scene).initial_state.mode.name != "FLIGHT")
@@ -111,7 +112,7 @@ def test_the_files_are_small_and_share_one_format() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """A bounce counts if the rise before it exceeds 0.002 L; the end is that of the last bounce."""
+    """A bounce counts if the rise before it exceeds 0.002 L; the last bounce sets the end time."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

@@ -21,7 +21,7 @@ def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: P
     for one in benchmark.problems():
         t = one.output_times[: 51 if one.id == "roll.rock" else None]
         write_states(tmp_path, one, one.exact(t), header="t,x,z,theta,vx,vz,omega")
-    benchmark.export(tmp_path)  # leaves the results
+    benchmark.export(tmp_path)  # does not change the results
     (tmp_path / "roll.thin.csv").write_text("")
     scores = benchmark.score(tmp_path)
     unlike = [(score.problem, score.answer) for score in scores if not score.passed]
@@ -44,7 +44,7 @@ def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> Non
 
 
 def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
-    """Events are then read off the states; of two columns with one name the first counts."""
+    """Events are then inferred from the states. Of two columns with one name the first counts."""
     one = benchmark.problem("slide.stick")
     rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
     header = "t,x,z,theta,x_dot,z_dot,omega,vx"
@@ -55,7 +55,7 @@ def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
 
 
 def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
-    """Two such rows are the sides of a jump; here the first row of each pair is wrong."""
+    """Two rows at one time are the two sides of a jump; here the first of each pair is wrong."""
     one = benchmark.problem("slide.stick")
     rows = np.repeat(np.column_stack([one.output_times, one.exact(one.output_times)]), 2, axis=0)
     rows[::2, 1:] += 1.0
@@ -66,7 +66,8 @@ def test_of_two_rows_at_one_time_the_second_is_scored(tmp_path: Path) -> None:
 
 
 def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
-    """All or nothing is written: over a file, a link to it, a dangling link, a folder, a pipe."""
+    """If a file, a link, a dangling link, a folder or a pipe has one of the names, nothing is
+    written."""
     mine, place = tmp_path / "mine", tmp_path / "place"
     for name in ("README.txt", "roll.rock.json", "roll.rock.csv", "hit.settle.sdf"):
         for make in (
@@ -91,7 +92,7 @@ def test_a_full_disk_leaves_no_truncated_file(tmp_path: Path) -> None:
     with files_of_at_most(3000), pytest.raises(OSError, match="large"):
         benchmark.export(tmp_path)
     whole = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    written = benchmark.export(tmp_path)  # the rest
+    written = benchmark.export(tmp_path)  # the remaining files
     assert len(whole) + len(written) == len([*tmp_path.iterdir()])
     for name, content in whole.items():
         assert (tmp_path / name).read_bytes() == content

@@ -34,7 +34,7 @@ def test_unaligned_arrays_are_copied_on_entry() -> None:
 
 
 def test_failing_to_start_threads_changes_no_bit() -> None:
-    """200 workers give the bits of one thread even if memory runs out after some twenty stacks."""
+    """200 workers give the bits of one thread even if memory runs out after about twenty stacks."""
     code = """
         import resource
         import numpy as np
@@ -44,7 +44,7 @@ def test_failing_to_start_threads_changes_no_bit() -> None:
         start = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 3.2}
         alone = flow(t, **start)
         pages = int(open("/proc/self/statm").read().split()[0])
-        limit = pages * resource.getpagesize() + 200 * 2**20  # some twenty stacks of 8 MiB
+        limit = pages * resource.getpagesize() + 200 * 2**20  # about twenty stacks of 8 MiB
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
         for one, many in zip(alone, flow(t, workers=200, **start)):
             assert np.array_equal(one, many)
@@ -54,7 +54,7 @@ def test_failing_to_start_threads_changes_no_bit() -> None:
 
 
 def test_running_out_of_memory_raises_a_memory_error() -> None:
-    """Each array in turn is the first without room: 16 MB each, in memory that grows by 16 MB."""
+    """The memory limit grows by the 4 MB of an array, so that each array in turn does not fit."""
     code = """
         import resource
         import numpy as np

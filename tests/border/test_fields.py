@@ -1,7 +1,7 @@
 """Each field of the core's tables survives every path through the package.
 
-A contact motion has the same bits in all units that are powers of two, so that each field must have
-the dimension of its unit.
+A contact motion has the same bits in all units that are powers of two. This shows that each field
+has the dimension of its unit.
 """
 
 import dataclasses
@@ -18,7 +18,6 @@ from oracles.units import STATE, UNITS, assert_same_in_other_units, scaled, scen
 from rolling_ellipse import Impulse, Scene, _core
 from rolling_ellipse._ask.settings import DEFAULTS, Settings
 from rolling_ellipse._command_line import SCENE_OPTIONS, chosen_scene, motion_parser
-from rolling_ellipse._motion.export.files import event_row, event_values
 from rolling_ellipse._motion.export.strict import scene_of
 
 FIELDS = list(UNITS["Scene"])
@@ -67,7 +66,7 @@ def by_arrays(scene: Scene, folder: Path) -> Scene:
     return found.scene  # type: ignore[union-attr]
 
 
-ROADS: dict[str, Callable[[Scene, Path], Scene]] = {
+INTERFACES: dict[str, Callable[[Scene, Path], Scene]] = {
     "repr": lambda scene, folder: eval(repr(scene)),
     "replace": lambda scene, folder: dataclasses.replace(scene),
     "pickle": lambda scene, folder: pickle.loads(pickle.dumps(scene)),
@@ -84,17 +83,17 @@ def test_scenes_have_the_fields_of_the_core() -> None:
     assert _core.COLUMNS["scenes"] == (*UNITS["Scene"], *UNITS["Impulse"])
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("interface", INTERFACES)
 @pytest.mark.parametrize("name", FIELDS)
 def test_a_scene_keeps_its_values_through_every_interface(
-    road: str, name: str, tmp_path: Path
+    interface: str, name: str, tmp_path: Path
 ) -> None:
-    assert ROADS[road](changed(name), tmp_path) == changed(name) != START
+    assert INTERFACES[interface](changed(name), tmp_path) == changed(name) != START
 
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_every_value_of_a_scene_affects_the_motion(name: str) -> None:
-    """The core reads each number, also when it scales a contact motion to its own units."""
+    """The core reads each number, and scales it correctly to its own units of a contact motion."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 
@@ -108,7 +107,8 @@ OF_UNIT_SIZE = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, 
      (OF_UNIT_SIZE, (0, 0, 3))],
 )  # fmt: skip
 def test_a_motion_is_the_same_in_other_units(scene: Scene, units: Any) -> None:
-    """The last scene has unit length and time in metres and seconds; only its mass is scaled."""
+    """In the last scene the units of length and time are a metre and a second; only the mass is
+    scaled."""
     one = rl.simulate(scene, TIMES, model="contact")
     other = scene_in_other_units(scene, units)
     again = rl.simulate(other, scaled(TIMES, "s", units), model="contact")
@@ -136,19 +136,6 @@ def test_settings_have_the_fields_of_the_core() -> None:
 def test_initial_states_have_the_fields_of_the_core() -> None:
     assert set(names(type(START.initial_state))) == {*UNITS["InitialState"], "mode", "reason"}
     assert set(UNITS["State"]) < set(UNITS["InitialState"])
-
-
-def test_an_event_keeps_its_values_in_tables() -> None:
-    motion = rl.simulate(START, TIMES, model="contact")
-    row = motion._solution.events.tolist()[0]
-    named = dict(zip(_core.COLUMNS["events"], row, strict=True))
-    event = motion.events[0]
-    assert (named["t"], named["kind"]) == (event.t, event.kind.value)
-    for when in ("before", "after"):
-        state = getattr(event, f"state_{when}")
-        for name in (*UNITS["State"], "mode"):
-            assert named[f"{name}_{when}"] == getattr(state, name)
-    assert event_row(event_values(event)) == row
 
 
 def test_statistics_and_columns_have_the_names_of_the_core() -> None:

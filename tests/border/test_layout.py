@@ -49,7 +49,7 @@ def drawn(form: str) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Call:
-    """A function and its arrays. With `rows`, their rows are single calls."""
+    """A function and its arrays. With `rows`, each row of the arrays makes a single call."""
 
     function: Callable[..., Any]
     given: dict[str, Array]
@@ -73,7 +73,7 @@ BLOWS = {"jx": within(-3, 3), "jz": within(-9, 0), "dx": within(-1, 1), "dz": wi
 ACCELERATED = ("eq_39", "lambda4_numerator", "eq_40", "complete_f", "eq_41", "eq_42", "multipliers")
 FIRST = np.linspace(0, 9, 7)
 CALLS: dict[str, Call] = {
-    # the times of one motion share a table, so that single times agree in units, not in bits
+    # the times of one motion share a table: single times agree to rounding units, not in bits
     "flow": Call(rl.flow, {"t": within(-2, 9), **BODY, **START, "gyration2": within(0.2, 2),
                            "gravity": within(1.6, 9.8)}),
     "flow: times": Call(lambda t: rl.flow(t, **AXES, theta=0.1, omega=3.0), {"t": TIMES}, False),
@@ -214,7 +214,7 @@ def test_results_are_bit_identical_for_every_memory_layout(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name, call in CALLS.items() if call.rows])
 def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None:
-    """The rows have all layouts in turn."""
+    """The rows take turns in having each of the memory layouts."""
     call, layouts = CALLS[name], list(LAYOUTS.values())
     many = leaves(call.function(**call.given))
     for k in range(COUNT):
@@ -225,8 +225,6 @@ def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None
                 pair = (np.asarray(each, whole.dtype) for each in (whole[k], alone))
                 assert len({each.tobytes() for each in pair}) == 1, k
 
-
-# --------------------------------------------------------------------------- functions of numbers
 
 OF_NUMBERS = [name for name in CALLS if name.startswith(("geometry", "impacts.c", "impacts.k"))]
 each_of_numbers = pytest.mark.parametrize("name", [*OF_NUMBERS, "flow", "flow: slope", "classify"])
@@ -294,8 +292,6 @@ def test_coordinates_broadcast_over_all_but_their_last_axis() -> None:
     assert rl.constraints(np.empty((0, 5)), np.empty((0, 5)), **AXES).position.shape == (0, 3)
 
 
-# --------------------------------------------------------------------- every function is here
-
 ANY_KIND = {"Any", "Sequence[Any]", "ArrayLike"}  # annotations of arguments that may be arrays
 NO_ARRAYS = {"path", "folder", "figure", "figsize", "ax", "workers", "peers", "printed", "xp"}
 
@@ -322,7 +318,7 @@ def takes_arrays(function: Any) -> bool:
 
 
 def test_every_function_that_takes_arrays_is_tested() -> None:
-    """Their docstrings say array_like, or leave the type of an argument open."""
+    """A docstring says array_like, or the annotation of an argument is open, if it takes arrays."""
     found = {name for name, function in public() if takes_arrays(function)}
     assert len(found) > 50
     assert found <= {name.partition(":")[0] for name in CALLS}

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.figure import Figure
+from matplotlib import pyplot
 from oracles.paths import TESTS
-from oracles.pickles import ROADS, core_objects, fitted, require_same
+from oracles.pickles import COPIES, core_objects, fitted, require_same
 from oracles.programs import printed
 from oracles.trajectory import MOTIONS, TIMES
 from rolling_ellipse import _core, simulate
@@ -85,7 +85,6 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "codes": lambda: (rl.Mode.SLIDING, rl.EventKind.JAM, rl.Outcome.EDGE, rl.Status.JAMMED,
                       rl.Validity.EDGE),
 }  # fmt: skip
-each_road = pytest.mark.parametrize("road", ROADS.values(), ids=ROADS)
 
 
 def test_the_comparison_detects_a_changed_bit_or_flag() -> None:
@@ -113,12 +112,12 @@ def test_every_public_class_is_tested() -> None:
     assert Settings in here
 
 
-@each_road
+@pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 @pytest.mark.parametrize("make", OBJECTS.values(), ids=OBJECTS)
 def test_an_object_survives_every_kind_of_copy_unchanged(
-    make: Callable[[], Any], road: Callable[[Any], Any]
+    make: Callable[[], Any], copied: Callable[[Any], Any]
 ) -> None:
-    require_same(make(), road(make()))
+    require_same(make(), copied(make()))
 
 
 def test_pickles_hold_no_more_than_needed() -> None:
@@ -170,28 +169,19 @@ PICTURES = (
 )  # fmt: skip
 
 
+def lines_of(picture: Any) -> list[Any]:
+    return [each for each in vars(picture).values() if hasattr(each, "get_xydata")]
+
+
 @pytest.mark.parametrize("draw", PICTURES, ids=lambda draw: draw.__name__)
 def test_pictures_pickle_like_figures(draw: Callable[..., Any]) -> None:
-    figure = Figure()
-    motion = MOTIONS["contact"]()
-    if draw is rl.plot:
-        picture = draw(motion, figure=figure)
-    elif draw is rl.plot_constraints:
-        picture = draw(motion, ax=figure.subplots(2))
-    else:
-        picture = draw(motion, ax=figure.add_subplot())
-    for road in (ROADS["protocol 0"], ROADS["protocol 5"], copy.copy):
-        again = road(picture)
+    picture = draw(MOTIONS["contact"]())
+    pyplot.close("all")
+    for copied in (COPIES["protocol 0"], COPIES["protocol 5"], copy.copy):
+        again = copied(picture)
         assert type(again) is type(picture)
-        require_same_lines(picture, again)
-
-
-def require_same_lines(one: Any, other: Any) -> None:
-    lines = (
-        [each for each in vars(of).values() if hasattr(each, "get_xydata")] for of in (one, other)
-    )
-    for line, same in zip(*lines, strict=True):
-        assert np.array_equal(line.get_xydata(), same.get_xydata(), equal_nan=True)
+        for line, same in zip(*map(lines_of, (picture, again)), strict=True):
+            assert np.array_equal(line.get_xydata(), same.get_xydata(), equal_nan=True)
 
 
 def test_all_classes_of_the_core_are_tested() -> None:
@@ -202,18 +192,18 @@ def test_all_classes_of_the_core_are_tested() -> None:
 CORE = """
 import copy, pickle, sys
 sys.path.insert(0, sys.argv[1])
-from oracles.pickles import ROADS, core_objects
+from oracles.pickles import COPIES, core_objects
 
 for thing in core_objects().values():
-    for road in ROADS.values():
+    for copied in COPIES.values():
         try:
-            road(thing)
+            copied(thing)
         except TypeError as error:
             print(error)
 """
 
 
 def test_objects_of_the_core_cannot_be_pickled_or_copied() -> None:
-    """Pickling runs in a separate process, because a pickled core object might end it."""
+    """The attempts run in a separate process, which a pickled object of the core might crash."""
     refusals = [f"_core.{name} cannot be pickled or copied" for name in core_objects()]
-    assert printed(CORE, TESTS).splitlines() == [text for text in refusals for _ in ROADS]
+    assert printed(CORE, TESTS).splitlines() == [text for text in refusals for _ in COPIES]

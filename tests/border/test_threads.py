@@ -158,7 +158,7 @@ def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[
 
 
 def test_every_property_cached_by_a_trajectory_is_tested() -> None:
-    """`late_names` finds the properties of the samples and the late answers of the solver."""
+    """`late_names` finds properties of the samples and values that the solver computes later."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
 
@@ -174,7 +174,7 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_computing_a_property_of_one_motion_does_not_block_another_motion(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A thread held inside a property lets another thread read the property of another motion."""
+    """While a thread is held inside a property, another thread reads that of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, released, usual = Event(), Event(), attrgetter(within)(trajectories)
 

@@ -1,4 +1,4 @@
-"""Blows during a motion, against motions chained by hand: stop, strike the scene, go on."""
+"""Blows during a motion agree with motions chained by hand: stop, strike the body, continue."""
 
 import math
 import pickle
@@ -36,7 +36,7 @@ def numbers(state: InitialState, names: tuple[str, ...] = STATE) -> list[float]:
 
 
 def time_of_blow(motion: Trajectory, rng: np.random.Generator, last: float) -> float:
-    """Any time, the time of an event, the middle of an arc (also of summed bounces), or again."""
+    """Any time, that of an event or of the last blow, or the middle of an arc or summed bounces."""
     times = [last, *(each.t for each in motion.events if each.t >= last), motion.t_end]
     place = int(rng.integers(len(times)))
     middle = (times[place] + times[min(place + 1, len(times) - 1)]) / 2
@@ -44,7 +44,7 @@ def time_of_blow(motion: Trajectory, rng: np.random.Generator, last: float) -> f
 
 
 def random_struck(seed: int) -> tuple[Scene, Blows]:
-    """A scene, resisted in a third of the cases, and one to five blows that meet the body."""
+    """A scene, with rolling resistance in a third of the cases, and one to five blows that hit."""
     rng = np.random.default_rng(seed)
     (scene,) = random_scenes(1, seed, struck=0.3)
     if rng.random() < 1 / 3:
@@ -68,11 +68,11 @@ def struck(seed: int) -> Trajectory:
 
 
 def require_chained(scene: Scene, blows: Blows) -> Trajectory:
-    """The last blow acts as on the scene at its time; all earlier ones by the same comparison.
+    """Require that the last blow acts as it does on the scene at its time.
 
-    States at events and effects have equal bits, as they do not depend on the clock. A time is the
-    sum of the time of the blow and one of the chained motion, each rounded once: with the rounding
-    of the sum, it may be off by two units of the last place of the span.
+    States and effects of events have equal bits, since they do not depend on the clock. A time is
+    the sum of the time of the blow and a time of the chained motion. Both are rounded, and so is
+    their sum: the time may be off by two ulps of the span.
     """
     (*earlier, (t, blow)) = blows
     before, motion = follow(scene, SPAN, earlier), follow(scene, SPAN, blows)
@@ -90,7 +90,7 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
     assert numbers(event.state_after, names) == numbers(again.initial_state, names)
     ulps = 2 * np.spacing(SPAN)
     assert abs(motion.t_end - (t + after.t_end)) <= ulps and motion.status is after.status
-    alike = min(len(rest), len(after.events))  # one at the very end may be just beyond it
+    alike = min(len(rest), len(after.events))  # an event at the very end may lie just beyond it
     assert all(SPAN - each.t <= ulps for each in rest[alike:])
     assert all(SPAN - t - each.t <= ulps for each in after.events[alike:])
     for one, other in zip(rest, after.events, strict=False):
@@ -99,7 +99,7 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
             one_state, other_state = getattr(one, when), getattr(other, when)
             assert numbers(one_state, names) == numbers(other_state, names)
     first = after.events[0].t if after.events else after.t_end
-    for share in (0.0,) if scene.rolling_resistance else (0.0, 0.25, 0.75):  # turns are no events
+    for share in (0.0,) if scene.rolling_resistance else (0.0, 0.25, 0.75):  # turns are not events
         since = share * first
         if (now := t + since) - t == since and now <= motion.t_end:
             one_sample, other_sample = motion.sol(now), after.sol(since)
@@ -109,14 +109,14 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
 
 
 def size_of_energy(scene: Scene, state: InitialState) -> float:
-    """Sum of the sizes of the terms of the energy."""
+    """Sum of the magnitudes of the terms of the energy."""
     weight = scene.mass * scene.gravity
     return kinetic_energy(scene, state) + weight * (abs(state.z) + abs(state.x))
 
 
 def require_balance(motion: Trajectory) -> None:
-    """A blow and the ground do the work of their impulses on the mean velocities of their points;
-    no energy changes in flight or in rolling without resistance."""
+    """Require that blow and ground do the work of their impulses on the mean velocities of their
+    points, and that the energy is constant in flight and in rolling without resistance."""
     scene, blows = motion.scene, iter(motion.blows)
     for event in motion.events:
         if event.kind is not EventKind.BLOW:
@@ -153,7 +153,7 @@ def test_a_blow_acts_as_on_the_scene_at_its_time(seed: int) -> None:
 
 
 def places_of_blows(motion: Trajectory) -> Iterator[str]:
-    """Where the blows find the body: its mode, and whether something else happens there."""
+    """The mode of the body at each blow, and whether another event happens at the same time."""
     for last, event in pairwise([None, *motion.events]):
         if event is None or event.kind is not EventKind.BLOW:
             continue
@@ -168,22 +168,23 @@ def places_of_blows(motion: Trajectory) -> Iterator[str]:
             yield "in summed bounces"
 
 
-def test_the_random_blows_find_the_body_everywhere() -> None:
+def test_the_random_blows_strike_in_every_mode_and_at_other_events() -> None:
     found = {each for seed in range(60) for each in places_of_blows(struck(seed))}
     extra = {"again", "at another event", "in summed bounces"}
     assert found == {*Mode.__members__} | extra
 
 
-def test_blows_of_auto_are_of_the_contact_model_and_keep_the_bits_of_rolling() -> None:
+def test_with_blows_auto_uses_the_contact_model_and_keeps_the_bits_of_rolling() -> None:
     scene = rl.scenes.report
     motion, rolling = rl.simulate(scene, 6.0, blows=REPORT), rl.simulate(scene, 6.0)
     assert motion.model == "contact" and rolling.model == "rolling"
     early = motion.t < REPORT[0][0]
-    for name in ("theta", "omega", "x", "z_dot", "normal_force"):
+    forces = ("normal_force", "friction_force", "psi", "energy")
+    for name in (*STATE, *forces):
         assert np.array_equal(getattr(motion, name)[early], getattr(rolling, name)[early])
 
 
-def test_a_blow_at_the_start_follows_that_of_the_scene() -> None:
+def test_a_blow_at_the_start_follows_the_blow_of_the_scene() -> None:
     """Two sticking presses at one point turn the body twice as fast as a single one."""
     struck = rl.scenes.report
     both = struck.replace(impulse=Impulse.press(96.0, 1.5))
@@ -193,7 +194,7 @@ def test_a_blow_at_the_start_follows_that_of_the_scene() -> None:
     assert motion.omega[0] == pytest.approx(both.initial_state.omega, rel=4 * EPS)
 
 
-def test_a_blow_in_the_air_changes_the_flight_only() -> None:
+def test_a_blow_in_the_air_changes_only_the_flight() -> None:
     scene = Scene(2.0, 1.0, z=3.0, restitution=0.5)
     motion = rl.simulate(scene, [0.0, 0.1, 1.0], blows=[(0.1, Impulse(jx=2.0, dz=0.5))])
     blow, impact, *_ = motion.events
@@ -239,7 +240,7 @@ def test_blows_count_as_events() -> None:
     assert motion.scene_at(motion.t_end) == alone.scene_at(motion.t_end)
 
 
-def test_a_motion_with_blows_equals_itself_in_every_form(tmp_path: Path) -> None:
+def test_a_motion_with_blows_survives_files_and_pickles(tmp_path: Path) -> None:
     motion = rl.simulate(rl.scenes.report, 6.0, blows=REPORT)
     motion.save(tmp_path / "motion.npz")
     again = pickle.loads(pickle.dumps(motion))
@@ -256,8 +257,8 @@ def test_a_motion_with_blows_equals_itself_in_every_form(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("form", ["list", "folder"])
-def test_many_motions_with_blows_are_those_of_simulate(form: str, tmp_path: Path) -> None:
-    """A blow that misses one of the bodies refuses its scene only."""
+def test_simulate_many_with_blows_equals_simulate(form: str, tmp_path: Path) -> None:
+    """If a blow misses one of the bodies, only the scene of that body is rejected."""
     scenes = [rl.scenes.report, rl.scenes.jump, Scene(0.3, 0.2, theta=0.1, friction=0.5)]
     how: dict[str, Any] = {"blows": REPORT, "max_events": 50}
     if form == "list":
@@ -275,7 +276,7 @@ def test_many_motions_with_blows_are_those_of_simulate(form: str, tmp_path: Path
     assert isinstance(third, ValueError) and str(third) == str(why.value)
 
 
-def test_ends_with_blows_are_those_of_simulate() -> None:
+def test_ends_with_blows_equal_simulate() -> None:
     grid: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": [1.0, 3.2], "friction": 0.5, "mass": 10.0}
     last = rl.ends(grid, 6.0, blows=REPORT)
     table = rl.simulate_many(grid, 6.0, blows=REPORT, returns="events")
@@ -287,7 +288,7 @@ def test_ends_with_blows_are_those_of_simulate() -> None:
                    for name in motion.events.table)  # fmt: skip
 
 
-def test_a_table_has_the_bits_of_the_events() -> None:
+def test_a_table_of_events_with_blows_equals_the_events() -> None:
     table = rl.simulate(rl.scenes.report, 6.0, blows=REPORT).events.table
     events = rl.simulate(rl.scenes.report, 6.0, blows=REPORT).events
     for name in EFFECTS[:2]:
@@ -297,8 +298,8 @@ def test_a_table_has_the_bits_of_the_events() -> None:
     assert table["reason"][0] == events[0].state_after.reason == "a blow strikes the body"
 
 
-def test_the_losses_of_a_struck_motion_are_without_the_work_of_its_blows() -> None:
-    """Rolling loses nothing, so that all that is left are roundings."""
+def test_the_losses_of_a_motion_exclude_the_work_of_its_blows() -> None:
+    """Rolling loses no energy, so that only roundings remain."""
     motion = rl.simulate(rl.scenes.report, 4.0, blows=[(2.0, Impulse.press(2.0, 0.5))])
     assert abs(motion.energy[-1] - motion.energy[0]) > 1
     lost = losses(motion)
@@ -307,7 +308,7 @@ def test_the_losses_of_a_struck_motion_are_without_the_work_of_its_blows() -> No
 
 
 def test_sensitivities_pass_through_a_blow() -> None:
-    """Against a difference of motions, whose error is of the size of its step squared."""
+    """Derivatives agree with central differences, whose error is of second order in the step."""
     scene, blows = Scene(2.0, 1.0, omega=1.0, friction=0.9), [(0.7, Impulse.press(0.3, 0.5))]
     motion = rl.simulate(scene, [0.5, 1.5], blows=blows)
     slope = motion.sensitivity("omega").state[:, 2, 0]
@@ -317,8 +318,8 @@ def test_sensitivities_pass_through_a_blow() -> None:
 
 
 def test_derivatives_part_by_part_pass_through_blows() -> None:
-    """Eight events make three parts: each has the blows of its own time only. Differences of the
-    whole motion are good to 1e-10 of the largest derivative, as long as neighbours bounce alike."""
+    """Eight events make three parts, each with the blows of its own time only. Differences of the
+    whole motion are accurate to 1e-10 of the largest derivative if all neighbours bounce alike."""
     push = Impulse(jx=0.2, jz=0.1)
     motion = rl.simulate(
         rl.scenes.bounce, [0.5, 1.5, 3.5], blows=[(0.3, push), (1.2, push), (2.7, push)]

@@ -1,11 +1,10 @@
-"""The contact model agrees with 30 digits (reference/make_contact_reference.py and, with rolling
-resistance, make_resistance_reference.py).
+"""The contact model agrees with references of 30 digits (reference/make_contact_reference.py and,
+with rolling resistance, make_resistance_reference.py).
 
-Every event has a time and a state just after it, each with a unit: its change when every input
-changes by a relative 2.2e-16, the shift of the event itself included. The claim: events of the same
-kinds in the same order, every value within 8 units plus the rounding of the two doubles that
-represent it, which is an ulp of the value itself and the effect of two ulp of theta on the other
-values.
+Each event has a time and a state just after it. The unit of each of these values is its change when
+every input changes by a relative 2.2e-16, including the shift of the event itself. Events must have
+the same kinds in the same order, and every value must be within 8 units plus its rounding: an ulp
+of the value itself, and the effect of two ulps of theta on the other values.
 """
 
 import itertools
@@ -25,8 +24,8 @@ UNITS = 8  # claimed largest error, in units of the table
 
 
 class Motion(NamedTuple):
-    """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and states,
-    of which the last one is its end."""
+    """A scene and its events and states, up to its end: their kinds, their values as decimal text
+    (n, 7) and their units (n, 7)."""
 
     name: str
     scene: Scene
@@ -36,8 +35,8 @@ class Motion(NamedTuple):
 
     @property
     def rounding(self) -> NDArray[np.float64]:
-        """Rounding of a state of doubles (n, 7): theta is known to an ulp or two, and h, h' and
-        their rates change with it."""
+        """Rounding of a state of doubles (n, 7): theta is known to an ulp or two, on which h, h'
+        and their rates depend."""
         scene, values = self.scene, np.array(self.values, float)
         ulp: NDArray[np.float64] = np.spacing(np.abs(values))
         theta, omega = values[:, 1], np.abs(values[:, 2])
@@ -93,7 +92,7 @@ def test_events_and_states_agree_with_a_30_digit_reference(motion: Motion) -> No
 
 
 def test_an_error_of_1e_11_is_detected() -> None:
-    """The check is sharp: 1e-11 of any value of a first event, or of a unit, exceeds ten bounds."""
+    """The check is sharp: an error of 1e-11 in a value of a first event exceeds ten bounds."""
     for motion in MOTIONS:
         values = np.array(motion.values, float)
         off = shares(motion, (values + 1e-11 * np.maximum(np.abs(values), 1)).tolist())

@@ -82,8 +82,8 @@ def random_flight(rng: np.random.Generator) -> Scene:
 
 
 def check(scene: Scene, flight: Scene | None = None) -> float:
-    """The body touches the ground at its first impact, whose time is returned, and nowhere before;
-    it flies like `flight`."""
+    """Require that the body, which flies like `flight`, first touches the ground at its first
+    impact, and return the time of this impact."""
     t, gap = first_impact(scene), Gap(flight or scene)
     assert abs(gap(np.longdouble(t))) <= gap.rounding(t) + EPS * t * abs(gap.rate(t))
     assert gap.lowest_before(t * (1 - 1e-9)) >= -gap.rounding(t)
@@ -125,7 +125,7 @@ def test_a_graze_is_distinguished_from_a_miss(omega: float, miss: float) -> None
 def test_a_body_may_leave_the_ground_by_acceleration_alone(
     omega: float, beyond: float, slope: float
 ) -> None:
-    """Rolling has c = g cos(alpha) + h'' omega^2 < 0 near the tip; gap and rate are 0."""
+    """Near the tip c = g cos(alpha) + h'' omega^2 < 0 for rolling, while gap and rate are 0."""
     scene = Scene(2.0, 1.0, theta=math.pi / 2 + beyond, omega=omega, slope=slope, friction=0.3)
     gap = Gap(scene)
     assert gap.acceleration(np.longdouble(0)) > 0
@@ -218,9 +218,9 @@ def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) ->
 def test_elastic_impacts_neither_gain_nor_lose_energy(
     a: float, b: float, theta: float, omega: float, z: float
 ) -> None:
-    """An impact changes the energy by at most 2e-17, a tenth of a rounding: the time of contact is
-    the nearest double, early as often as late. Taking the next double instead would gain 5e-17 to
-    2e-16 at each."""
+    """Impacts change the energy by less than 2e-17 each on average, a tenth of a rounding: the time
+    of contact is the nearest double, early as often as late. Rounding it up would gain 5e-17 to
+    2e-16 at each impact."""
     impacts = 50_000
     scene = Scene(a, b, theta=theta, omega=omega, z=z, friction=0.0, restitution=1.0)
     motion = simulate(scene, 1e9, model="contact", max_events=impacts, raise_on_failure=False)
@@ -232,8 +232,8 @@ def test_elastic_impacts_neither_gain_nor_lose_energy(
 @pytest.mark.parametrize("theta", [0.3, 1e5])
 @pytest.mark.parametrize("slope", [0.0, -0.768, 0.4])
 def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> None:
-    """Without friction impacts change neither spin nor path. The bound is a rounding of each input,
-    and of the result, however many hops there are, although equal hops round alike."""
+    """Without friction impacts change neither spin nor path. The bound is a rounding of each input
+    and of the result for any number of hops, although equal hops round alike."""
     radius, fall, speed = 0.039, GRAVITY * math.sin(slope), -0.0357
     scene = Scene(
         radius, radius, slope=slope, theta=theta, omega=-7.99, x_dot=speed, z_dot=1.1e-3,
@@ -252,7 +252,8 @@ def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.61, 0.9])
 def test_summed_bounces_of_a_spinning_disc_conserve_momentum(restitution: float) -> None:
-    """x' = x0' + mu (g t - z0'), as friction is mu times the impulse of N; the rim runs 30 m/s."""
+    """x' = x0' + mu (g t - z0'), since friction is mu times the impulse of N; the rim's speed is
+    30 m/s."""
     disc: dict[str, Any] = {"friction": 1e-3, "omega": 30.0, "x_dot": 0.02, "z_dot": 1.1}
     scene = Scene(1.0, 1.0, z=1.05, restitution=restitution, **disc)
     motion = simulate(scene, [8.0])

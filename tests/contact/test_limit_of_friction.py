@@ -67,7 +67,7 @@ def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, u
 @pytest.mark.parametrize("ulps", [-2, 0, 2, 100])
 @pytest.mark.parametrize("swing", [6.6e-13, -6.6e-13])
 def test_a_barely_rocking_body_is_held_by_friction(swing: float, ulps: int) -> None:
-    """In the body's swing |F|/N is tan(slope) to 2e-14; it would be far more a micro-radian away.
+    """During the swing |F|/N is tan(slope) to 2e-14; it is far larger a microradian away.
 
     A thin plate lies where tan(slope) = h'/h, that is sin(2 theta)(a^2 - b^2)/2 = tan(slope) h^2.
     """

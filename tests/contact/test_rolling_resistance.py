@@ -19,9 +19,6 @@ G = 9.81
 ROCKING = Scene(2.0, 1.0, theta=0.5, friction=1.0, rolling_resistance=0.01)
 
 
-# ---------------------------------------------------------------------------- modes of a contact
-
-
 class Answer(NamedTuple):
     """A mode that the laws allow, with the forces per mass and the angular acceleration."""
 
@@ -32,7 +29,7 @@ class Answer(NamedTuple):
 
 
 def allowed(scene: Scene, slip: float) -> list[Answer]:
-    """All modes whose forces obey the laws: each side of slip and rotation, or none, is tried."""
+    """All modes whose forces obey the laws, tried for each direction of slip and rotation."""
     h, dh, ddh = (float(each) for each in support(scene.theta, scene.a, scene.b))
     mu, lever, k2, omega = scene.friction, scene.rolling_resistance, scene.gyration2, scene.omega
     into, along = G * math.cos(scene.slope), G * math.sin(scene.slope)
@@ -118,9 +115,6 @@ def test_a_lever_alone_can_jam_a_light_body(
     assert (stiffness <= 0) == (friction == 0)
 
 
-# ---------------------------------------------------------------------------- rest and loss
-
-
 @pytest.mark.parametrize("slope", [0.0, 0.08, -0.2])
 def test_a_body_rests_where_its_centre_is_above_the_patch_of_contact(slope: float) -> None:
     random = np.random.default_rng(3)
@@ -169,9 +163,6 @@ def test_a_small_lever_changes_the_motion_in_proportion() -> None:
     ]
     assert change[0] / change[1] == pytest.approx(2, rel=1e-5)  # quadratic terms are 1e-6 of it
     assert change[2] == pytest.approx(change[0] * 1e-6, abs=32 * EPS)
-
-
-# ---------------------------------------------------------------------------- restarts, proofs
 
 
 @pytest.mark.parametrize(

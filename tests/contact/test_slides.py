@@ -69,7 +69,7 @@ def test_a_frictionless_slide_conserves_energy() -> None:
     """(k^2 + h'^2) omega^2/2 + g h over a thousand oscillations changes by a random walk of
     roundings.
 
-    A slide over a period takes some dozen pieces, each of which rounds theta and omega once.
+    A slide over a period takes about a dozen pieces, each of which rounds theta and omega once.
     """
     scene = Scene(2.0, 1.0, friction=0.0, theta=1.0)
     motion = simulate(scene, np.linspace(0.0, 2e3, 4001), model="contact")
@@ -107,8 +107,8 @@ THIN = (
          "x_dot": (-0.2339955212093542957774162, 3.66e-16),
          "z_dot": (3.670624592798674701299433, 5.69e-15)},
     ),
-    # the slip was once a thousand times larger than x_dot and h omega are where it vanishes; a slip
-    # with the roundings of its largest value is off by 1.4e-14
+    # Before it vanishes, the slip is a thousand times larger than x_dot and h omega are then. With
+    # the roundings of its largest value it would be off by 1.4e-14.
     (
         Scene(1.0, 0.0016, inertia=0.0044, friction=0.0037, theta=0.63, omega=-3e-4),
         0.36, ["REVERSE", "REVERSE"], 2,
@@ -161,7 +161,7 @@ def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], 
     """B falls below 1e-11, and in the first two slides rises again before the slip vanishes.
 
     The numbers come from reference/impulse_clock.py in 45 digits. A start in doubles has their
-    roundings; each of some 60 pieces adds one of random sign."""
+    roundings; each of about 60 pieces adds one of random sign."""
     end = simulate(Scene(**given), 1.0, raise_on_failure=False).events[0]
     assert end.kind is EventKind.STICK
     assert abs(end.t - t) <= 8 * EPS * t
@@ -170,7 +170,7 @@ def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], 
 
 
 def test_the_timing_of_a_light_body_rocking_near_a_jam_stays_accurate() -> None:
-    """The body makes some twenty swings in 0.3 s, and B all but vanishes at the end of each.
+    """The body makes about twenty swings in 0.3 s, and B nearly vanishes at the end of each.
 
     The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
     turn the body by 1.5 rad/s and change omega by 600 rad/s^2 in each of them."""
@@ -199,7 +199,7 @@ def test_a_slide_on_the_verge_of_sticking_has_no_slip_left() -> None:
 
 
 def test_a_slide_takes_few_steps() -> None:
-    """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
+    """A piece covers about a fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
     assert [each.kind for each in whole.events] == [EventKind.STICK]
     assert whole.stats["steps"] <= 20 and whole.stats["evaluations"] == 0
@@ -288,9 +288,9 @@ def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
 def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
     k2: float, turned: float
 ) -> None:
-    """The slide covers mu g t^2/2, at speed mu g t, until a omega equals x', earlier by one part in
-    1 + k^2/a^2 than friction alone would end the spin. The remaining spin is a difference, exact to
-    its roundings."""
+    """The ball slides mu g t^2/2 at the speed mu g t until a omega equals x', a factor 1 + k^2/a^2
+    earlier than the time at which friction would end the spin. The remaining spin is a difference,
+    exact to its roundings."""
     spin_end = 2.0  # time at which a omega alone would vanish
     omega = 2 * turned / spin_end
     friction = omega / spin_end * k2 / GRAVITY

@@ -1,4 +1,4 @@
-"""Motions that stop at events, or once their future is decided, and batches that go on."""
+"""Motions that stop at events, or once their future is decided, and batches that continue."""
 
 import math
 from typing import Any
@@ -28,7 +28,7 @@ def followed(scene: Scene, t: Any, **how: Any) -> rl.Trajectory:
 @pytest.mark.parametrize("kinds", KINDS)
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], count: int) -> None:
-    """Up to there it has the bits of the motion that does not stop."""
+    """Up to the stop it has the bits of the motion that does not stop."""
     stopped = 0
     for scene in SCENES:
         whole = followed(scene, LONG, model="contact")
@@ -43,10 +43,11 @@ def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], 
         assert all(np.array_equal(table[name], whole.events.table[name][:n]) for name in table)
         jams = motion.events[-1].kind is EventKind.JAM
         assert motion.status is (Status.JAMMED if jams else Status.COMPLETED)
+        sample, after = motion.at(motion.t_end), motion.events[-1].state_after
+        assert sample.mode is after.mode
         for name in STATE:  # a sample rounds the angle, and what depends on it, once more
-            after = getattr(motion.events[-1].state_after, name)
-            off = abs(getattr(motion.at(motion.t_end), name) - after)
-            assert off <= 4 * EPS * max(1, abs(after))
+            value = getattr(after, name)
+            assert abs(getattr(sample, name) - value) <= 4 * EPS * max(1, abs(value))
     assert stopped > 10
 
 
@@ -85,7 +86,7 @@ def test_a_blow_can_be_the_stop() -> None:
     ],
 )
 @pytest.mark.parametrize("end", [LONG, math.inf])
-def test_a_motion_that_never_stops_as_asked_is_told_at_once(
+def test_a_motion_that_cannot_reach_its_stop_is_reported_at_once(
     scene: Scene, t: float, end: float
 ) -> None:
     with pytest.raises(IntegrationError, match="never stops") as caught:
@@ -96,14 +97,14 @@ def test_a_motion_that_never_stops_as_asked_is_told_at_once(
     assert last.status.tolist() == ["NEVER"] and last.t.tolist() == [t] and not last.errors
 
 
-def test_a_blow_to_come_keeps_the_stop_possible() -> None:
+def test_a_later_blow_keeps_the_stop_possible() -> None:
     blows = [(2.0, Impulse(jz=30.0))]
     stopped = rl.simulate(rl.scenes.report, math.inf, stop="impact", blows=blows)
     assert stopped.events[-1].kind is EventKind.IMPACT and stopped.t_end > 2.0
 
 
-def test_after_a_decision_nothing_happens() -> None:
-    """A motion that is decided has no event later, and it has one until then."""
+def test_a_decided_motion_has_no_further_event() -> None:
+    """A motion is decided at its last event, or at the start if it has none."""
     decided = 0
     for scene in SCENES:
         motion = followed(scene, math.inf, stop="decided", max_events=400)
@@ -118,32 +119,14 @@ def test_after_a_decision_nothing_happens() -> None:
     assert decided > 20
 
 
-def test_resistance_is_decided_by_rest_alone() -> None:
+def test_a_motion_with_rolling_resistance_is_decided_by_rest_alone() -> None:
     scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, rolling_resistance=0.05)
     motion = rl.simulate(scene, math.inf, stop="decided")
     assert motion.events[-1].kind is EventKind.REST and motion.mode[-1] == Mode.REST
 
 
-@pytest.mark.parametrize("how", [{"stop": "impact", "count": 2}, {"stop": "decided"}, {}])
-def test_ends_stop_as_simulate_does(how: dict[str, Any]) -> None:
-    end = math.inf if how else 5.0
-    last = rl.ends(SCENES, end, max_events=100, **how)
-    for k, scene in enumerate(SCENES):
-        motion = followed(scene, end, model="contact", max_events=100, **how)
-        impacts = [e for e in motion.events if e.kind is EventKind.IMPACT]
-        assert last.status[k] == motion.status.name and last.impacts[k] == len(impacts)
-        impulses = [e.state_after.reaction_z for e in impacts]
-        assert last.largest_impulse[k] == max(impulses, default=0.0)
-        full = motion.status is Status.MAX_EVENTS
-        state = motion.events[-1].state_after if full else motion.at(motion.t_end)
-        assert last.t[k] == (motion.events[-1].t if full else motion.t_end)
-        if motion.status is Status.JAMMED:
-            continue
-        assert [getattr(last, name)[k] for name in STATE] == [getattr(state, n) for n in STATE]
-
-
 def effects_of_roundings(at: rl.Ends, end: float) -> Any:
-    """How far a rounding of each part of the states moves those at the end, summed, (6, n)."""
+    """Sum of the changes of the final states (6, n) when each number of the states is rounded."""
     last, moved = at.go_on(end), np.zeros((len(STATE), *at.t.shape))
     for name in STATE:
         values = getattr(at, name)
@@ -156,7 +139,7 @@ def effects_of_roundings(at: rl.Ends, end: float) -> Any:
 
 
 def test_a_batch_in_five_pieces_equals_one_run() -> None:
-    """To within 8 units, each the sum of the effects of roundings of all states handed on."""
+    """They agree within 8 units: sums of the effects of rounding all intermediate states."""
     end = 6.0
     whole, last = rl.ends(SCENES, end), rl.ends(SCENES, 0.0)
     unit = effects_of_roundings(last, end)
@@ -171,7 +154,7 @@ def test_a_batch_in_five_pieces_equals_one_run() -> None:
     assert known.mean() > 0.8
 
 
-def test_a_motion_with_too_many_events_goes_on() -> None:
+def test_a_motion_with_too_many_events_can_be_continued() -> None:
     whole = rl.ends([THROWN], 10.0)
     part = rl.ends([THROWN], 10.0, max_events=5)
     assert part.status.tolist() == ["MAX_EVENTS"] and part.events.tolist() == [5]
@@ -182,7 +165,7 @@ def test_a_motion_with_too_many_events_goes_on() -> None:
     assert part.largest_impulse[0] == pytest.approx(whole.largest_impulse[0], rel=1e-14)
 
 
-def test_a_slide_that_begins_without_steps_left_is_not_endless() -> None:
+def test_a_slide_that_starts_without_steps_left_is_not_endless() -> None:
     """As without a stop, MAX_STEPS is reported for every number of steps that is too small."""
     scene = Scene(3.6, 0.7, theta=-2.7, slope=0.4, friction=0.5)
     whole = followed(scene, 3.0, model="contact")
@@ -193,7 +176,7 @@ def test_a_slide_that_begins_without_steps_left_is_not_endless() -> None:
 
 
 def test_a_motion_too_fast_for_doubles_stays_as_it_is() -> None:
-    """It has no state to go on from, and keeps its events, time and exception; others go on."""
+    """It has no state to continue from, and keeps its events, time and exception."""
     fast = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
     at = rl.ends([fast, THROWN], [1e300, 1.0])
     later = at.go_on([1e301, 2.0])

@@ -1,5 +1,5 @@
-"""Answers to the tasks of the course by closed forms, Newton's law, quadratures, roots and least
-squares of SciPy; wrong ones by the same formulas with the mistake made."""
+"""Answers to the tasks of the course by closed forms, Newton's law, and SciPy's quadratures, roots
+and least squares. Wrong answers follow from the same formulas with the mistakes in them."""
 
 import math
 from functools import cache
@@ -18,7 +18,7 @@ STATE = ("theta", "x_dot", "z_dot", "omega")
 FILMED = {
     "10.1": "x_dot", "10.2": "omega", "10.3": "restitution", "10.4": "friction", "10.5": "chi2",
 }  # fmt: skip
-# : The numbers from which the film of sheet 10 was made, and its noise.
+# The numbers from which the film of sheet 10 was made, and its noise
 THROWN = {
     "x": 0.0, "z": 0.1, "theta": 0.5, "x_dot": 0.317, "z_dot": 0.243, "omega": 11.63,
     "restitution": 0.55, "friction": 0.18,
@@ -29,7 +29,7 @@ USUAL = (
     "sign", "degrees", "DEGREES", "inertia", "friction", "angle", "small", "torque", "freedom",
 )  # fmt: skip
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
-PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # with which nothing slips
+PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # friction that prevents any slip
 PLAIN |= {"torque": False}  # whether I_C omega_dot is taken for the moment about the contact
 
 
@@ -39,7 +39,7 @@ def tasks_of(seed: int | None) -> dict[str, course.Task]:
 
 
 class Given(SimpleNamespace):
-    """The data of a task, completed by a scene's values."""
+    """The data of a task, completed by default values of a scene."""
 
     def __init__(self, number: str, seed: int | None = None, **changes: Any) -> None:
         known: dict[str, Any] = PLAIN | tasks_of(seed)[number].data | changes
@@ -77,8 +77,8 @@ class Given(SimpleNamespace):
         return float(4 * quad(lambda q: 1 / self.speed(q, lift), 0, end)[0])
 
     def rocked(self) -> float:
-        """Time from release to rest, from stop to stop, where the couple against the rotation
-        changes its side or holds the body."""
+        """Time from release to rest, integrated from stop to stop, where the couple against the
+        rotation changes its direction or holds the body."""
         angle, now, lever = self.theta, 0.0, self.rolling_resistance
         while abs(self.at(angle)[1]) > lever:
             turn = -math.copysign(1, self.at(angle)[1])
@@ -99,7 +99,7 @@ class Given(SimpleNamespace):
         return now
 
     def small_rocking(self) -> float:
-        """The same for small angles: amplitudes fall by the same step with each half swing."""
+        """Time to rest for small angles: each half swing reduces the amplitude by the same step."""
         left, step, count = abs(self.theta), 2 * self.rolling_resistance / self.at(0)[2], 0
         while left > step / 2:
             left, count = left - step, count + 1
@@ -115,7 +115,7 @@ class Given(SimpleNamespace):
         return x, z, v[0] + x / self.mass, v[1] + z / self.mass, v[2] - arm / self.inertia
 
     def pushed(self) -> float:
-        """Angular velocity after a push along ground that holds the body, or lets it slip."""
+        """Angular velocity after a push along the ground, which either holds the body or is ice."""
         push = self.jx * (self.at(self.theta)[0] + self.dz) / self.mass
         return float(push / self.about_contact(self.theta)) if self.friction else self.hit()[4]
 
@@ -125,7 +125,7 @@ class Given(SimpleNamespace):
         return self.but(theta=self.theta + self.omega * t, z_dot=self.z_dot - self.gravity * t)
 
     def frames(self, t: Any) -> Any:
-        """Places and angles of a throw that hits the ground once."""
+        """Positions and angles of a thrown body that hits the ground once."""
         lands = self.landed()
         end = (self.z_dot - lands.z_dot) / self.gravity
         before, after = np.minimum(t, end), np.maximum(t - end, 0)
@@ -241,7 +241,7 @@ def film_fit(
         return ((given.frames(t) - tracks) / NOISE).ravel()
 
     how: Any = {"jac": "3-point", "x_scale": "jac", "method": "dogbox"}
-    start = THROWN | ({} if gyration2 == SOLID else {"friction": 0.09})  # with which it slides
+    start = THROWN | ({} if gyration2 == SOLID else {"friction": 0.09})  # at which it slides
     best = least_squares(missed, [*start.values()], **how)
     errors = np.sqrt(np.linalg.inv(best.jac.T @ best.jac).diagonal())
     known, off = (dict(zip(THROWN, row, strict=True)) for row in (best.x, errors))
@@ -250,7 +250,7 @@ def film_fit(
 
 @cache
 def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> float:
-    """The answer with mistakes; DEGREES marks an answer in degrees, `degrees` data in degrees."""
+    """The answer with mistakes. DEGREES means an answer in degrees, `degrees` data in degrees."""
     if made and made[0].startswith("task"):
         return answer(made[0][5:], (), seed)
     task, of, factor = tasks_of(seed)[number], TRUE[number], 1.0
@@ -273,8 +273,8 @@ def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> 
 
 
 def allowed(number: str, seed: int | None = None) -> float:
-    """Tolerance: half a percent of answers from impacts, and of chi^2; twice the error of those
-    from the film; half a digit and 1e-4 of the condition of others."""
+    """Tolerance: half a percent for answers from impacts and for chi^2, twice the standard error
+    for those from the film, and half a digit plus 1e-4 times the condition number for others."""
     right = abs(answer(number, (), seed))
     if number[0] == "8" or number == "10.5":
         return 5e-3 * right

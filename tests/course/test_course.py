@@ -18,8 +18,9 @@ TASKS = {task.number: task for task in course.tasks()}
 @pytest.mark.parametrize("number", TASKS)
 def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
     """A mark names the mistakes that were made, and others only if they lead to the same number.
-    Mistakes that change nothing are not named. Tolerances hold to within 30 %, since ellipses
-    replace rolling discs. They are at most 0.5 %, so numbers of one name may differ by 1 %.
+
+    Mistakes that do not change the number are not named. The tolerances agree to within 30 % with
+    those by hand. They are at most 0.5 %, so that two answers with one mark may differ by 1 %.
     """
     right, near, task = answer(number), allowed(number), TASKS[number]
     off = min(1.3 * near, near + 4e-3 * abs(right))
@@ -44,8 +45,8 @@ def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
         named = [set(names.split(" and ")) for names in mistake.split(" or ")]
         if abs(given - right) < 0.7 * near:
             assert mistake == "none"
-        elif least == ("angle",) and number in ("2.2", "2.4", "3.5"):  # a rest, which is not marked
-            assert mistake == "other"
+        elif least == ("angle",) and number in ("2.2", "2.4", "3.5"):
+            assert mistake == "other"  # at the angle 0 the body would rest, which has no mark
         elif number in ("10.1", "10.2", "10.3", "10.5") and "inertia" in least:
             assert "inertia" not in mistake  # noise, or an estimate by hand, leads as far
         else:
@@ -63,7 +64,7 @@ def test_the_time_to_rest_agrees_to_eight_digits() -> None:
 
 def test_the_noise_of_the_film_is_as_stated() -> None:
     """The film is made from known numbers: chi^2 is within three standard deviations of its 31
-    degrees of freedom, and each fitted number is within two of its own."""
+    degrees of freedom, and each fitted number within two of its true value."""
     t, *tracks = course.film().values()
     noise = np.random.default_rng(2).normal(0, NOISE, (3, t.size))
     thrown: Any = Given("10.1").but(**THROWN)

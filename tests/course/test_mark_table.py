@@ -1,4 +1,4 @@
-"""Marks for a table of answers, and what it refuses."""
+"""Marks for a table of answers, and messages for lines that cannot be read."""
 
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -15,8 +15,8 @@ def table(*rows: str, head: str = HEAD) -> StringIO:
 
 
 def test_a_class_is_marked_line_by_line() -> None:
-    """Right, one mistake, two, none; what cannot be read is refused by line, and all others marked;
-    the last answer to a task counts."""
+    """Answers are right or have one or two known mistakes. Lines that cannot be read are listed by
+    number, and all others are marked. The last answer to a task counts."""
     right, wrong = answer("3.2", (), 7), answer("3.2", ("sign", "inertia"), 8)
     marked = course.mark_table(
         table(
@@ -38,7 +38,7 @@ def test_a_class_is_marked_line_by_line() -> None:
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
-    """Other separators, a decimal comma, a true minus, a byte order mark, columns in any order."""
+    """They have other separators, decimal commas, true minus signs and byte order marks."""
     text = f"{answer('3.2', (), 7):.4f}".replace("-", "−").replace(".", ",")
     rows = ["Answer", "note", " Task", "seed", "student"], [f'"{text}"', "x", "3.2", "7", '"A, B"']
     content = "\r\n".join(mark.join(row) for row in rows).encode("utf-8-sig")

@@ -1,7 +1,8 @@
-"""Numbers of a student's own: the same kind of task, and marks as for the printed ones."""
+"""Sheets with numbers of a student's own have the same tasks, and their marks are right, too."""
 
 import math
 import re
+from collections import Counter
 from typing import Any
 
 import pytest
@@ -10,12 +11,12 @@ from oracles.contact import response
 from rolling_ellipse import course
 
 SEEDS = (0, 7, 20261, 2**53)
-SLOW = ("3.5", "6.4", "8.4", "8.5")  # by hand: once for the printed numbers is enough
+SLOW = ("3.5", "6.4", "8.4", "8.5")  # by hand; test_course.py tests their printed numbers
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_answers_are_marked_for_the_numbers_of_a_seed(seed: int) -> None:
-    """All points for right answers, with the sign of the printed one; half for one mistake."""
+    """A right answer has the sign of the printed one and gets all points; a mistake costs half."""
     for number, task in tasks_of(seed).items():
         if number in SLOW or (number in FILMED and seed != SEEDS[1]):
             continue
@@ -31,14 +32,13 @@ def test_answers_are_marked_for_the_numbers_of_a_seed(seed: int) -> None:
 
 
 def test_the_points_of_each_sheet_are_ten() -> None:
-    of = {number.partition(".")[0] for number in tasks_of(None)}
-    points = {sheet: 0 for sheet in of}
+    points = Counter[str]()
     for number, task in tasks_of(7).items():
         points[number.partition(".")[0]] += task.points
-    assert points == {str(sheet): 10 for sheet in range(1, 11)}
+    assert points == dict.fromkeys(map(str, range(1, 11)), 10)
 
 
-def test_numbers_of_a_seed_stay_near_the_printed_ones_and_equal_ones_equal() -> None:
+def test_numbers_of_a_seed_stay_near_the_printed_ones_and_keep_equalities() -> None:
     drawn = [tasks_of(seed) for seed in range(50)]
     for number, task in tasks_of(None).items():
         for own in drawn:
@@ -54,8 +54,8 @@ def test_numbers_of_a_seed_stay_near_the_printed_ones_and_equal_ones_equal() -> 
 
 
 def test_the_slip_of_task_7_4_sticks_for_each_seed() -> None:
-    """Where the slip ends, sticking needs no more friction than there is; it ends in time, as the
-    impact without an end of the slip would reverse it."""
+    """Where the slip ends, sticking needs no more friction than is available, and the slip ends
+    before the impact does."""
     for seed in range(50):
         hit = Given("7.4", seed).landed()
         _, _, tangential, _, coupling = response(hit, hit)
@@ -68,8 +68,8 @@ def test_the_slip_of_task_7_4_sticks_for_each_seed() -> None:
 
 @pytest.mark.parametrize("seed", [1, 7])
 def test_a_film_of_a_seed_slips_throughout_one_impact(seed: int) -> None:
-    """So an estimate by hand is possible: the fit by hand has a slip of one sign, and three frames
-    or more after the impact. chi^2 is within four standard deviations of its expected value."""
+    """An estimate by hand is possible: the slip keeps its sign during the impact, and at least
+    three frames follow it. chi^2 is within four standard deviations of its expected value."""
     known, _ = film_fit(seed)
     thrown: Any = Given("10.1", seed).but(**known)
     lands = thrown.landed()
@@ -81,8 +81,8 @@ def test_a_film_of_a_seed_slips_throughout_one_impact(seed: int) -> None:
     assert abs(known["chi2"] - 1) < 4 * math.sqrt(2 / 31)
 
 
-def test_a_seed_gives_the_same_numbers_for_ever() -> None:
-    """Written by hand from the first run: a sheet once handed out must keep its marks."""
+def test_the_numbers_of_a_seed_never_change() -> None:
+    """The numbers were copied from the first run: marks of sheets in use must not change."""
     own = tasks_of(20261)
     assert own["3.2"].data == {
         "a": 0.307, "b": 0.202, "mass": 1.47, "gravity": 9.81, "theta": 0.664, "omega": 2.98,

@@ -1,4 +1,4 @@
-"""Files of trajectories: damaged ones are refused by name; an old file survives a failed save."""
+"""Damaged files of trajectories are rejected by name; a failed save leaves the old file."""
 
 import copy
 import dataclasses
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.files import half_a_file, put_together, taken_apart
+from oracles.files import put_together, taken_apart
 from oracles.pickles import require_same
 from oracles.report import lifted
 from rolling_ellipse import Trajectory, simulate
@@ -55,9 +55,6 @@ def require_refused(content: bytes, path: Path, reason: str = "") -> None:
         rl.load(path)
 
 
-# ---------------------------------------------------------------------------- damaged bytes
-
-
 DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "lost": lambda part: b"",
     "wiped": lambda part: bytes(len(part)),
@@ -83,7 +80,7 @@ def test_damage_is_rejected_or_harmless(motions: Motions, contents: Contents, pa
             motion = rl.load(path)
         except ValueError as error:
             assert re.match(REFUSED, str(error)), (i, damage)
-        else:  # the byte is in a date, or in a member header that the directory repeats
+        else:  # the damage is in a date, or in a header of a member that the directory repeats
             harmless += 1
             require_same(motion, dataclasses.replace(motions[name], kept_events=motion.events))
     assert 100 < harmless < 800
@@ -100,11 +97,8 @@ def test_an_undamaged_file_is_read(
     assert taken_apart(path.read_bytes())[0] == taken_apart(contents[name])[0]
 
 
-# ------------------------------------------------------------------------------- wrong text
-
-
 def places(part: Any, road: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Paths (keys and indices) of every value, and of every part that holds values."""
+    """Keys and indices that lead to every value, and to every part that contains values."""
     yield road
     if isinstance(part, (dict, list)):
         for key in part if isinstance(part, dict) else range(len(part)):
@@ -134,7 +128,7 @@ WRONG_VALUES: dict[str, Any] = {
 
 @each_model
 def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) -> None:
-    """Each value of the text is replaced by many others; a file read anyway is saved unchanged."""
+    """Each value in the JSON is replaced by others. A file that is accepted is saved unchanged."""
     about, arrays = taken_apart(contents[name])
     taken = set()
     about["events"] = about["events"][:1]  # the other events have the same form
@@ -158,10 +152,10 @@ def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) 
 
 
 @pytest.mark.parametrize(("schema", "cure"), [(3, ""), (7, ": a newer .* pip install .*")])
-def test_a_file_of_another_schema_is_refused_as_such(
+def test_the_unknown_schema_of_a_file_is_named(
     schema: int, cure: str, contents: Contents, path: Path
 ) -> None:
-    """This holds whatever other names it has."""
+    """The message names the schema even if the file contains unknown names."""
     about, arrays = taken_apart(contents["rolling"])
     del about["reason"]
     other = put_together(about | {"schema": schema, "colour": 1}, arrays | {"psi": arrays["x"]})
@@ -183,8 +177,6 @@ def test_missing_and_unknown_names_are_rejected(name: str, contents: Contents, p
             new = changed(about, (*road, key), lambda part, key: part.__delitem__(key))
             require_refused(put_together(new, arrays), path, f".* must have '{key}'$")
 
-
-# ----------------------------------------------------------------------------- wrong arrays
 
 RETYPED: dict[str, Callable[[Any], Any]] = {
     "complex": lambda v: v + 1j,
@@ -239,9 +231,6 @@ def test_samples_in_any_order_or_byte_order_are_read(motions: Motions, path: Pat
     assert rl.load(path).theta.dtype == np.float64
 
 
-# ------------------------------------------------------------------------- malicious files
-
-
 class Harmful:
     def __reduce__(self) -> tuple[Any, ...]:
         return os.mkdir, ("harmed",)
@@ -269,7 +258,7 @@ def test_an_archive_with_a_repeated_member_is_rejected(contents: Contents, path:
 def test_a_huge_file_is_rejected_without_being_read(
     start: bytes, path: Path, tmp_path: Path
 ) -> None:
-    """A file of 6 GiB with two kinds of first bytes, and an endless file, are refused early."""
+    """Files of 6 GiB, starting with zeros or like an archive, and an endless file are rejected."""
     (tmp_path / "many").mkdir()
     (tmp_path / "many" / "request.npz").symlink_to(path)
     with open(path, "wb") as file:
@@ -298,9 +287,6 @@ def test_an_unreadable_file_raises_the_error_of_the_operating_system(
     assert caught.value.filename == os.fspath(tmp_path / name)
 
 
-# ------------------------------------------------------------------------------------ saving
-
-
 def test_a_motion_that_load_would_reject_is_not_saved(motions: Motions, path: Path) -> None:
     motion = motions["contact"]
     motion.save(path)
@@ -320,20 +306,3 @@ def test_a_motion_that_load_would_reject_is_not_saved(motions: Motions, path: Pa
         assert path.read_bytes() == before
     dataclasses.replace(motion, valid_until=1, stats={}).save(path)
     assert rl.load(path).valid_until == 1.0
-
-
-def test_an_exception_while_saving_leaves_the_old_file(
-    motions: Motions, path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    motions["rolling"].save(path)
-    before = path.read_bytes()
-
-    def interrupted(file: Any, **arrays: Any) -> None:
-        half_a_file(file)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(np, "savez", interrupted)
-    for target in (path, path.with_name("new.npz")):
-        with pytest.raises(KeyboardInterrupt):
-            motions["contact"].save(target)
-    assert path.read_bytes() == before and list(path.parent.iterdir()) == [path]

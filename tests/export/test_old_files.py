@@ -1,7 +1,8 @@
-"""Files written before bodies had rolling resistance, or motions blows, stay readable.
+"""Files from before bodies had rolling resistance, or motions had blows, stay readable.
 
-The former have schema 4 or one of its time: a folder, a race, answers to a problem, and pickles.
-The latter have schema 5 and names that say so. The tests of the player read an old link.
+Files without rolling resistance have schema 4 or an equally old one: a folder, a race, answers to a
+problem, and pickles. Files without blows have schema 5 and `before_blows` in their names. The tests
+of the player read an old link.
 """
 
 import json
@@ -77,11 +78,11 @@ def test_old_pickles_are_read_as_scenes_without_rolling_resistance() -> None:
     assert motion.sol(0.3).theta == rl.simulate(rl.scenes.report, [0.3]).theta
 
 
-def test_old_answers_are_scored_and_an_old_problem_is_described_as_it_was() -> None:
-    """The answers come from this package, so that they are right to a few roundings."""
-    told, folder = "hit.drop_slip_e", OLD / "answers"
+def test_old_answers_are_scored_and_old_facts_of_a_problem_have_not_changed() -> None:
+    """The answers come from this package; they are right to within a few roundings."""
+    name, folder = "hit.drop_slip_e", OLD / "answers"
     (score,) = (each for each in rl.benchmark.score(folder) if each.answer != "not supported")
-    assert score.problem == told and score.passed and score.over_condition < 1e-15
-    new = json.loads((PROBLEMS / f"{told}.json").read_text(encoding="utf-8"))
-    old = json.loads((folder / f"{told}.json").read_text(encoding="utf-8"))
+    assert score.problem == name and score.passed and score.over_condition < 1e-15
+    new = json.loads((PROBLEMS / f"{name}.json").read_text(encoding="utf-8"))
+    old = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     assert new.items() >= old.items()

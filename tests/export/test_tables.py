@@ -1,4 +1,4 @@
-"""Tables of a trajectory hold its numbers in the stated units, and survive files."""
+"""Tables of a trajectory contain its numbers in the stated units, and survive files."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ def scene_in(facts: Mapping[str, Any]) -> rl.Scene:
     return rl.Scene(**given, impulse=rl.Impulse(**blow) if blow else None)
 
 
-def test_the_dataframe_holds_the_arrays(motion: rl.Trajectory) -> None:
+def test_the_dataframe_contains_the_arrays(motion: rl.Trajectory) -> None:
     frame = motion.to_dataframe()
     assert frame.index.name == "t" and np.array_equal(frame.index, motion.t)
     for name in VECTORS[1:]:
@@ -42,7 +42,7 @@ def test_the_dataframe_holds_the_arrays(motion: rl.Trajectory) -> None:
     assert set(frame.attrs["units"]) == {"t", *frame.columns}
 
 
-def test_the_dataset_holds_the_arrays(motion: rl.Trajectory) -> None:
+def test_the_dataset_contains_the_arrays(motion: rl.Trajectory) -> None:
     dataset = motion.to_xarray()
     assert np.array_equal(dataset["t"], motion.t)
     for name in (*VECTORS[1:], "mode"):
@@ -63,7 +63,7 @@ def test_no_array_of_a_trajectory_is_missing_from_the_tables(motion: rl.Trajecto
 
 
 def test_the_stated_units_match_the_values() -> None:
-    """If a scene is scaled in length, time and mass, each quantity grows as its unit does."""
+    """In units scaled by powers of two, each quantity changes by the factor of its unit."""
     factors = (2, 1, 3)  # powers of two: the scaled motion has the same digits
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = scene_in_other_units(small, factors)
@@ -82,7 +82,7 @@ def test_the_stated_units_match_the_values() -> None:
     assert all(units[name] == UNITS["Scene"][name] for name in shared)
 
 
-def test_the_attributes_hold_the_whole_scene(motion: rl.Trajectory) -> None:
+def test_the_attributes_describe_the_whole_scene(motion: rl.Trajectory) -> None:
     for facts in (motion.to_dataframe().attrs, motion.to_xarray().attrs):
         assert scene_in(facts) == motion.scene
         known = {"model": "rolling", "method": "exact", "status": "COMPLETED"}

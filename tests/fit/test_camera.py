@@ -23,9 +23,9 @@ def filmed(scene: Scene, scale: float = 1.0, ground: float = 0.0, late: float = 
 
 
 def test_fits_of_twenty_films_by_unknown_cameras_have_honest_errors() -> None:
-    """chi2 of films with given deviations has the mean of its degrees of freedom n and the variance
-    2n, bounded at 5 deviations. Of m normal numbers 0.68 m are within 1, bounded at 4 deviations
-    sqrt(0.22 m); of some 110, more than two are beyond 3 once in 300."""
+    """For films with given sigma, chi2 has the mean n, its degrees of freedom, and the variance 2n;
+    the bound is 5 standard deviations. Of m normal numbers 0.68 m are within 1; the bound is 4
+    standard deviations, sqrt(0.22 m). Of 110, more than two are beyond 3 in one of 300 cases."""
     rows = [judge_films.camera(seed) for seed in range(20)]
     assert not any(row["alarm"] for row in rows)
     given = [row for row in rows if row["given"]]
@@ -86,10 +86,10 @@ def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
 def test_unknowns_that_a_film_cannot_determine_are_named(
     scene: Scene, free: tuple[str, ...], lost: str
 ) -> None:
-    """A flight without a touch determines neither ground nor scale, a body at rest no clock."""
+    """A flight without a touch determines neither ground nor scale; rest determines no clock."""
     fit = fit_motion(**filmed(scene), scene=scene, free=free, sigma=SIGMA)
-    told = [name for name in lost.split(", ") if not math.isinf(fit.errors[name])]
-    assert told == [] and "the film cannot tell" in fit.message
+    finite = [name for name in lost.split(", ") if not math.isinf(fit.errors[name])]
+    assert finite == [] and "the film cannot tell" in fit.message
 
 
 def test_a_wrong_scene_is_not_explained_by_its_camera() -> None:
@@ -100,7 +100,7 @@ def test_a_wrong_scene_is_not_explained_by_its_camera() -> None:
 
 
 def test_the_guess_decides_between_two_starts_at_one_height() -> None:
-    """A body passes its height upwards and downwards, and the film begins after both."""
+    """A body passes its height on the way up and down, and the film begins after both times."""
     scene = FLY.replace(z=0.3, z_dot=0.5)
     film = filmed(scene, late=0.12)
     free = ("x", "theta", "z_dot", "clock")
@@ -130,7 +130,7 @@ def test_camera_and_scene_are_shown_together() -> None:
 
 
 def test_rolling_resistance_follows_from_the_decay_of_the_swings() -> None:
-    """The guess has no resistance, nor does the second film; errors stay below 0.01 mm."""
+    """The guess has no resistance, and neither has the second film; errors stay below 0.01 mm."""
     for lever in (8e-4, 0.0):
         body: dict[str, Any] = {"theta": 0.9, "omega": 0.0, "friction": 0.6}
         scene = Scene(0.035, 0.025, **body | {"rolling_resistance": lever})

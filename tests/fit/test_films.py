@@ -1,4 +1,4 @@
-"""A fit reveals the noise of a film, whether the scene fits, and which reading fits instead."""
+"""A fit estimates the noise of a film, and says if the scene or a misreading explains the film."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours  # fits show them by chance only
+from rolling_ellipse._verbs.films.judgement import neighbours  # in fits their effect is random
 
 TRACKS = ("x", "z", "theta")
 
@@ -23,7 +23,7 @@ def fitted(tracks: dict[str, Any], **how: Any) -> Fit:
 
 @pytest.mark.parametrize("seed", [6, 7, 14, 23])
 def test_the_fit_is_no_worse_than_one_started_at_the_true_values(seed: int) -> None:
-    """The seeds of these films once led to other minima, whose chi2 was 9 to 30 higher."""
+    """From other starts, these films lead to minima whose chi2 is 9 to 30 higher."""
     row = judge_films.example(seed)
     assert row["over"] < 0.1 and "cannot tell" not in row["message"]
 
@@ -47,8 +47,8 @@ def test_sigma_is_estimated_for_each_track() -> None:
 
 
 def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
-    """Two of five frames of a flight fix its start. The mean of sigma^2, of 3 degrees of freedom
-    in each of 80 tracks, is known to sqrt(2/240); all five frames would make it 3/5."""
+    """Of the five frames of a flight, two determine its start. The mean of sigma^2 over 80 tracks
+    of 3 degrees of freedom is known to sqrt(2/240); dividing by five frames would give 3/5."""
     scene, t = Scene(0.035, 0.025, z=2.0), np.arange(1, 6) / 60
     seen, shares = simulate(scene, t), []
     for seed in range(40):
@@ -76,15 +76,15 @@ def test_outliers_do_not_inflate_the_noise() -> None:
 
 @pytest.mark.parametrize("seed", range(len(KINDS)))
 def test_correct_films_raise_no_alarm(seed: int) -> None:
-    """T of a correct film is at most normal, over 3.5 once in 4000 tracks: 1 in 300 here."""
+    """T of a correct film exceeds 3.5 in at most one of 4000 tracks: in one of 300 runs here."""
     row = judge_films.right(seed)
     assert not row["alarm"] and row["T"] < 3.5
     assert all(abs(off) < 5 for off in row["off"].values())
 
 
 def test_stated_errors_cover_the_other_minima() -> None:
-    """Friction above any need fits nearly as well, with a restitution that is 4.4 of its linearised
-    errors away."""
+    """More friction than the body needs fits nearly as well, with a restitution that is 4.4
+    linearised errors away."""
     assert abs(judge_films.right(6)["off"]["restitution"]) < 3
 
 

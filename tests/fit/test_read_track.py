@@ -1,4 +1,4 @@
-"""Tables of trackers become tracks in metres, radians and seconds, whatever their kind."""
+"""Tables of all common trackers become tracks in metres, radians and seconds."""
 
 import math
 import runpy
@@ -53,7 +53,7 @@ def test_a_data_frame_a_mapping_and_a_file_give_the_same_track(tmp_path: Path) -
 
 
 def test_units_and_directions_are_the_stated_ones() -> None:
-    """Rows or their numbers count frames; pixels count down; angles are degrees or radians."""
+    """Times follow from frame numbers or rows, heights from pixels that count downwards."""
     table = {"n": [3, 4, 6], "x": [0, 1, 2], "y": [5, 4, 3], "deg": [10.0, 20.0, 40.0]}
     t, x, z, theta = read_track(
         table, t="n", x="x", z="y", theta="deg", fps=50, y_up=False, degrees=True, scale=0.1
@@ -77,7 +77,7 @@ def test_angles_continue_through_the_ends_of_their_range(period: float, rate: fl
 
 
 def test_two_points_of_a_body_give_its_middle_and_its_angle() -> None:
-    """The angle is clockwise as seen in the film, whichever way the heights count."""
+    """The angle is clockwise as seen in the film, whether heights count upwards or downwards."""
     angle, middle = np.linspace(0.3, 9.0, 30), np.array([[2.0], [3.0]])
     along = 0.4 * np.stack([np.cos(angle), -np.sin(angle)])
     tracks = np.concatenate([middle - along, middle + along])
@@ -88,7 +88,7 @@ def test_two_points_of_a_body_give_its_middle_and_its_angle() -> None:
         assert np.allclose([x - 2, z - 3, theta - angle], 0, atol=1e-12)
 
 
-def test_empty_cells_and_repeated_names_are_kept_apart(tmp_path: Path) -> None:
+def test_empty_cells_become_nan_and_repeated_names_get_numbers(tmp_path: Path) -> None:
     path = tmp_path / "two.txt"
     path.write_text("A\t\t\tB\nt\tx\ty\tx\ty\n0\t1\t2\t3\t4\n1\t\t-\tnan\n", encoding="utf-8")
     assert np.array_equal(read_track(path, t="t", x="x")[1], [1.0, np.nan], equal_nan=True)

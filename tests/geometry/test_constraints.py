@@ -1,8 +1,8 @@
 """The report's constraints at states that obey or violate them, and the coordinates of rolling.
 
 q = (x, z, theta, psi, r). The references are f1 ... f4 in mpmath, their rates by numerical
-differentiation along q_dot, and gap and slip from the turned outline. Bounds: a few ulp of the
-terms of each residual.
+differentiation along q_dot, and gap and slip of the rotated outline. The bounds are a few ulps of
+the terms of each residual.
 """
 
 import math
@@ -64,7 +64,7 @@ def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def random_states(shape: Shape, count: int) -> np.ndarray:
-    """Random (q, q_dot) of the order of the body's size, which violate all constraints."""
+    """Random (q, q_dot) of the order of the size of the body; they violate all constraints."""
     generator = np.random.default_rng(20)
     size = max(shape)
     spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])
@@ -73,8 +73,8 @@ def random_states(shape: Shape, count: int) -> np.ndarray:
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_residuals_of_inconsistent_states_equal_their_definitions(shape: Shape) -> None:
-    """Residuals equal their definitions, to 16 ulp of their terms: an evaluation takes products of
-    a few sines, quotients and roots, and each adds half an ulp to one."""
+    """Residuals agree to 16 ulps of their terms. These are products of a few sines, quotients and
+    roots, each of which adds an error of half an ulp to one ulp."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, STATES):
         held = constraints(y[:5], y[5:], a=shape[0], b=shape[1])
@@ -87,8 +87,8 @@ def test_residuals_of_inconsistent_states_equal_their_definitions(shape: Shape) 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_residual_gap_and_slip_agree_with_a_rotated_outline(shape: Shape) -> None:
-    """Gap and slip equal the lowest point of the outline and the velocity of the material there,
-    above and below the ground, to 8 ulp of the terms; psi and r have no effect."""
+    """Gap and slip are the height of the lowest point of the outline and the velocity of the
+    material there, above and below the ground, to 8 ulps of the terms. psi and r have no effect."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, 12):
         z, theta, x_dot, omega = (mp.mpf(y[k]) for k in (1, 2, 5, 7))
@@ -114,8 +114,8 @@ def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_kinematics_agree_with_differentiation(shape: Shape) -> None:
-    """Each of the ten coordinates and rates equals its definition and d/d theta: errors are
-    relative, except for psi, which is theta plus its lead, and r and its rate, which may follow the
+    """The ten coordinates and rates equal their definitions and derivatives. Errors are relative,
+    except those of psi, which is theta plus its lead, and of r and its rate, which may contain the
     rounding of psi."""
     omega = -1.7
     for theta in (0.0, 1e-5, 0.3, 1.2, math.pi / 2, -2.5, 40.3, 9999.5):

@@ -1,10 +1,10 @@
-"""Each function of the geometry equals its definition, computed by independent formulas."""
+"""Each function of the geometry equals its definition, computed with independent formulas."""
 
 import mpmath as mp
 import numpy as np
 import oracles.geometry
 import pytest
-from oracles.numbers import DIGITS, EPS, ulps
+from oracles.numbers import DIGITS, ulps
 from rolling_ellipse import geometry
 
 Shape = tuple[float, float]
@@ -26,21 +26,16 @@ def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
     return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
 
 
-def test_the_oracle_support_is_the_lowest_point(shape: Shape) -> None:
+def test_the_oracle_support_equals_its_definition(shape: Shape) -> None:
+    """The support function is the height above the lowest point of the outline. The closed form of
+    h, h', h'' in the suite equals numerical derivatives in mpf, and in long double to 1e-13 of the
+    largest: h'' of a thin body near its flat position is 1e6 times its height."""
     for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
         t = oracles.geometry.lowest_point(theta, *shape)
         right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
-        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
-        assert abs(-up - h) < mp.mpf(10) ** -30 * max(shape)
-        assert abs(right - slope) < mp.mpf(10) ** -30 * max(shape)
-
-
-def test_the_oracle_closed_form_equals_numerical_derivatives(shape: Shape) -> None:
-    """The closed form of h, h', h'' in the suite equals numerical derivatives in mpf, and in long
-    double to 1e-13 of the largest: h'' of a thin body near its flat position is 1e6 times its
-    height."""
-    for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
         exact = oracles.geometry.height_slopes(theta, *shape)
+        assert abs(-up - exact[0]) < mp.mpf(10) ** -30 * max(shape)
+        assert abs(right - exact[1]) < mp.mpf(10) ** -30 * max(shape)
         closed = oracles.geometry.support(mp.mpf(theta), *map(mp.mpf, shape))
         longer = oracles.geometry.support(np.longdouble(theta), *map(np.longdouble, shape))
         size = max(abs(value) for value in exact)
@@ -63,64 +58,29 @@ def test_the_oracle_lengths_equal_their_integrals(shape: Shape) -> None:
     assert abs(outline - boundary_length(t, *shape)) < mp.mpf(10) ** -18 * outline
 
 
-def test_support_and_its_slope_are_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
-    """h and h' are sums or products of positive terms, except a - b, which is exact near a circle.
-    Therefore errors are relative: at most 3 roundings each in sin, cos and the axes, and 3 more
-    after them."""
-    for theta in angles:
-        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
-        assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), h, h) <= 4
-        actual = geometry.support_slope(theta, a=shape[0], b=shape[1])
-        a, b = map(mp.mpf, shape)
-        exact = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h
-        assert abs(exact - slope) <= mp.mpf(10) ** -25 * max(shape)
-        # 1e-300 * 1e-3 * 1e-3 is still a normal double: no value may underflow
-        assert ulps(actual, exact, exact) <= 8
-
-
-def test_curvatures_are_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
-    """rho = a^2 b^2 / h^3 has 3 times the error of h (4 ulp) and a few roundings; h'' = rho - h is
-    a difference, whose error is relative to its terms."""
-    for theta in angles:
-        h, _, curvature = oracles.geometry.height_slopes(theta, *shape)
-        radius = h + curvature
-        actual = geometry.curvature_radius(theta, a=shape[0], b=shape[1])
-        assert ulps(actual, radius, radius) <= 16
-        actual = geometry.support_curvature(theta, a=shape[0], b=shape[1])
-        assert ulps(actual, curvature, radius + h) <= 16
-
-
-def test_polar_coordinates_of_the_contact_are_exact_to_a_few_ulp(
-    shape: Shape, angles: list[float]
-) -> None:
-    """r has a relative error; psi = theta + (an angle within pi/2) has the rounding of the sum and
-    the relative error of the angle."""
-    for theta in angles:
-        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
-        a, b = map(mp.mpf, shape)
-        slope = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative error, also near 0
-        distance, lead = mp.hypot(h, slope), mp.atan2(slope, h)
-        actual = geometry.contact_distance(theta, a=shape[0], b=shape[1])
-        assert ulps(actual, distance, distance) <= 8
-        psi = geometry.contact_angle(theta, a=shape[0], b=shape[1])
-        exact = mp.mpf(theta) + lead
-        assert abs(psi - exact) <= EPS * (abs(exact) + 8 * abs(lead))
-
-
-def test_the_arc_length_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
-    """Arc length is the outline's length up to the contact point. The integrand is positive, so the
-    error is relative: one ulp from the error of the angle, and a few from the integral."""
-    for theta in angles:
-        exact = boundary_length(outline_parameter(theta, *shape), *shape)
-        actual = geometry.arc_length(theta, a=shape[0], b=shape[1])
-        assert ulps(actual, exact, exact) <= 16
-
-
-def test_the_centre_path_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
-    """x = integral of h is positive with a condition number near 1, so its error is relative. (The
-    difference arc - h' would lose (longer/shorter)^2 near the flat position.)"""
+def test_the_geometry_is_exact_to_a_few_ulp(shape: Shape, angles: list[float]) -> None:
+    """Errors of sums and products of positive terms are relative, and a - b is exact near a circle.
+    h and h' have at most 3 roundings each in sin, cos and the axes, and 3 more after them; rho =
+    a^2 b^2 / h^3 has 3 times the error of h. The error of h'' = rho - h is relative to its terms.
+    The lengths are integrals of positive functions: an ulp comes from the angle, and a few from
+    the integral. (The difference arc - h' would lose (longer/shorter)^2 near the flat position.)
+    psi = theta + (an angle within pi/2) has the rounding of the sum and the relative error of the
+    angle."""
     a, b = map(mp.mpf, shape)
     for theta in angles:
-        exact = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
-        actual = geometry.centre_path(theta, a=shape[0], b=shape[1])
-        assert ulps(actual, exact, exact) <= 16
+        h, slope, curvature = oracles.geometry.height_slopes(theta, *shape)
+        factors = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative, also near 0
+        assert abs(factors - slope) <= mp.mpf(10) ** -25 * max(shape)
+        distance, lead, radius = mp.hypot(h, factors), mp.atan2(factors, h), h + curvature
+        outline = boundary_length(outline_parameter(theta, *shape), *shape)
+        path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
+        for function, exact, scale, most in (
+            (geometry.support, h, h, 4), (geometry.support_slope, factors, factors, 8),
+            (geometry.curvature_radius, radius, radius, 16),
+            (geometry.support_curvature, curvature, radius + h, 16),
+            (geometry.contact_distance, distance, distance, 8),
+            (geometry.arc_length, outline, outline, 16), (geometry.centre_path, path, path, 16),
+            (geometry.contact_angle, theta + lead, abs(theta + lead) + 8 * abs(lead), 1),
+        ):  # fmt: skip
+            actual = function(theta, a=shape[0], b=shape[1])
+            assert ulps(actual, exact, scale) <= most, (function, theta)

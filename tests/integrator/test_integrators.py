@@ -17,7 +17,7 @@ from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
 from stability_laws import exponent
 
-# these motions are solutions of the rolling equation, even where a ground could not give the forces
+# these motions solve the rolling equation even where no ground could exert their forces
 pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
 METHODS: dict[str, dict[str, Any]] = {
@@ -48,7 +48,7 @@ def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
 
 
 def error(trajectory: Trajectory) -> np.ndarray:
-    """Distance from the exact motion at each sample: theta [rad], omega / max(largest omega, 1)."""
+    """Distance from the exact motion at each sample, of theta and omega / max(largest omega, 1)."""
     exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     off: np.ndarray = np.hypot(
@@ -61,11 +61,9 @@ def same_bits(one: Trajectory, other: Trajectory) -> bool:
     return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in STATE)
 
 
-# ------------------------------------------------------------------------------------ orders
-
-# Rotation, libration, and nearly a circle, long enough for errors to add up. Order 8 shows only
-# between the sizes of the next error term and of rounding: mild outlines. The last number is the
-# largest step tried [s].
+# Rotation, libration and a nearly circular body, long enough for errors to add up. The outlines are
+# mild, since order 8 is visible only between the next error term and rounding. The last number is
+# the largest step [s].
 ORDER_SCENES = {
     "rotation": (Scene(2.0, 1.0, omega=3.2), 5.0, 0.1),
     "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
@@ -109,9 +107,6 @@ def test_the_measured_order_is_the_nominal_one(where: str, name: str) -> None:
     assert orders == pytest.approx([order, order], abs=0.15)
 
 
-# -------------------------------------------------------------------------------- tolerances
-
-
 # no motion near the separatrix, where errors are amplified without bound
 TOLERANCE_SCENES = {
     "rolling": rl.scenes.rolling, "rocking": rl.scenes.rocking, "standing": STANDING,
@@ -134,8 +129,8 @@ PEERS = {"dop853": "DOP853", "dopri5": "RK45"}
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_methods_are_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
-    """SciPy has the same pairs with the same step control: steps and evaluations agree within 10 %,
-    and the mean error at the end is no larger; at loose tolerances chance changes single errors."""
+    """SciPy has the same pairs with the same step control. Steps and evaluations agree within 10 %,
+    and the mean error at the end is no larger; single errors vary at loose tolerances."""
     gains = []
     for scene, rtol in itertools.product(TOLERANCE_SCENES.values(), TOLERANCES[::3]):
         start, how = [scene.theta, scene.omega], {"rtol": rtol, "atol": rtol / 100}
@@ -150,13 +145,10 @@ def test_methods_are_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
     assert np.exp(np.mean(np.log(gains))) >= 1 / 1.1, gains
 
 
-# -------------------------------------------------------------------------------- conservation
-
-
 @pytest.mark.parametrize("name", ["gauss2", "gauss3", "gauss4"])
 def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
-    """Reversed steps return to the start at any step size, up to the rounding of 240 steps, an ulp
-    each at most. Radau, which damps, does not return."""
+    """Reversed steps return to the start for any step size, to within the rounding of 240 steps, at
+    most an ulp each. Radau, which is damped, does not return."""
 
     def back(name: str) -> float:
         there = stepped(rl.scenes.rocking, [6.0], name, 0.05)
@@ -171,18 +163,15 @@ def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_stages_are_solved_even_next_to_an_equilibrium(name: str, angle: float) -> None:
-    """theta'' nearly vanishes at such angles, and so does every other change in the iteration for
-    the stages, which must not end because of that. A start moved by d moves the end by a few d, and
-    by rounding."""
+    """Near such angles theta'' nearly vanishes, and so do half of the changes in the iteration for
+    the stages, which must not stop because of that. A change d of the start changes the end by a
+    few d, and by rounding."""
     scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
     reference = stepped(scene, [0.03], name, 0.03)
     for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
         beside = stepped(replace(scene, theta=angle + d), [0.03], name, 0.03)
         off = abs(beside.theta[0] - reference.theta[0]) + abs(beside.omega[0] - reference.omega[0])
         assert off <= 10 * d + 16 * EPS, (d, off)
-
-
-# ---------------------------------------------------------------------------------- symmetries
 
 
 AWAY = {
@@ -196,9 +185,9 @@ AWAY = {
 def test_added_half_turns_and_distant_starts_make_no_difference(
     name: str, theta: float, turned: float, moved: float, most: float
 ) -> None:
-    """The ellipse is the same after half a turn, whose double is within 4e-16; a fixed step makes
-    the same errors, and the motion amplifies the difference some hundredfold. Angles of 1e6 have an
-    ulp of 1e-10: the error is that of a motion near 0 plus this ulp."""
+    """The ellipse is the same after half a turn, whose double is off by up to 4e-16. A fixed step
+    makes the same errors, and the motion amplifies the difference about a hundredfold. Angles of
+    1e6 have an ulp of 1e-10, which adds to the error of a motion near 0."""
     start = Scene(2.0, 1.0, theta=theta, omega=3.0)
     one = stepped(start, 3.0, name)
     other = stepped(replace(start, theta=theta + turned, x=moved), 3.0, name)
@@ -214,8 +203,8 @@ UNITS = {"km": 2.0**20, "um": 2.0**-20, "far out": 2.0**60, "far in": 2.0**-60}
 @pytest.mark.parametrize("weight", [1.0, 2.0**40, 2.0**-40], ids=["", "heavy", "light"])
 @each_method
 def test_steps_do_not_depend_on_units(name: str, weight: float, unit: float) -> None:
-    """Powers of 4 of length and gravity scale time by a power of 2, and no bit changes; the linear
-    equations of Radau may be solved in another order."""
+    """If length and gravity scale by powers of 4, time scales by a power of 2, and no bit changes.
+    Only the linear equations of Radau may be solved in another order."""
     scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
     time = math.sqrt(unit / weight)
     gravity = scene.gravity * weight
@@ -233,8 +222,8 @@ def test_steps_do_not_depend_on_units(name: str, weight: float, unit: float) -> 
 @pytest.mark.parametrize("unit", UNITS.values(), ids=UNITS)
 @pytest.mark.parametrize("name", PAIRS)
 def test_error_control_does_not_depend_on_units(name: str, unit: float) -> None:
-    """With relative tolerances alone only the first step, a guess, depends on seconds; it grows
-    tenfold per step until it fits."""
+    """With relative tolerances alone, only the first step, a guess, depends on the unit of time;
+    steps grow at most tenfold until they fit."""
     scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
     time = math.sqrt(unit)
     scaled = Scene(1.3 * unit, unit, theta=0.4, omega=1.7 / time)
@@ -271,8 +260,8 @@ def test_scenes_of_extreme_scale_stay_accurate(name: str, where: str) -> None:
 @pytest.mark.parametrize("theta", [1e-8, 1e-100, 1e-155, 1e-160, 1e-165, 1e-200, 1e-300])
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_motion_far_below_the_tolerance_takes_few_steps(name: str, theta: float) -> None:
-    """Errors whose squares underflow are still small; each adds at most the 1e-12 of the
-    tolerance."""
+    """Errors may be so small that their squares underflow; each adds at most the tolerance of
+    1e-12."""
     trajectory = roll(Scene(2.0, 1.0, theta=theta), 5.0, name, max_steps=200)
     assert trajectory.status is Status.COMPLETED
     assert np.max(error(trajectory)) <= 1e-10
@@ -295,16 +284,12 @@ def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
 )  # fmt: skip
 @each_method
 def test_a_resting_body_stays_at_rest(name: str, scene: Scene) -> None:
-    """A resting body stays at rest with every method: pi/2 is rounded to a double, from which the
-    body would need half a minute to fall off the tip."""
+    """From the double nearest to pi/2 the body would take half a minute to fall off its tip."""
     for how in [{"step": 0.1}] if name not in PAIRS else [{"step": 0.1}, {}]:
         trajectory = roll(scene, 60.0, name, **how)
         assert np.all(trajectory.mode == Mode.REST)
         assert np.all(trajectory.theta == scene.theta) and np.all(trajectory.omega == 0)
         assert np.all(trajectory.x == scene.x)
-
-
-# ------------------------------------------------------------------------------ time and samples
 
 
 @pytest.mark.parametrize(
@@ -327,8 +312,7 @@ def test_the_last_step_ends_exactly_at_the_end_time(
 
 @each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
-    """Samples keep their bits among any others: more than a thousand, every third one, and beyond
-    any chunk."""
+    """Samples have the same bits among 5001 samples as among every third of those after 1001."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)
@@ -338,8 +322,8 @@ def test_samples_do_not_depend_on_each_other(name: str) -> None:
 
 @each_method
 def test_dense_output_agrees_with_the_steps(name: str) -> None:
-    """A motion that ends with a step has the same state there as one that continues, up to the
-    rounding of its shorter last step; there is no jump between its two sides."""
+    """A motion that ends at a knot has the state of one that continues, to within the rounding of
+    its shorter last step. The dense output does not jump at the knot."""
     scene, step = rl.scenes.rolling, 0.02
     whole = stepped(scene, 2.0, name, step)
     for n in (1, 7, 50, 99):
@@ -353,9 +337,9 @@ def test_dense_output_agrees_with_the_steps(name: str) -> None:
 
 
 def test_recomputed_dense_output_is_as_good_as_stored_dense_output() -> None:
-    """Dense output is kept for the first 2**17 steps and computed again for later ones: between the
-    ends of a step its error differs from theirs by 6e-11, equally before and after, where a step is
-    0.01. Step sizes repeat after 350 steps, a half turn."""
+    """Dense output is stored for the first 2**17 steps and recomputed for later ones. Inside a step
+    its error differs from that at the ends by 6e-11 in both cases, for steps of 0.01 s. Step sizes
+    repeat after 350 steps, a half turn."""
     scene, kept, around = rl.scenes.rolling, 2**17, 400
     how = {"rtol": 1e-12, "atol": 1e-12}
     steps = roll(scene, [10.0], "dopri5", **how).stats["steps"]
@@ -372,9 +356,6 @@ def test_recomputed_dense_output_is_as_good_as_stored_dense_output() -> None:
         return float(np.abs(off((ends[:-1] + ends[1:]) / 2) - (at[:-1] + at[1:]) / 2).max())
 
     assert 0 < between(kept) <= 2 * between(kept - around)
-
-
-# ------------------------------------------------------------------------------------ endings
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["controlled", "fixed"])

@@ -46,9 +46,6 @@ def test_every_tableau_is_tested() -> None:
     assert tuple(DENSE_ORDERS) == EXPLICIT
 
 
-# ------------------------------------------------------------------------------ rooted trees
-
-
 @cache
 def trees(nodes: int) -> tuple[Tree, ...]:
     """Rooted trees with the given number of nodes."""
@@ -102,9 +99,6 @@ def test_rooted_trees_are_counted_correctly() -> None:
     assert all(len(set(trees(n))) == len(trees(n)) for n in range(1, 10))
     assert {gamma(tree) for tree in trees(3)} == {3, 6}
     assert sorted(gamma(tree) for tree in trees(4)) == [4, 8, 12, 24]
-
-
-# -------------------------------------------------------------------------- explicit methods
 
 
 class Explicit(NamedTuple):
@@ -189,9 +183,6 @@ def test_the_error_estimate_of_dopri5_uses_its_fourth_order_weights() -> None:
     lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
     method = explicit("dopri5")
     require(method.error[0], method.b - lower, np.abs(method.b) + np.abs(lower), 1)
-
-
-# ----------------------------------------------------------------- collocation: Gauss, Radau
 
 
 def powers(c: Long, highest: int) -> tuple[Long, Long]:
@@ -281,7 +272,7 @@ def coefficients(name: str) -> Iterator[tuple[str, Long, Any]]:
 
 @pytest.mark.parametrize("name", TABLEAUS)
 def test_methods_have_their_stated_orders_and_a_wrong_digit_is_detected(name: str) -> None:
-    """Each coefficient in turn is changed by 1e-12, and some condition breaks."""
+    """A change of 1e-12 in any coefficient violates one of the conditions."""
     check(name)
     for field, values, index in coefficients(name):
         wrong = values.copy()

@@ -1,8 +1,8 @@
 """The model "multipliers": its matrix, accelerations, multipliers and motions.
 
-The reference differentiates f1 ... f4 of oracles/constraints.py numerically in mpmath. The solution
-of the linear system is substituted into the system, with a matrix in long double and its rate by
-complex steps. The reference for motions is exact rolling.
+The reference for matrix and drift differentiates f1 ... f4 of oracles/constraints.py numerically in
+mpmath. The solution of the linear system is substituted into the system, with the matrix in long
+double and its rate by complex steps. The reference for motions is exact rolling.
 """
 
 import math
@@ -42,8 +42,8 @@ def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    """States that violate the constraints, rolling states at quarter turns and far away, and
-    rolling states moved slightly off the constraints."""
+    """States that violate the constraints, rolling states at quarter turns and at large angles, and
+    rolling states that are moved slightly off the constraints."""
     angles = [k * QUARTER for k in (-3, -1, 0, 1, 2, 6)] + [0.3, 1e5, -1e5, 25000 * QUARTER]
     rolling = rl.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
     free = random_states(shape, 16)
@@ -51,9 +51,6 @@ def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
     parts = [free, rolling, (rolling[0] + shift[0], rolling[1] + shift[1])]
     q, q_dot = (np.concatenate(values) for values in zip(*parts, strict=True))
     return q, q_dot
-
-
-# ---------------------------------------------------------------------- matrix and its rate
 
 
 def exact_matrix(q: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[list[mp.mpf]]:
@@ -96,14 +93,14 @@ def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
 
 @each_shape
 def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
-    """Entries at any state, rolling or not, agree to 16 ulp of themselves or their terms (products
-    of some ten factors, each with an ulp at most, and sums of few)."""
+    """At any state, rolling or not, entries agree to 16 ulps of themselves or of their terms, which
+    are products of about ten factors, each with an error of at most an ulp."""
     a, b = map(mp.mpf, shape)
     q, q_dot = states(shape)
     rows, drift = _core.constraint_system(q, q_dot, *shape)
     assert rows.shape == (len(q), 20) and drift.shape == (len(q), 4)
     off = []
-    rest = mp.mpf(10) ** -30  # larger than a numerical derivative of an entry that is 0
+    rest = mp.mpf(10) ** -30  # exceeds the numerical derivative of an entry that is 0
     with mp.workdps(DIGITS):
         for i in range(len(q)):
             point, rate = ([mp.mpf(value) for value in values[i]] for values in (q, q_dot))
@@ -118,14 +115,11 @@ def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
     assert max(off) <= 16
 
 
-# -------------------------------------------------------------------------- linear system
-
-
 def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> float:
     """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of
-    Baumgarte's feedback), relative to the sums of the magnitudes of their terms; for the second,
-    relative to each row times the largest acceleration, with angles as lengths, which elimination
-    can guarantee."""
+    Baumgarte's feedback), relative to the sums of the magnitudes of their terms. In the second
+    equation, the term of A is the sum of a row times the largest acceleration, with angles as
+    lengths: elimination can guarantee no more."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     (mass, force), (q_ddot, multipliers) = forces(scene), solved
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -155,9 +149,8 @@ def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> 
 @each_shape
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
 def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
-    """Formulas that do not use the core give residuals of 1e-13 (some 500 ulp; elimination has a
-    residual of its growth times the nine sums of each row). The ground is a slope, at states of any
-    kind."""
+    """Formulas without the core give residuals of 1e-13, about 500 ulps, on a slope and at states
+    of any kind. Elimination has a residual of its growth times the nine sums of each row."""
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
     how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
     q, q_dot = states(shape)
@@ -178,8 +171,8 @@ def test_back_substitution_detects_a_change_of_a_millionth(column: int) -> None:
 
 @each_shape
 def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None:
-    """In 50 random rolling states accelerations, N, F and all multipliers equal those of the model
-    "rolling" to 1e-12 of their terms (gravity is one: z_ddot is lambda_2/m - g)."""
+    """In 50 random rolling states accelerations and multipliers, among them N and F, equal those of
+    the model "rolling" to 1e-12 of their terms. Gravity is a term: z_ddot is lambda_2/m - g."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
     known = _core.rolling_detail(scene.core, theta, omega, np.zeros(50))
@@ -205,9 +198,6 @@ def test_rolling_states_accelerate_as_in_the_rolling_model(shape: Shape) -> None
     assert np.array_equal(exact_multipliers[:, :2].T, forces_of_ground)
 
 
-# -------------------------------------------------------------------------- projection
-
-
 def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
     """Allowed q_dot with theta_dot = 1."""
     rows = matrix(q.astype(np.longdouble), a, b)
@@ -220,9 +210,9 @@ def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
 
 @each_shape
 def test_projection_reaches_the_nearest_state_with_residuals_of_rounding_size(shape: Shape) -> None:
-    """A state some 1e-4 off is projected: residuals are of the size of rounding, and the change has
-    no part along the rolling direction, in the metric of M: rounding for velocities, second order
-    for positions (x, which no position constraint contains, stays)."""
+    """A state off by 1e-4 is projected. The residuals are then of rounding size. In the metric of
+    M, the change has no component along the rolling direction, to within rounding for velocities
+    and to second order for positions. x, which is in no position constraint, does not change."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(11)
     inertia = np.array([1, 1, scene.gyration2, 0, 0], np.longdouble)
     size, least = max(shape), min(shape)
@@ -250,8 +240,6 @@ def test_projection_reaches_the_nearest_state_with_residuals_of_rounding_size(sh
         assert np.max(np.abs(again[1] - near_rate)) <= 8 * grain * size * np.max(np.abs(q_dot))
 
 
-# ---------------------------------------------------------------------- motions
-
 STATE = (
     "x", "z", "theta", "psi", "r", "x_dot", "z_dot", "omega", "psi_dot", "r_dot", "contact_x",
     "turns",
@@ -262,10 +250,10 @@ FORCES = ("normal_force", "friction_force")
 @each_stabilization
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> None:
-    """Motions of 2 s at rtol 1e-12 are compared with the model "rolling" (exact where possible,
-    dop853 at 1e-13). The bound is 1e-9: some 100 steps are each 1e-12 off, and errors grow by a
-    factor of at most about exp(lambda t) = e^3.4; a rounding of a far theta (1.5e-11) grows, too.
-    With feedback the forces contain the velocity residual times 2 alpha m = 60 kg/s at most."""
+    """Motions of 2 s at rtol 1e-12 are compared with the model "rolling", exact where possible,
+    else by dop853 at 1e-13. The bound is 1e-9: each of about 100 steps is off by 1e-12, and errors
+    grow by a factor of at most about exp(lambda t) = e^3.4, as does the rounding of a large theta,
+    1.5e-11. Forces with feedback contain the velocity residual times 2 alpha m <= 60 kg/s."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
@@ -282,8 +270,8 @@ def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> N
 
 @each_stabilization
 def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None:
-    """theta = 1e5 has an ulp of 1.5e-11: 10 s at rtol 1e-13 end with the accuracy of a sample. A
-    psi rounded like theta would break f4 by an ulp, and the 10 s would keep this error."""
+    """theta = 1e5 has an ulp of 1.5e-11. After 10 s at rtol 1e-13 the error is only that of a
+    sample. If psi were rounded like theta, f4 would be off by an ulp throughout the 10 s."""
     scene = Scene(2.0, 1.0, theta=1e5, omega=3.2)
     moving = by_multipliers(scene, [10.0], stabilization=stabilization, rtol=1e-13, atol=1e-13)
     assert abs(moving.theta[0] - simulate(scene, [10.0]).theta[0]) <= 1e-10
@@ -294,15 +282,15 @@ def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None
 def test_a_resting_body_stays_put_to_within_the_rounding_of_its_tip(
     theta: float, stabilization: Any
 ) -> None:
-    """A flat body does not move. On the tip theta is a double, and its rounding grows like
-    exp(1.674 t), 4300 times in 5 s: 8 ulp of the angle become 1.5e-11."""
+    """A flat body does not move. On the tip the rounding of theta grows like exp(1.674 t), by a
+    factor 4300 in 5 s: 8 ulps of the angle become 1.5e-11."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0)
     resting = by_multipliers(scene, 5.0, stabilization=stabilization)
     grown = 1.5e-11 if theta else 0.0
     assert np.max(np.abs(resting.q - resting.q[0])) <= grown
     rate = 20 if stabilization == "baumgarte" else 1.674  # growth rate; 2 alpha with feedback
     assert np.max(np.abs(resting.q_dot)) <= 2 * rate * grown  # x' = h omega is the fastest
-    # forces change with theta by some ten weights per radian, with feedback a hundred
+    # forces change by about ten weights per radian of theta, with feedback by a hundred
     assert np.max(np.abs(resting.normal_force - 3 * 9.81)) <= 100 * grown + 8 * EPS * 3 * 9.81
 
 
@@ -312,9 +300,9 @@ STEPS = {"rk4": (4, (200, 400, 800)), "dopri5": (5, (160, 320, 640)), "dop853": 
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte", "projection"])
 @pytest.mark.parametrize("method", STEPS)
 def test_errors_shrink_at_the_order_of_the_method(method: Any, stabilization: Any) -> None:
-    """The largest error of q at all knots of 3.37 half turns is fitted by a power of the step. The
-    terms of the next order still contribute: the slope lies between the two orders, closer to the
-    method's own."""
+    """A power of the step is fitted to the largest error of q at all knots of 3.37 half turns. The
+    terms of the next order still contribute, so that the slope lies between the order of the method
+    and the next one, closer to the former."""
     order, counts = STEPS[method]
     scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
     span = 3.37 * rl.period(scene) / 2

@@ -24,9 +24,9 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_residuals_and_errors_rank_the_stabilizations() -> None:
-    """From 10 half turns on, errors of theta are largest by drift, smaller with feedback, small
-    with projection, and least with the energy too. Feedback bounds the residuals; projection leaves
-    only rounding."""
+    """From 10 half turns on, errors of theta are largest without stabilization, smaller with
+    feedback, again smaller with projection, and least if the energy is projected, too. Feedback
+    bounds the residuals; projection leaves only roundings."""
     exact = simulate(FED_BACK, kept("none").t)
     errors = {name: np.abs(kept(name).theta - exact.theta) for name in KEPT}
     gaps = {name: np.abs(kept(name).constraint_residuals().gap) for name in KEPT}
@@ -43,8 +43,8 @@ def test_residuals_and_errors_rank_the_stabilizations() -> None:
 
 
 def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
-    """Rolling makes x a function of theta, but its constraint is one of velocities only: x leaves
-    the path by the truncation of the steps, in proportion to time, with or without projection."""
+    """In rolling x is a function of theta, but the constraint contains only velocities. Truncation
+    errors of the steps move x off the path in proportion to time, with any projection."""
     for name in ("projection", "projection+energy"):
         moving = kept(name)
         path = centre_path(moving.theta, a=1.5, b=1.0) - centre_path(0.2, a=1.5, b=1.0)
@@ -57,9 +57,9 @@ def test_the_path_reveals_an_error_that_no_residual_shows() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
 def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabilization: Any) -> None:
-    """At 10 000 times between the knots of 10 half turns by dop853 at rtol 1e-10, the motion is
-    1e-8 from exact rolling (some 500 steps, each 1e-10 off in theta = 30, with errors of both
-    signs), and residuals are 16 ulp of theta in the constraints, times the rates for velocities."""
+    """dop853 at rtol 1e-10 makes 10 half turns, seen at 10 000 times between the knots. The motion
+    is within 1e-8 of exact rolling: theta grows to 30 in about 500 steps, whose relative errors of
+    1e-10 have both signs. Residuals are 16 ulps of theta, times the rates for velocities."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, moving = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     for name in ("theta", "omega", "x", "psi"):
@@ -74,8 +74,8 @@ def test_residuals_of_projection_stay_small_between_steps(scene: Scene, stabiliz
 
 @pytest.mark.parametrize("name", ["long", *(name for name in SCENES if "far" not in name)])
 def test_energy_is_conserved_at_all_times(name: str) -> None:
-    """The energy of every scene, and of 1000 half turns, is kept to 8 ulp of its terms, at knots
-    and between them."""
+    """The energy of every scene, and of 1000 half turns, is constant to 8 ulps of its terms, at the
+    knots and between them."""
     scene, long = SCENES.get(name, FED_BACK), kept("projection+energy")
     times = np.append(0.0, np.sort(np.random.default_rng(2).uniform(0, 3, 2000)))
     if name == "long":
@@ -91,9 +91,9 @@ ggl = partial(multipliers, method="radau", stabilization="ggl")
 
 
 def test_the_index_2_system_has_order_5() -> None:
-    """Radau IIA with three stages has order 5 in the index-2 system for positions and velocities;
-    the multipliers of a trajectory are computed from these and so have it, too (E. Hairer, G.
-    Wanner, Solving Ordinary Differential Equations II, VII.4)."""
+    """Radau IIA with three stages has order 5 for positions and velocities of index-2 systems (E.
+    Hairer, G. Wanner, Solving Ordinary Differential Equations II, VII.4). So have the multipliers
+    of a trajectory, which are computed from positions and velocities."""
     span, counts, errors = 1.37 * half_turn(FED_BACK), [40, 80, 160], []
     for count in counts:
         places = np.append(np.arange(count), np.arange(count) + 0.37)
@@ -109,8 +109,8 @@ def test_the_index_2_system_has_order_5() -> None:
 # the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
 def test_index_2_leaves_residuals_of_rounding_size_everywhere(name: str) -> None:
-    """At knots and between, residuals stay below 64 ulp of the size, plus the effect of an ulp of
-    psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
+    """At and between the knots, residuals stay below 64 ulps of the size of the body, times a/b for
+    the effect of an ulp of psi on f3, and times a/b again for its effect on the rates."""
     scene = SCENES[name]
     times = np.sort(np.append(np.arange(65) / 64, (np.arange(64) + 0.37) / 64))
     moving, exact = ggl(scene, times, step=2.0**-6), simulate(scene, times, model="rolling")
@@ -128,17 +128,17 @@ UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
 
 
 @pytest.mark.parametrize(("name", "step"), UNSOLVABLE.items(), ids=UNSOLVABLE)
-def test_an_unsolved_step_is_not_taken(name: str, step: float) -> None:
-    """If Newton's iteration fails, the motion ends at the previous knot, which obeys the
-    constraints: a step of the index-2 system ends on them or is not taken."""
+def test_a_step_that_cannot_be_solved_is_not_taken(name: str, step: float) -> None:
+    """If Newton's iteration fails, the motion ends at the previous knot, where it obeys the
+    constraints, as it does after every step of the index-2 system."""
     times = np.arange(round(1 / step) + 1) * step
     moving = ggl(SCENES[name], times, step=step, raise_on_failure=False)
     assert worst_residual(moving) <= 1e-10
 
 
 def test_index_2_is_accurate_far_from_zero() -> None:
-    """A start 15 915 turns on (theta = 1e5, ulp 1.5e-11) turns as far in 1 s as the one near 0, to
-    1e-10: two such ulps, times e^1.7, the growth of errors."""
+    """A body that starts 15 915 turns away, at theta = 1e5 with an ulp of 1.5e-11, turns as far in
+    1 s as one near 0. The bound, 1e-10, is two such ulps times the growth of errors, e^1.7."""
     near, far = (Scene(2.0, 1.0, theta=0.2 + k * 2 * math.pi, omega=3.2) for k in (0, 15_915))
     turned = [ggl(scene, [1.0], step=2.0**-6).theta[0] - scene.theta for scene in (near, far)]
     assert abs(turned[1] - turned[0]) <= 1e-10

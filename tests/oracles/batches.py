@@ -1,4 +1,4 @@
-"""Scenes simulated one by one, to be compared with `simulate_many`, and the files of a folder."""
+"""Scenes simulated one by one, for comparison with `simulate_many`, and the files of a folder."""
 
 import warnings
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ NAMED = [
     rl.scenes.circle, rl.scenes.thin, rl.scenes.slope, rl.scenes.slip, rl.scenes.jump,
     rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
 ]  # fmt: skip
-# hours of work for a rolling scene, no time for a scene at rest
+# A rolling scene would take hours, a scene at rest no time
 ENDLESS: Any = {"model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1}
 
 
@@ -36,6 +36,6 @@ def chunks(folder: Path) -> list[Path]:
 
 
 def states(folder: Path) -> dict[str, tuple[int, int]]:
-    """File number and time of each chunk, which change if the file is written again."""
+    """Inode and modification time of each chunk, which change if the file is rewritten."""
     files = {path.name: path.stat() for path in chunks(folder)}
     return {name: (of.st_ino, of.st_mtime_ns) for name, of in files.items()}

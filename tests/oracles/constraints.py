@@ -15,7 +15,7 @@ def lead(theta: Any, a: Any, b: Any) -> Any:
 
 
 def polar(psi: Any, a: Any, b: Any) -> Any:
-    """r of a point of the outline (f3 = 0)."""
+    """Polar radius of the outline, the r for which f3 = 0."""
     return a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
 
 

@@ -1,4 +1,4 @@
-"""Random bodies on every kind of ground, and the laws of their contact."""
+"""Random scenes on any ground, and the laws of their contact."""
 
 import math
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ class Response(NamedTuple):
 
 
 def response(scene: Scene, state: InitialState) -> Response:
-    """Response of a touching body: rates of the contact point's material, and 1/m + arm^2/I."""
+    """Rates of the material at the contact of a touching body, and responses 1/m + arm^2/I."""
     at = support(state.theta, scene.a, scene.b)
     mass, inertia = scene.mass, scene.mass * scene.gyration2
     return Response(
@@ -38,9 +38,9 @@ def response(scene: Scene, state: InitialState) -> Response:
 
 
 def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
-    """Reaction according to Stronge's law. Slip v and gap rate u are linear in the normal impulse p
-    between a stop, a stick and a reversal. The impact ends when restitution has done e^2 of
-    compression's work."""
+    """Reaction according to Stronge's law. Slip and gap rate are linear in the normal impulse until
+    the slip stops or the compression ends. The impact ends when the work of restitution is e^2
+    times the work of compression."""
     slip, gap_rate, tangential, normal, coupling = contact
     along = across = work = 0.0
     owed = math.inf  # work of restitution, known when compression ends
@@ -76,8 +76,8 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
 
 
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
-    """Change of x in a slide up to an angle, with F = friction N (signed). The integral of N/m
-    follows from z'' = N/m - g cos(slope) and z = h."""
+    """Change of x in a slide up to an angle, where F is `friction`, which has a sign, times N. The
+    integral of N/m follows from z'' = N/m - g cos(slope) and z = h."""
     h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
     into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
     h = support(theta, scene.a, scene.b).h
@@ -97,7 +97,7 @@ def energy(scene: Scene, state: InitialState) -> float:
 
 
 def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size: float) -> Impulse:
-    """A blow of a given size at any point of the body, mostly a press, half of them straight."""
+    """A blow of a given size at any point of the body, mostly downwards, half of them vertical."""
     push = rng.choice([0.0, rng.normal()])
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
     along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
@@ -110,8 +110,8 @@ def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size
 
 
 def random_scenes(count: int, seed: int, struck: float = 0.0, **given: Any) -> Iterator[Scene]:
-    """Scenes in the air, sliding or rolling, lying or standing, a tenth of them circles, some flat,
-    on the tip or at rest; a share of them with a blow about strong enough to roll them over."""
+    """Scenes in the air, sliding or rolling, lying or standing. A tenth are circles, some are flat,
+    on the tip or at rest, and a share has a blow about strong enough to roll the body over."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()

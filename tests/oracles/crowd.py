@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 class Sample(NamedTuple):
-    """Scenes as columns; inertia = nan stands for the uniform disc."""
+    """Scenes as columns; inertia = nan stands for a uniform disc."""
 
     a: Floats
     b: Floats
@@ -55,9 +55,9 @@ def gyration2_of(a: Floats, b: Floats, mass: Floats, inertia: Floats) -> Long:
 
 
 def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
-    """Columns a, b, mass, gravity, inertia: a/b over six decades, half of ordinary shape, a tenth
-    nearly circular; half of the inertias are discs', the others from nearly a point's to a
-    hoop's."""
+    """Columns a, b, mass, gravity, inertia. a/b covers six decades; half of the shapes are
+    ordinary, a tenth nearly circular. Half of the inertias are those of discs, the others range
+    from nearly that of a point to that of a hoop."""
     thin, ordinary = rng.uniform(-2.999, 2.999, count), rng.uniform(-1.1, 1.1, count)
     ratio = 10 ** np.where(rng.random(count) < 0.5, thin, ordinary)
     circular = 1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-8, -1, count)
@@ -70,8 +70,8 @@ def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
 
 
 def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
-    """E/m above lying flat: swings of all sizes, rotations up to and beyond the loss of contact,
-    and clusters at the separatrix (to 1e-12) and at the loss of contact (to 1e-9)."""
+    """E/m above rest in the flat position: swings of all sizes, rotations up to and beyond the loss
+    of contact, and clusters near the separatrix (to 1e-12) and the loss of contact (to 1e-9)."""
     count = still.a.size
     barrier = still.gravity * np.abs(still.a - still.b)
     side = rng.choice([-1, 1], count)
@@ -88,8 +88,8 @@ def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
 
 
 def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """theta and omega at a random place of each motion, up to 300 turns away; a tenth at rest, some
-    of these flat."""
+    """theta and omega at a random place of each motion, up to 300 turns away. A tenth of the bodies
+    are at rest, half of these flat."""
     count = moving.a.size
     on = oracles.rolling.chart(moving)
     sine, cosine = on.sides(on.top * rng.uniform(0, 1, count))
@@ -106,7 +106,7 @@ def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Flo
 
 
 def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
-    """Unlimited or no friction, values from ice to rubber, and near the needed one (1e-9)."""
+    """Infinite friction, none, values from ice to rubber, and values near the needed one (1e-9)."""
     count = needed.size
     near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-9, -1, count))
     anything = 10 ** rng.uniform(np.log10(0.05), np.log10(2.0), count)

@@ -1,4 +1,4 @@
-"""Axes for pictures, altered motions, and data of the artists."""
+"""Axes for pictures, modified motions, and the data of artists."""
 
 import dataclasses
 
@@ -27,7 +27,7 @@ TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
 
 
 def seen(motion: rl.Trajectory, line: Line2D) -> rl.Trajectory:
-    """The motion at the times of a curve over time, which must cover the span of the motion."""
+    """Samples of a motion at the times of a curve, which must cover the span of the motion."""
     times = data(line)[0]
     assert times[0] == motion.t[0] and times[-1] == motion.t[-1] and np.all(np.diff(times) >= 0)
     return motion.sol(times)

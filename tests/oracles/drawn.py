@@ -1,4 +1,4 @@
-"""Strategies of Hypothesis: bodies, grounds, starts and times over the accepted ranges."""
+"""Hypothesis strategies for bodies, grounds, starts and times over the accepted ranges."""
 
 import math
 from typing import Any
@@ -77,8 +77,8 @@ def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
 
 
 def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
-    """The argument omega that makes the body weightless, h'' omega^2 = -g cos(alpha), if there is
-    one, or else the friction that rolling needs, exact to within rounding."""
+    """The argument omega that makes the body weightless, h'' omega^2 = -g cos(alpha), if such a
+    speed exists, otherwise the friction that rolling needs, exact to within rounding."""
     a, b, theta, slope = (values[name] for name in ("a", "b", "theta", "slope"))
     h, tilt = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
     radius = (a * b) ** 2 / h**3

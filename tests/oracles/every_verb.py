@@ -23,9 +23,8 @@ def use(folder: Path) -> list[float]:
     grid = rl.simulate_many({"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}, [0.5], returns="x")
     hits = rl.simulate_many([body, rl.scenes.jump], 1.0, returns="events")
     table: rl.EventTable = motion.events.table
-    assert table["t"][table["kind"] == rl.EventKind.SLIP].tolist() == slips and hits.axes == (
-        "scene",
-    )
+    assert table["t"][table["kind"] == rl.EventKind.SLIP].tolist() == slips
+    assert hits.axes == ("scene",)
     stored = rl.load_many(rl.simulate_many([body], 1.0, out=folder / "many"))
     stopped = rl.simulate(rl.scenes.jump, np.inf, stop=(rl.EventKind.IMPACT, "rest"))
     landed = rl.ends([rl.scenes.jump], np.inf, stop="impact").go_on(stopped.t_end, stop="decided")
@@ -45,14 +44,8 @@ def use(folder: Path) -> list[float]:
     rolls.save(folder / "motion.npz")
     loaded = rl.load(folder / "motion.npz") == rolls and rl.Scene.from_json(body.to_json()) == body
     given = rl.Trajectory.from_arrays(motion.t, theta=motion.theta, scene=motion.scene)
-    pictures = [motion.plot_curves("theta", "omega"), rl.ends([body], 1.0).plot("x")]
-    pictures = [
-        *pictures,
-        rl.plot(motion),
-        motion.plot_phase(),
-        rl.plot_phase_map(resolution=4),
-        fit.plot(),
-    ]
+    curves = [motion.plot_curves("theta", "omega"), rl.ends([body], 1.0).plot("x")]
+    plots = [rl.plot(motion), motion.plot_phase(), rl.plot_phase_map(resolution=4), fit.plot()]
     pages = [rl.animate(rolls).figure, rl.explore(body), rl.examples(folder / "examples")]
     marked, known = course.mark("3.2", 1.9).right, benchmark.run(lambda p, t, s: p.exact(t))
     course.sheet(1, seed=7).save(folder / "sheet.html")
@@ -61,20 +54,7 @@ def use(folder: Path) -> list[float]:
     height: float = geometry.support(0.3, a=2.0, b=1.0) + report.errata()[0].evaluate().gap
     struck = impacts.collide(0.3, 0.0, -1.0, 0.0, a=2.0, b=1.0, friction=0.3, restitution=0.5)
     rows = motion.to_dataframe().shape[0] + motion.to_xarray().sizes["t"] + len(motion.events)
-    print(
-        names,
-        several,
-        stored,
-        ended,
-        proof,
-        bounds,
-        race,
-        loaded,
-        marked,
-        known,
-        pictures,
-        pages,
-        of_class,
-    )
+    print(names, several, stored, ended, proof, bounds, race, loaded, marked, known)
+    print(curves, plots, pages, of_class)
     return [*tips, *last, theta, x, slope, off, rate, needed, growth, height, *struck, rows,
             grid["x"].sum(), given.z[-1], *grown.exponents]  # fmt: skip

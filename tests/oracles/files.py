@@ -1,4 +1,4 @@
-"""Files of trajectories in parts, and a write that stops halfway."""
+"""Split a file of a trajectory into its JSON and arrays, and join them again."""
 
 import io
 import json
@@ -6,11 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-
-
-def half_a_file(file: Any, **arrays: Any) -> None:
-    file.write(b"PK half of what should be here")
-    file.flush()
 
 
 def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:

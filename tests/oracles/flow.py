@@ -1,11 +1,11 @@
-"""Units of the answers of `flow`: the effect of one rounding of every input, plus two ulp."""
+"""Units for the errors of `flow`: the effect of rounding every input once, plus two ulps."""
 
 from typing import Any
 
 from rolling_ellipse import thresholds
 
-# One unit is the unavoidable error of a backward stable method that rounds every input once; four
-# units allow some more roundings.
+# A unit is the unavoidable error of a backward stable method, which rounds every input once. Four
+# units allow for a few more roundings.
 LARGEST_ERROR = 4.0
 
 PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")

@@ -1,4 +1,4 @@
-"""The ellipse on its tangent, by definition and in the closed form of the suite.
+"""The ellipse on its tangent, by definition and in closed form.
 
 This file imports no part of the package. theta is clockwise positive. "flat" is the position of
 least height, "tip" the position of largest height. The reduced angle phi in [0, pi/2] is the
@@ -18,7 +18,7 @@ from oracles.numbers import DIGITS, Long
 
 
 def boundary_point(t: Any, theta: Any, a: Any, b: Any) -> tuple[Any, Any]:
-    """Point t of the outline of the ellipse turned clockwise by theta: (right, up) of the
+    """Point t of the outline of the ellipse, rotated clockwise by theta, as (right, up) from the
     centre."""
     along, across = a * mp.cos(t), b * mp.sin(t)
     cosine, sine = mp.cos(theta), mp.sin(theta)
@@ -87,8 +87,8 @@ def support(theta: Any, a: Any, b: Any) -> Support:
 
 
 def _support(sine: Any, cosine: Any, a: Any, b: Any, root: Any) -> Support:
-    """h, h' and h'' = (a b)^2/h^3 - h in factors, because the terms of h'' cancel near a circle and
-    near the flat side of a thin body."""
+    """h, h' and h''. The difference h'' = (a b)^2/h^3 - h is factored: its terms cancel near a
+    circle and near the flat side of a thin body."""
     h = root((a * sine) ** 2 + (b * cosine) ** 2)
     bend = (a - b) * (b * cosine**2 - a * sine**2)
     return Support(h, (a - b) * (a + b) * sine * cosine / h, bend * (a * b + h * h) / h**3)

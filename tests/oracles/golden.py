@@ -1,4 +1,4 @@
-"""The records of tests/core/golden.cpp: read, compared, and computed again through Python."""
+"""Read and compare the records of tests/core/golden.cpp, and compute them through Python."""
 
 import math
 import os
@@ -18,7 +18,7 @@ from .paths import TESTS
 GOLDEN = TESTS / "core" / "golden.txt"
 
 # Bound for another C library, which rounds sin and cos differently. Exact motions and fixed steps
-# then change by roundings, steps of controlled error by no more than their tolerance of 1e-10.
+# then change by roundings, and steps of controlled error by at most their tolerance of 1e-10.
 OTHER_LIBRARY = 1e-10
 
 _COLUMNS = {
@@ -76,7 +76,7 @@ def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
 
 
 def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
-    """Blocks of records, each from a record of a kind up to the next one of that kind."""
+    """Blocks of records; each starts with a record of a kind and ends before the next of it."""
     starts = [i for i, each in enumerate(records) if each.kind == first]
     ends = [*starts[1:], len(records)]
     named: dict[str, list[Record]] = {}
@@ -99,8 +99,8 @@ def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
                 continue
             if math.isnan(x) and math.isnan(y):
                 continue
-            off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # more than 0 for -0 and 0
-            if not off <= worst:  # true for a NaN, too
+            off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # positive also for -0 and 0
+            if not off <= worst:  # also true for a NaN
                 worst, where = off, pair
     return worst, where
 
@@ -140,7 +140,7 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
         warnings.simplefilter("ignore", rl.StabilityWarning)
         computed = rl.simulate(scene, times, **chosen)
     solution = next(each for each in motion if each.kind == "solution")
-    ending, followed_until, _ = solution.numbers  # Python has no names for these two
+    ending, followed_until, _ = solution.numbers  # Python does not expose these two
     yield Record("solution", (computed.model, computed.method),
                  (ending, followed_until, computed.valid_until))  # fmt: skip
     for event in computed.events:

@@ -1,4 +1,4 @@
-"""Rolling on a slope: the law of its forces, its equilibrium, and motions that no ground holds."""
+"""Rolling on a slope: forces, equilibrium, and motions for which no ground has the forces."""
 
 import math
 import warnings
@@ -28,14 +28,14 @@ def pushed(scene: rl.Scene, theta: Any, omega: Any) -> Pushed:
 
 
 def lying(slope: float) -> float:
-    """The stable angle of the 2:1 ellipse in equilibrium: h' = h tan(slope), the smaller root of
-    (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan in tan(theta)."""
+    """Stable angle of equilibrium of the 2:1 ellipse, where h' = h tan(slope): with t = tan(theta),
+    the smaller root of (a^2 t^2 + b^2) tan(slope) = (a^2 - b^2) t."""
     incline = math.tan(slope)
     return math.atan(2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2)))
 
 
 def rolled(scene: rl.Scene, times: Any, **how: Any) -> rl.Trajectory:
-    """The rolling motion, even if the ground could not hold it."""
+    """The rolling motion, even if the ground cannot exert its forces."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.ValidityWarning)
         return rl.simulate(scene, times, model="rolling", **how)

@@ -1,4 +1,4 @@
-"""Ctrl-C after some time, and a full disk."""
+"""Context managers for a Ctrl-C after some time and for a full disk."""
 
 import resource
 import signal
@@ -10,7 +10,7 @@ import pytest
 
 @contextmanager
 def ctrl_c_after(seconds: float) -> Iterator[None]:
-    """Require that the block ends with a KeyboardInterrupt; a negative time sets no alarm."""
+    """Require that the block ends with a KeyboardInterrupt. A negative time sets no alarm."""
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # the handler of SIGINT
     try:
         if seconds >= 0:
@@ -24,7 +24,7 @@ def ctrl_c_after(seconds: float) -> Iterator[None]:
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """A limit on the size of files [bytes] stands for a full disk: both are an OSError."""
+    """Limit the size of files [bytes], which raises an OSError as a full disk does."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     try:

@@ -1,7 +1,7 @@
-"""Stepped runs of all kinds, fine and much too coarse, and their losses.
+"""Stepped runs with all methods, from fine to far too coarse steps, and their losses.
 
-Runs are judged by eight samples of the trajectory per step, and by exact rolling from the start of
-each step, which reference tables verify. A loss is divided by its limit:
+The losses are measured at eight samples per step, and by comparison with exact rolling, which
+reference tables verify, from the start of each step. Each loss is divided by its limit:
 
 * the energy: its largest change at any time, over the largest kinetic + |potential| energy
   (x from the start), over 1e-2 or ten rtol;
@@ -33,8 +33,8 @@ class Run(NamedTuple):
 
 
 def drawn(seed: int) -> Run:
-    """A run of any body, on level ground or a slope, with any stepped method and stabilization,
-    with steps of a hundredth to three times sqrt(L/g) or tolerances from 1e-10 to 0.03."""
+    """A run of any body on any slope with any stepped method and stabilization, and with steps of
+    0.01 to 3 sqrt(L/g) or tolerances from 1e-10 to 0.03."""
     rng = np.random.default_rng(seed)
     long_axis = 10 ** rng.uniform(-1, 1)
     ratio = rng.choice([1.0, 1.001, 10 ** rng.uniform(0, 0.7), 10 ** rng.uniform(0, 2)])
@@ -94,13 +94,13 @@ def _energy(scene: Scene, seen: Trajectory) -> float:
 
 
 def _solved(scene: Scene, theta: Floats, omega: Floats, steps: Floats) -> Floats:
-    """Angles at the ends of all steps, by exact rolling from the start of each. A step impossible
-    for a rolling body keeps its angle and is not judged."""
+    """Angles at the ends of all steps, by exact rolling from the start of each. A step that is
+    impossible for a rolling body keeps its own angle, so that it has no loss."""
     ends = theta[1:].copy()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         for i, step in enumerate(steps.tolist()):
-            with suppress(ValueError):  # thrown off at once, or too fast for any input
+            with suppress(ValueError):  # it leaves the ground at once, or is too fast
                 start = scene.replace(theta=theta[i], omega=omega[i], x=0.0)
                 ends[i] = simulate(start, [step], model="rolling", method="exact").theta[0]
     return ends

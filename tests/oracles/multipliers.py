@@ -1,4 +1,4 @@
-"""The model "multipliers": matrix, slopes and forces without the core; scenes, settings."""
+"""The model "multipliers" without the core: matrix, its derivatives, forces; scenes, settings."""
 
 import dataclasses
 import math

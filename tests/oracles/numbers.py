@@ -1,4 +1,4 @@
-"""Arithmetic of the references: long double for thousands of scenes, mpmath for single points."""
+"""Arithmetic of the references: long double for many scenes, mpmath for single points."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Random motions of every model, and dense times to find passages of a value."""
+"""Random motions of every model, and times dense enough to find every passage of a value."""
 
 import math
 import warnings
@@ -28,14 +28,15 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
-    """A motion by each model and method, some on a slope; one that must roll starts rolling."""
+    """A motion of a random model and method, on level ground or a slope. If the model allows only
+    rolling, the body starts with it."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     level = settings.get("method") == "exact" or rng.random() < 0.6
     given: dict[str, Any] = {"x": rng.normal(), "slope": 0.0 if level else rng.uniform(-0.3, 0.3)}
     if settings["model"] != "contact":
         given |= {"friction": math.inf, "inertia": None, "z": None, "x_dot": None, "z_dot": None}
     drawn = random_scenes(99, int(rng.integers(2**31)), **given)
-    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # the steps suit no thin body
+    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # steps fit no thin body
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         warnings.simplefilter("ignore", StabilityWarning)
@@ -49,7 +50,7 @@ def times_of_events(motion: Trajectory) -> Floats:
 def dense_times(motion: Trajectory) -> Floats:
     """Even times, and times just before and at each event."""
     events = times_of_events(motion)
-    slow = motion.method == "radau"  # radau solves for the stages of a step at each sample
+    slow = motion.method == "radau"  # at each sample, radau solves for the stages of a step
     even = np.linspace(0.0, motion.t_end, DENSE // 8 if slow else DENSE)
     both = np.concatenate([even, np.nextafter(events, 0), events])
     return np.unique(both[(both >= 0) & (both <= motion.t_end)])

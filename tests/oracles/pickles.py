@@ -15,7 +15,7 @@ def pickled(protocol: int, thing: Any) -> Any:
     return pickle.loads(pickle.dumps(thing, protocol))
 
 
-ROADS: dict[str, Callable[[Any], Any]] = {
+COPIES: dict[str, Callable[[Any], Any]] = {
     **{f"protocol {p}": partial(pickled, p) for p in range(6)},
     "copy": copy.copy,
     "deepcopy": copy.deepcopy,

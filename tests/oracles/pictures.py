@@ -1,4 +1,4 @@
-"""Scenes to draw, and the geometry of drawn ellipses by matplotlib's transforms."""
+"""Scenes to draw, and the geometry of drawn ellipses from matplotlib's transforms."""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -59,7 +59,7 @@ def legend_in(ax: Axes) -> Legend:
 
 
 def centre_of(body: Ellipse) -> tuple[float, float]:
-    """Centre of a patch; matplotlib's annotation is wrong."""
+    """Centre of a patch, whose annotation in matplotlib is wrong."""
     centre: Any = body.get_center()
     return centre[0], centre[1]
 
@@ -71,7 +71,7 @@ def points_of(collection: Collection | None) -> NDArray[np.float64]:
 
 
 def frames_of(image: Image) -> int:
-    """Frames of a GIF; Pillow's annotation lacks them."""
+    """Number of frames of a GIF, which Pillow does not annotate."""
     return int(image.n_frames)  # type: ignore[attr-defined]
 
 

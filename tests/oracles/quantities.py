@@ -1,4 +1,4 @@
-"""Numbers with units as other libraries make them, and plain numbers that resemble them."""
+"""Numbers with units as in other libraries, and plain numbers that resemble them."""
 
 from typing import Any
 
@@ -49,7 +49,7 @@ class OpenMM:
 
 
 class Labelled:
-    """An array whose notes can be read as attributes, as DataArray of xarray."""
+    """An array whose notes are also attributes, as DataArray of xarray."""
 
     __slots__ = ("attrs", "data")
 

@@ -1,14 +1,13 @@
 """Tests of `pytest -m quick`: files, and single tests of slow files, from every folder.
 
-They take a minute and find most mistakes; only the whole suite decides.
+They take a minute and find most mistakes; only the whole suite counts.
 """
 
 QUICK = (
     "core/test_core.py::test_motions_computed_through_python_stay_within_the_bound",
     "integrator/test_tableaus.py",
     "geometry/test_constraints.py::test_kinematics_agree_with_differentiation",
-    "geometry/test_ellipse.py::test_curvatures_are_exact_to_a_few_ulp",
-    "geometry/test_ellipse.py::test_support_and_its_slope_are_exact_to_a_few_ulp",
+    "geometry/test_ellipse.py::test_the_geometry_is_exact_to_a_few_ulp",
     "scene/test_blow.py",
     "scene/test_scene.py",
     "rolling/test_flow_reference.py",

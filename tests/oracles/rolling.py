@@ -1,7 +1,7 @@
 """Rolling on level ground by brute force, without any part of the package.
 
-mpmath serves single points, `numpy.longdouble` thousands of scenes with hundreds of samples. Forces
-come from Newton's law with the acceleration and the energy, never from a polynomial.
+Single points are computed in mpmath, and thousands of scenes with hundreds of samples in
+`numpy.longdouble`. Forces follow from Newton's law, acceleration and energy, not from polynomials.
 """
 
 from collections.abc import Callable
@@ -54,7 +54,7 @@ class Forces(NamedTuple):
     friction_error: Long
 
     def margins(self, friction: Any) -> tuple[Long, Long]:
-        """Margins of N > 0 and of |F| <= mu N (inf without limit), in the errors."""
+        """Margins of N > 0 and of |F| <= mu N (inf for infinite mu), in units of the errors."""
         limited = np.isfinite(friction)
         mu = np.where(limited, friction, 0)
         grip = mu * self.normal - np.abs(self.friction)
@@ -94,9 +94,9 @@ def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
 def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
     """Newton's law at a reduced angle; friction has the sign for phi and h' >= 0.
 
-    The errors allow 1e-12 of the sum of the terms; the effect of 16 ulp of the energy (measured
-    from the ground, as E/m - g h is formed) on omega^2 and the force; and the effect of an ulp of a
-    or b, which is the largest near a circle, where all forces depend on a - b.
+    The errors allow for 1e-12 of the sum of the terms, for the effect of 16 ulps of the energy
+    (measured from the ground, as in E/m - g h) on omega^2 and the force, and for the effect of an
+    ulp of a or b, which is largest near a circle, where all forces depend on a - b.
     """
     h, slope, rho, curvature = outline(moving.a, moving.b, sine, cosine)
     inertia = moving.gyration2 + h * h + slope * slope
@@ -124,10 +124,10 @@ COLUMN = (slice(None), None)  # index that stacks motions
 
 
 class Chart(NamedTuple):
-    """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v, for even steps at every scale.
+    """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v: even steps in v resolve all scales.
 
-    The narrowest feature, of thin bodies of small inertia, is (b/a)^2 wide; tan phi = 1e9 stands
-    for the tip, about which every force is even in pi/2 - phi: the difference is 1e-18.
+    The narrowest feature, of thin bodies with small inertia, is (b/a)^2 wide. tan phi = 1e9 stands
+    for the tip. Every force is even in pi/2 - phi there, so that the difference is 1e-18.
     """
 
     waist: Long
@@ -158,8 +158,8 @@ def chart(moving: Motion) -> Chart:
 def golden_minimum(
     function: Callable[[Long], Long], low: Long, high: Long, rounds: int = 40
 ) -> Long:
-    """Places of minima in many brackets: to 1e-8 of the bracket, so the value (stationary there) is
-    known to 1e-16 of the curvature; a minimum at an end is exact."""
+    """Positions of minima in many brackets, to 1e-8 of the bracket. The value, which is stationary
+    there, is accurate to 1e-16 of the curvature; a minimum at an end is exact."""
     ends = low, high
     golden = (np.sqrt(np.longdouble(5)) - 1) / 2
     left, right = high - golden * (high - low), low + golden * (high - low)
@@ -180,7 +180,7 @@ def golden_minimum(
 
 
 def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """(row, column) of the first samples of dips whose values are at most `keep` of their row."""
+    """(row, column) of the lowest samples of dips, if they are at most the `keep` of their row."""
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
     least = (values < padded[:, :-2]) & (values <= padded[:, 2:]) & (values <= keep[:, None])
     rows, columns = np.nonzero(least)
@@ -188,8 +188,8 @@ def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np
 
 
 class Extremes(NamedTuple):
-    """Smallest N/m and largest |F|/N (inf where N <= 0, with its place v) of a whole motion, and
-    bounds of the errors of double arithmetic."""
+    """Smallest N/m and largest |F|/N (inf if N <= 0 somewhere), with its position v, of whole
+    motions, and bounds of the errors of double arithmetic."""
 
     normal: Long
     normal_error: Long
@@ -206,8 +206,8 @@ def _least_per_row(rows: NDArray[np.intp], values: Long, count: int) -> NDArray[
 
 
 def extremes(moving: Motion, samples: int = 300) -> Extremes:
-    """Extremes by dense samples and golden section for every candidate; |F|/N is sampled again
-    around the smallest N, where its peak is as narrow as N is small."""
+    """Extremes by dense samples, refined by golden section. |F|/N is sampled again around the
+    smallest N, since the smaller N is, the narrower is its peak."""
     count = moving.a.size
     on = chart(moving)
     step = on.top / (samples - 1)

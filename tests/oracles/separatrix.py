@@ -1,7 +1,7 @@
-"""The 2:1 disc on Earth, thrown from flat close to the speed that rolls it over.
+"""The 2:1 disc on Earth, started from flat with a speed close to that which rolls it over.
 
-mpmath and the energy integral of reference/make_rolling_reference.py give the side and distance of
-each double speed, and the time until the body lies flat again.
+mpmath and the energy integral of reference/make_rolling_reference.py give the side and distance
+from that speed, and the time until the body lies flat again.
 """
 
 from functools import cache

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 ORDER = 30
-# A quarter turn as a sum: angles from the nearest one keep the digits that thin bodies need
+# A quarter turn as a sum: angles are counted from the nearest one, as thin bodies require
 QUARTER = np.longdouble(float.fromhex("0x1.921fb54442d18p+0"))
 REST = np.longdouble(float.fromhex("0x1.1a62633145c07p-54"))
 Columns = Any  # an array of long doubles for each motion
@@ -24,7 +24,7 @@ def quotient(p: Columns, q: Columns, found: Columns, k: int) -> Columns:
 def rolled_by_series(
     t: Any, *, a: Any, b: Any, gyration2: Any, slope: Any, theta: Any, omega: Any, g: float = 9.81
 ) -> Columns:
-    """Angle, angular velocity and path of n motions at a time for each, shape (3, n).
+    """Angle, angular velocity and path of n motions, each at its own time, with shape (3, n).
 
     (k^2 + h^2 + h'^2) omega' = g sin(slope) h - h' (g cos(slope) + rho omega^2), where h^2 = u,
     h h' = p, u' = 2 p omega, p' = q omega, q' = -4 p omega and rho = a^2 b^2/h^3.
@@ -42,7 +42,7 @@ def rolled_by_series(
         a, b, k2 = (each[moving] for each in bodies)
         along, into = g * np.sin(slopes[moving]), g * np.cos(slopes[moving])
         now, c2 = state[:, moving], (a - b) * (a + b)
-        odd = quarters[moving] % 2 == 1  # two quarters change the signs of both only
+        odd = quarters[moving] % 2 == 1  # two quarter turns only change both signs
         s, c = np.sin(now[0]), np.cos(now[0])
         s, c = np.where(odd, c, s), np.where(odd, -s, c)
         shape = ORDER + 1, a.size

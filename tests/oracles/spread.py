@@ -1,7 +1,7 @@
-"""Bounds of the difference of two answers that are equal to within rounding.
+"""Bounds for the difference of two answers that are equal to within rounding.
 
-They are computed from answers of the package at inputs changed by their rounding. So they bound
-differences between answers of the package, never an error.
+They are computed from answers of the package to inputs that are changed by their rounding.
+Therefore they bound differences between answers of the package, not errors.
 """
 
 import math
@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 Inputs = Mapping[str, float]
 Answer = Callable[..., Floats]
 
-# A backward stable method is exact for inputs that are off by one rounding each; four roundings
-# allow some more.
+# A backward stable method is exact for inputs that are off by one rounding each. Four roundings
+# leave some room.
 ROUNDINGS = 4
 
 
@@ -53,13 +53,13 @@ def state(t: float, **motion: float) -> Floats:
 
 
 def path_grain(motion: Inputs) -> Floats:
-    """Rounding of theta, omega and x: x is a difference of rounded lengths like the body's."""
+    """Rounding of theta, omega and x, a difference of rounded lengths of the size of the body."""
     return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
 
 
 def known_to_in_two_moves(first: float, second: float, motion: dict[str, float]) -> Floats:
-    """Bound on the rounding error of a motion continued from its state after the first time: the
-    errors of that state, as the second move propagates them, plus those of the second move."""
+    """Bound on the rounding error of a motion that is continued from its state after the first
+    time: the propagated errors of that state, plus those of the second move."""
     theta, omega, _ = state(first, **motion)
     error = known_to(state, {"t": first} | motion)
     inputs = {"t": second} | motion | {"theta": float(theta), "omega": float(omega)}

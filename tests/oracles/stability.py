@@ -1,5 +1,4 @@
-"""Motions with each stabilization, and a period by quadrature. notebooks/stability_laws.py has
-other measurements of the methods."""
+"""Motions with each stabilization. notebooks/stability_laws.py has other measurements."""
 
 from functools import cache
 from typing import Any
@@ -35,7 +34,7 @@ def worst_residual(trajectory: Trajectory) -> float:
 
 
 def grain(trajectory: Trajectory) -> NDArray[np.float64]:
-    """Residual by rounding at each sample: the effect of 16 ulp of theta [m]."""
+    """Residual from rounding at each sample: the effect of 16 ulps of theta [m]."""
     scene = trajectory.scene
     size = np.maximum(np.abs(trajectory.theta), 1)
     found: NDArray[np.float64] = 16 * 2.0**-52 * size * max(scene.a, scene.b)

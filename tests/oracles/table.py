@@ -1,4 +1,4 @@
-"""The committed reference tables of 30 digits and more, and differences from them."""
+"""The committed reference tables, of 30 digits or more, and differences from them."""
 
 import csv
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from rolling_ellipse import Scene
 
 from oracles.paths import REFERENCE
 
-# The tables have 30 or 40 digits: subtract in 60 so that a difference is exact.
+# The tables have 30 or 40 digits: with 60 digits a difference is exact.
 EXACT = Context(prec=60)
 
 

@@ -1,4 +1,4 @@
-"""Tasks in several threads that start together and take turns as often as possible."""
+"""Tasks in threads that start together and switch as often as possible."""
 
 import sys
 from collections.abc import Callable, Sequence

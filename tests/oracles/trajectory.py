@@ -1,4 +1,4 @@
-"""Scenes whose motions are compared sample by sample, and one motion of every kind."""
+"""Scenes whose motions are compared sample by sample, and one motion from every model."""
 
 from collections.abc import Callable
 

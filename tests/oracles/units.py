@@ -1,4 +1,4 @@
-"""The same motion in other units: powers of two of metre, second and kilogram change no bit."""
+"""Motions in other units: powers of two of metre, second and kilogram change no bit."""
 
 import re
 from typing import Any
