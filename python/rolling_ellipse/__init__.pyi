@@ -1,4 +1,4 @@
-# The public names, each with its module; `__init__.py` reads them from here.
+# The public names and their modules. `__init__.py` reads this file at import.
 
 from . import benchmark as benchmark
 from . import course as course

@@ -16,11 +16,11 @@ _Two = tuple[FloatArray, FloatArray]
 _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
 _Tables = dict[str, npt.NDArray[Any]]
-_Columns = list[FloatArray]  # of arguments, as `broadcast` returns them
-_Passages = tuple[list[FloatArray], list[str]]  # times of each value, and why some are missing
+_Columns = list[FloatArray]  # arguments, as `broadcast` returns them
+_Passages = tuple[list[FloatArray], list[str]]  # times by value, and where some may be missing
 
 class _Named:
-    """Members equal their names, too (`equal_to_names` of `_ask.printing`)."""
+    """Enums whose members also equal their names (`equal_to_names` in `_ask.printing`)."""
 
     def __eq__(self, other: object) -> bool: ...
     def __hash__(self) -> int: ...
@@ -80,9 +80,9 @@ class Quantity(enum.Enum):
     contact_x = 4
 
 FIELDS: dict[str, dict[str, str]]  # units of the fields of each struct, by name
-COLUMNS: dict[str, tuple[str, ...]]  # of the tables that `simulate_table` takes and returns
+COLUMNS: dict[str, tuple[str, ...]]  # column names of the arguments and results of `simulate_table`
 STATS: tuple[str, ...]
-MODELS: tuple[_settings.Model, ...]  # in the order of their codes, as METHODS
+MODELS: tuple[_settings.Model, ...]  # in the order of their codes, like METHODS
 METHODS: tuple[_settings.Method, ...]
 STABILIZATIONS: tuple[_settings.Stabilization, ...]
 

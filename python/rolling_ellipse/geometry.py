@@ -1,10 +1,9 @@
 """Geometry of an ellipse on straight ground, as functions of its angle.
 
 ``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Angles may
-be of any size, the semi-axes ``a`` and ``b`` [m] in any order. Scalars give floats, arrays
-broadcast.
-All functions raise ValueError for angles that are not finite, and for semi-axes that are not
-positive or whose ratio is outside [1e-3, 1e3].
+have any magnitude, and either of the semi-axes ``a`` and ``b`` [m] may be the longer one. Arrays
+broadcast; the result for scalars is a float. All functions raise ValueError for angles that are not
+finite, and for semi-axes that are not positive or whose ratio is outside [1e-3, 1e3].
 
 Examples
 --------
@@ -113,24 +112,24 @@ def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the integral of h from 0 to theta: the displacement of the centre in rolling [m].
+    """Return the integral of h from 0 to theta: the displacement of the rolling centre [m].
 
-    It is computed by Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms
+    It is computed with Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10), in forms
     without cancellation, for any number of turns.
 
     Examples
     --------
-    >>> way = rl.geometry.centre_path(2 * np.pi, a=2.0, b=1.0)
-    >>> print(f"{way:.6f} m in a turn")
-    9.688448 m in a turn
+    >>> distance = rl.geometry.centre_path(2 * np.pi, a=2.0, b=1.0)
+    >>> print(f"{distance:.6f} m in one turn")
+    9.688448 m in one turn
     """
     return _evaluate(_core.centre_path, theta, a, b)
 
 
 def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the arc length of the ellipse from the contact at angle 0 to that at theta [m].
+    """Return the arc length of the ellipse between its contacts at angle 0 and at theta [m].
 
-    Equal to ``centre_path + support_slope``; 2 pi gives the perimeter.
+    It equals ``centre_path + support_slope``; at theta = 2 pi it is the perimeter.
 
     Examples
     --------
@@ -141,5 +140,5 @@ def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
     return _evaluate(_core.arc_length, theta, a, b)
 
 
-for _name in __all__:  # a call with unnamed a and b raises an error that shows the right call
+for _name in __all__:  # the error for positional a and b then shows the correct call
     globals()[_name] = understood(globals()[_name])

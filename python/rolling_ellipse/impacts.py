@@ -1,8 +1,8 @@
-"""Single impacts of a body that touches the ground: predicted, and fitted to measured ones.
+"""Single impacts of a body on the ground: prediction, and fits to measured impacts.
 
 ``theta`` is the clockwise rotation [rad]; ``x_dot``, ``z_dot`` [m/s] are the velocity of the
-centre along the ground and away from it, ``omega`` [rad/s] is positive clockwise. The mass enters
-only through k^2 = I/m, ``gyration2`` [m^2].
+centre along the ground and away from it; ``omega`` [rad/s] is the angular velocity, positive
+clockwise. The mass enters only through ``gyration2``, k^2 = I/m [m^2].
 
 Examples
 --------
@@ -54,14 +54,14 @@ _MEASURES: dict[Measure, Callable[[FloatArray], Any]] = {
 }
 _INTERVALS, _HALVINGS = 40, 8  # grid intervals per coefficient, and halvings of their size
 _STEPS = _INTERVALS * 2**_HALVINGS  # intervals of the last grid
-_REACH = 2  # steps of a finer grid on either side of a leading point
-_LEADING = 50  # number of best points for the whole series
-_SPLITS = 25  # number of random halvings of a series, enough for the scatter to a tenth
-_FEWEST = 20  # minimum number of impacts for estimating errors from halves of them
+_REACH = 2  # steps of the finer grid on either side of a leading point
+_LEADING = 50  # number of best points for the whole series that are refined
+_SPLITS = 25  # number of random halvings of a series; they give the scatter to within a tenth
+_FEWEST = 20  # minimum number of impacts for estimating errors from halves of the series
 _BLOCK = 2**20  # impacts predicted in one call
-_COARSE, _FINE = 24, 64  # cells per coefficient of the grids that find a likelihood; of the last
-_DEPTH = 25.0  # they find where the likelihood is more than exp(-25) of its largest
-_ZOOMS = 12  # largest number of them: each is at least a twelfth as wide as the one before
+_COARSE, _FINE = 24, 64  # cells per coefficient in the grids that find the peak, and in the last
+_DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) of the maximum
+_ZOOMS = 12  # largest number of coarse grids; each is at least 1/12 as wide as the previous one
 
 
 def collide(
@@ -77,17 +77,18 @@ def collide(
     gyration2: Any = None,
     law: Law = "stronge",
 ) -> tuple[Any, Any, Any]:
-    """Return the velocities just after the collision of a body that touches the ground.
+    """Return the velocities just after a body that touches the ground collides with it.
 
-    Coulomb friction acts during the whole collision: the slip may stop, stick or reverse. The laws
-    differ in when restitution ends. Simulations use "stronge"; the other laws are for comparison.
+    Coulomb friction acts during the whole collision: the contact may stick, or its slip may
+    reverse. The laws differ in when restitution ends. Simulations use "stronge"; the other laws are
+    for comparison.
     All arguments broadcast by NumPy's rules.
 
     Parameters
     ----------
     theta, x_dot, z_dot, omega : float or array_like
-        Angle [rad] and velocities [m/s, m/s, rad/s] just before. If the contact does not move into
-        the ground, the velocities are returned unchanged.
+        Angle [rad] and velocities [m/s, m/s, rad/s] just before the collision. If the contact point
+        does not move into the ground, the velocities are returned unchanged.
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
@@ -95,19 +96,20 @@ def collide(
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton"}
-        Meaning of the coefficient e of restitution. "stronge": the normal force gives back e^2 of
-        the work of compression. "poisson": e times the impulse of compression. "newton": the
-        contact leaves e times as fast as it came, which can create energy.
+        Meaning of the coefficient of restitution e. "stronge": the work of the normal force during
+        restitution is e^2 times that during compression. "poisson": the impulse of restitution is e
+        times that of compression. "newton": the contact point separates at e times its speed of
+        approach, which can create energy.
 
     Returns
     -------
     x_dot, z_dot, omega : float or ndarray
-        Velocities just after [m/s, m/s, rad/s]; floats if all arguments are scalars.
+        Velocities just after the collision [m/s, m/s, rad/s]; floats if all arguments are scalars.
 
     Raises
     ------
     ValueError
-        If a number is out of its range, the law has no such name, or shapes do not broadcast.
+        If a number is out of its range, the law is unknown, or shapes do not broadcast.
 
     References
     ----------
@@ -134,7 +136,7 @@ def collide(
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s], T the kinetic energy.
 
-    For a difference of velocities it is a distance between two motions, with translation and
+    Of a difference of velocities it is the distance between two motions, with translation and
     rotation weighted as in the kinetic energy.
 
     Parameters
@@ -142,7 +144,7 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     x_dot, z_dot, omega : float or array_like
         Velocities [m/s, m/s, rad/s].
     gyration2 : float or array_like
-        k^2 = I/m [m^2]; of a uniform disc (a^2 + b^2)/4.
+        k^2 = I/m [m^2]; (a^2 + b^2)/4 for a uniform disc.
 
     Returns
     -------
@@ -164,13 +166,13 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     for name, values in zip(arguments, (x_dot, z_dot, omega), strict=False):
         require(name, "finite", values, np.isfinite(values))
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
-    with np.errstate(over="ignore"):  # speeds beyond the largest double are infinite
+    with np.errstate(over="ignore"):  # a speed beyond the largest double becomes infinite
         return shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)
 
 
 @dataclass(frozen=True, repr=False)
 class FittedImpacts(Listed):
-    """The coefficients of restitution and friction that fit a series of impacts best.
+    """The coefficients of restitution and friction that best fit a series of impacts.
 
     Attributes
     ----------
@@ -182,18 +184,19 @@ class FittedImpacts(Listed):
         Kinetic speed of predicted minus measured velocities after each impact [m/s].
     restitution_error, friction_error : float
         Standard errors: the scatter of the fits to 50 random halves of the series, or, if larger,
-        the range of equally good coefficients over sqrt(12). Friction is compared by
-        its angle. Infinite for fewer than 20 impacts, and where infinite friction fits as well.
+        the range of equally good coefficients divided by sqrt(12). The scatter of friction is
+        measured as that of the friction angle. Both errors are infinite for fewer than 20 impacts;
+        that of friction is also infinite if infinite friction fits equally well.
     measured, predicted : ndarray, shape (3, n)
         Velocities after each impact [m/s, m/s, rad/s].
     log_likelihood : float
-        Logarithm of the largest likelihood of any coefficients, per (m/s)^3 for each impact.
+        Logarithm of the maximum likelihood, a density per (m/s)^3 for each impact.
     covariance : ndarray, shape (2, 2)
-        Covariance of restitution and friction about their mean by the likelihood; its last row and
-        column are infinite if the best friction is.
+        Covariance of restitution and friction under the normalised likelihood. Its last row and
+        column are infinite if the best friction is infinite.
     log_evidence : float
-        Logarithm of the mean likelihood of all coefficients. A difference of it between two laws is
-        the logarithm of the Bayes factor.
+        Logarithm of the likelihood averaged over all coefficients. The difference between two laws
+        is the logarithm of their Bayes factor.
     median_error, rms_error : float
         Median and root mean square of `errors` [m/s].
 
@@ -211,7 +214,7 @@ class FittedImpacts(Listed):
     law: Law
     restitution: float
     friction: float
-    errors: FloatArray = field(compare=False)  # its measures are compared
+    errors: FloatArray = field(compare=False)  # compared through its median and root mean square
     restitution_error: float
     friction_error: float
     measured: FloatArray = field(compare=False)
@@ -235,12 +238,12 @@ class FittedImpacts(Listed):
         )
 
     def plot(self, path: Any = None, *, figure: Any = None, figsize: Any = None) -> FitChart:
-        """Draw predicted over measured velocities and, below, the residuals.
+        """Draw predicted against measured velocities, with the residuals below.
 
         Parameters
         ----------
         path, figure, figsize
-            As in `rolling_ellipse.plot`, with its errors.
+            As in `rolling_ellipse.plot`, including the errors raised.
 
         Examples
         --------
@@ -271,55 +274,59 @@ def fit(
     gyration2: float | None = None, law: Law | Literal["all"] = "stronge",
     minimise: Measure = "median", sigma: float | None = None,
 ) -> FittedImpacts | dict[Law, FittedImpacts]:  # fmt: skip
-    """Return the coefficients of restitution and friction that predict measured impacts best.
+    """Return the coefficients of restitution and friction that best predict measured impacts.
 
-    The error of an impact is the kinetic speed of predicted minus measured velocities after it; its
-    median, or root mean square, is made as small as possible.
+    The error of an impact is the kinetic speed of the predicted minus the measured velocities after
+    it. The fit minimises the median, or the root mean square, of these errors.
 
     Parameters
     ----------
     before : sequence of 4 array_like, each of shape (n,)
-        theta, x_dot, z_dot, omega just before [rad, m/s, m/s, rad/s]. Every contact must move into
-        the ground.
+        theta, x_dot, z_dot, omega just before each impact [rad, m/s, m/s, rad/s]. Every contact
+        point must move into the ground.
     after : sequence of 3 array_like, each of shape (n,)
-        x_dot, z_dot, omega measured just after [m/s, m/s, rad/s].
+        x_dot, z_dot, omega measured just after each impact [m/s, m/s, rad/s].
     a, b : float
         Semi-axes [m].
     gyration2 : float, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton", "all"}
-        See `collide`. "all": each of them.
+        See `collide`. "all" fits each of the three laws.
     minimise : {"median", "rms"}
-        A few outliers do not affect the median. Likelihoods do not depend on it.
+        Measure of the errors. The median is insensitive to a few outliers. The likelihood does not
+        depend on this choice.
     sigma : float, optional
         Standard deviation of the measured velocities [m/s], the same in each direction of the
         kinetic metric, for the likelihood. Default: unknown, with the prior 1/sigma (Jeffreys).
 
     Returns
     -------
-    FittedImpacts, or dict of them by the names of the laws
+    FittedImpacts, or dict of FittedImpacts by the name of the law
 
     Raises
     ------
     ValueError
-        If a number is out of its range, there is no impact, or one does not move into the ground.
+        If a number is out of its range, a name is unknown, the arrays have no impacts or different
+        numbers of them, or a contact point does not move into the ground.
 
     Notes
     -----
-    The measure is evaluated on a grid over restitution (0 to 1) and the angle
-    of friction (0 to a right angle, which is infinite friction). The step is halved eight times, to
-    1e-4, about the 50 best points of the series and the best of each of 50 random halves of it: the
-    median has many local minima, and every serious candidate is the best of some half. Each half
-    chooses among all points tried. Halves scatter about the series as the series does about the
-    truth, exactly so for a linear least-squares fit [1]_.
+    The measure is evaluated on a grid over restitution (0 to 1) and the angle of friction (0 to a
+    right angle, which is infinite friction). The grid is then refined around the 50 best points for
+    the whole series and around the best point for each of 50 random halves of it. Eight refinements
+    halve the step to 1e-4. The halves are included because the median has many local minima, and
+    each serious candidate is the best point for some half. The fit to a half is the best of all
+    points tried. The fits to halves scatter about the fit to the series as the latter scatters
+    about the truth; for a linear least-squares fit this is exact [1]_.
 
-    The likelihood is normal in x_dot, z_dot and k omega, N numbers, three for each impact.
-    Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), S the sum of squares [2]_. For evidence
-    and covariance restitution and the angle of friction have flat priors; the integrals are sums
-    over 64 by 64 cells of a rectangle about all that counts, which coarser grids have found.
+    The likelihood is normal in x_dot, z_dot and k omega: N numbers, three for each impact.
+    Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), where S is the sum of squared errors
+    [2]_. The evidence and the covariance assume flat priors for restitution and for the angle of
+    friction. Their integrals are sums over 64 by 64 cells of a rectangle. Coarser grids locate this
+    rectangle; outside it the likelihood is negligible.
 
-    The halves are the same every time and depend only on the magnitudes of the values: neither
-    the order of the impacts nor mirroring them changes the answer. A coefficient that the impacts
+    The halves are the same every time and depend only on the magnitudes of the values. Hence
+    neither reordering nor mirroring the impacts changes the result. A coefficient that the impacts
     do not determine is arbitrary: if all of them stick, they only bound friction from below.
 
     References
@@ -368,12 +375,12 @@ def fit(
         return errors(velocities, end[:, None])
 
     def measures(points: FloatArray) -> FloatArray:
-        """Return the measures at some points: of all impacts, then of each half."""
+        """Return the measure at each point: for all impacts first, then for each half."""
         off = off_at(points)
         return np.stack([measure(off[:, chosen]) for chosen in (order, *halves)])
 
     def densities(points: FloatArray) -> FloatArray:
-        """Return the logarithms of the likelihood at some points."""
+        """Return the logarithm of the likelihood at each point."""
         rows = np.array_split(points, -(-points.shape[1] * order.size // _BLOCK), axis=1)
         squares = np.concatenate([(off_at(each)[:, order] ** 2).sum(axis=1) for each in rows])
         count = end.size
@@ -389,7 +396,7 @@ def fit(
     deviations = _standard_errors(points, table) if order.size >= _FEWEST else (math.inf, math.inf)
     off = errors(predicted, end)
     likeliest, evidence, covariance = _integral(densities)
-    stretch = np.array([1.0, 1 + friction**2])  # derivatives by restitution and friction's angle
+    stretch = np.array([1.0, 1 + friction**2])  # d(restitution, friction)/d(restitution, angle)
     return FittedImpacts(
         law, restitution, friction, off, *deviations, measured=end, predicted=predicted,
         log_likelihood=likeliest, covariance=covariance * np.outer(stretch, stretch),
@@ -398,7 +405,7 @@ def fit(
 
 
 def _halves(places: Any) -> list[Any]:
-    """Return the indices in both halves of each split; a single impact has none."""
+    """Return the indices of the impacts in both halves of each split; none for a single impact."""
     drawn = np.random.default_rng(0).random((_SPLITS, places.size))
     splits = places[np.argsort(drawn, axis=1, kind="stable")]
     return [half for split in splits for half in np.array_split(split, 2) if places.size > 1]
@@ -406,12 +413,12 @@ def _halves(places: Any) -> list[Any]:
 
 def _friction(angle: FloatArray) -> FloatArray:
     friction = np.tan(angle)
-    return np.where(friction > 1e6, math.inf, friction)  # a coefficient's largest
+    return np.where(friction > 1e6, math.inf, friction)  # the largest finite coefficient
 
 
 def _integral(densities: Callable[[FloatArray], FloatArray]) -> tuple[float, float, FloatArray]:
-    """Return the largest logarithm of a density over restitution and friction angle, that of its
-    mean, and their covariance."""
+    """Return the maximum log density over restitution and friction angle, the logarithm of the mean
+    density, and the covariance of the two variables."""
     ends = np.array([1.0, math.pi / 2])
     low, high, cells = np.zeros(2), ends, _COARSE
     for zoom in range(_ZOOMS + 1):
@@ -430,7 +437,7 @@ def _integral(densities: Callable[[FloatArray], FloatArray]) -> tuple[float, flo
     shares = np.exp(logs - top)
     evidence = top + math.log(shares.sum() * np.prod(cell / ends))
     covariance = np.cov(points, aweights=shares, ddof=0)
-    for _ in range(4):  # within a cell: the likelihood has kinks where impacts begin to stick
+    for _ in range(4):  # refine within a cell, since the likelihood has kinks where sticking starts
         cell = cell / 4
         around = best[:, None] + cell[:, None] * (np.indices((9, 9)).reshape(2, -1) - 4)
         around = np.clip(around, 0, ends[:, None])
@@ -444,7 +451,7 @@ def _search(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the points tried (restitution and friction angle), (2, k), and their measures, (m, k).
 
-    Points are numbered on the last grid, restitution first, then angle.
+    Points are numbered row by row on the finest grid; restitution is the row, the angle the column.
     """
     step = 2**_HALVINGS
     lines, offsets = np.arange(0, _STEPS + 1, step), np.arange(-_REACH, _REACH + 1)
@@ -465,7 +472,7 @@ def _search(
 
 
 def _points(numbers: Any) -> FloatArray:
-    """Return restitution and friction angle [rad] of points of the last grid, (2, k)."""
+    """Return restitution and friction angle [rad] of points by their numbers, (2, k)."""
     restitution, angle = np.divmod(numbers, _STEPS + 1)
     return np.stack([restitution / _STEPS, angle / _STEPS * (math.pi / 2)])
 
@@ -477,7 +484,7 @@ def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, floa
     alike = points[:, whole <= whole.min() * (1 + 1e-9)]
     step = np.array([1.0, math.pi / 2]) / _STEPS
     deviations = np.maximum(own.std(axis=1, ddof=1), (np.ptp(alike, axis=1) + step) / 12**0.5)
-    stretch = 1 + math.tan(best[1]) ** 2  # derivative of friction by its angle
+    stretch = 1 + math.tan(best[1]) ** 2  # derivative of friction with respect to its angle
     endless = alike[1].max() == math.pi / 2
     return float(deviations[0]), math.inf if endless else float(deviations[1] * stretch)
 

@@ -1,23 +1,25 @@
 """Named scenes: a = 2 m, b = 1 m, 1 kg, infinite friction, level ground unless stated otherwise.
 
 ==============  ====================================================================================
-``report``      10 kg, pressed by 48 N s at 1.5 m from the centre as in the report's Figure 9: it
+``report``      10 kg, pressed with 48 N s at 1.5 m from the centre as in the report's Figure 9: it
                 rolls over
 ``rocking``     released from 0.5 rad: it rocks
 ``rolling``     3.2 rad/s lying flat: it rolls over and over
-``separatrix``  2.952967565 rad/s lying flat, a millionth faster than just over the tip
+``separatrix``  2.952967565 rad/s lying flat, faster by 1e-6 than the speed that just reaches the
+                tip
 ``circle``      a = b = 1 m, 2 rad/s: uniform rolling
 ``thin``        b = 0.02 m, released from 0.3 rad
 ``slope``       3 rad/s down a slope of 0.1 rad, friction 0.8
-``slip``        pushed along at 3 m/s without rotation, friction 0.2: it slides first
+``slip``        starts at 3 m/s without rotation, friction 0.2: it slides first
 ``jump``        5.2 rad/s lying flat, friction 1: too fast to stay on the ground
-``drop``        dropped from 1 m above touching at 0.5 rad, friction 1
-``bounce``      as ``drop``, but elastic and without friction
+``drop``        dropped from 1 m above contact at 0.5 rad, friction 1
+``bounce``      like ``drop``, but elastic and without friction
 ==============  ====================================================================================
 
-They are for pictures; the problems of `benchmark` are for comparison. ``slip`` and ``jump`` are in
-both; the other problems have finite friction, round heights, or are farther from limits, so that
-any simulator can be set up and rounding decides nothing (docs/benchmark.md compares them).
+These scenes are for pictures; the problems of `benchmark` are for comparing simulators. ``slip``
+and ``jump`` are in both sets. The other problems have finite friction and round heights, or start
+farther from limits, so that any simulator can represent them and rounding does not decide the
+outcome (docs/benchmark.md compares the two sets).
 
 Examples
 --------

@@ -202,7 +202,7 @@ def test_only_the_scenes_of_a_lost_task_are_lost(workers: Any, lost: Any, cause:
         else:
             require_same(each, motion)
     if len(lost) < 100:
-        assert str(motions[FIRST[3]]).startswith(f"scenes {FIRST[3]} to {FIRST[4] - 1} got lost")
+        assert str(motions[FIRST[3]]).startswith(f"scenes {FIRST[3]} to {FIRST[4] - 1} were lost")
 
 
 def test_arrays_have_nan_for_lost_scenes() -> None:
@@ -215,7 +215,7 @@ def test_when_a_task_is_lost_the_folder_keeps_the_scenes_of_the_others(
     workers: Any, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    with pytest.raises(WorkerError, match=r"missing.* same call goes on") as caught:
+    with pytest.raises(WorkerError, match=r"missing.* repeat the call to resume") as caught:
         simulate_many(MANY, [1.0], workers=workers, out=out)
     assert isinstance(caught.value.__cause__, WorkerError)
     kept = states(out)

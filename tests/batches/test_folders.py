@@ -103,7 +103,7 @@ def test_scenes_given_singly_or_as_arrays_are_the_same_request(out: Path) -> Non
         ({"t": TIMES * (1 + 2**-52)}, "with other times"),
         ({"rtol": 1e-9}, "with the settings .*'rtol': 1e-10.*'rtol': 1e-09"),
         ({"raise_on_failure": False}, "with the raise_on_failure True, not False"),
-        ({"scenes": GRID | {"b": 1.1}}, "whose scenes 0 to 15 are others"),
+        ({"scenes": GRID | {"b": 1.1}}, "whose scenes 0 to 15 are different"),
         ({"scenes": GRID | {"omega": np.r_[GRID["omega"][:69], 1.0]}}, "scenes 66 to 69"),
         ({"scenes": GRID | {"omega": GRID["omega"][:49]}}, "which has more than 49"),
         ({"scenes": GRID | {"omega": np.r_[GRID["omega"], 1.0]}}, "scenes 66 to 70"),
@@ -140,7 +140,7 @@ def test_the_unknown_schema_of_a_folder_is_named(schema: int, cure: str, out: Pa
     about, arrays = taken_apart((out / "request.npz").read_bytes())
     about = about | {"schema": schema, "colour": 1}
     (out / "request.npz").write_bytes(put_together(about, arrays | {"psi": TIMES}))
-    said = f"must be a folder .*: it is of schema {schema}; this version reads 2 to 4{cure}$"
+    said = f"must be a folder .*: it has schema {schema}; this version reads 2 to 4{cure}$"
     with pytest.raises(ValueError, match=f"^path {said}"):
         load_many(out)
     with pytest.raises(ValueError, match=f"^out {said}"):
@@ -240,7 +240,7 @@ def test_two_folders_merged_into_one_are_rejected(changes: Any, out: Path, tmp_p
     simulate_many(**(request | changes), out=tmp_path / "other")
     theirs = {path.name for path in chunks(tmp_path / "other")} - {p.name for p in chunks(out)}
     shutil.copytree(tmp_path / "other", out, dirs_exist_ok=True)
-    with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
+    with pytest.raises(ValueError, match=r"^path must have exactly the files of its end\.json"):
         load_many(out)
     for call in (request, request | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
@@ -261,7 +261,7 @@ def test_parts_of_the_same_folder_can_be_merged(out: Path, tmp_path: Path) -> No
     simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
     shutil.copytree(tmp_path / "first", out, dirs_exist_ok=True)
     # the end.json of `first` has another number of scenes
-    with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
+    with pytest.raises(ValueError, match=r"^path must have exactly the files of its end\.json"):
         load_many(out)
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))

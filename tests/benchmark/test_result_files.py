@@ -81,7 +81,7 @@ def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
             if name.endswith(".csv") and (place / name).is_file():
                 benchmark.export(place)  # a table of results
             else:
-                with pytest.raises(ValueError, match=f"folder must not have another {name}, got"):
+                with pytest.raises(ValueError, match=f"folder must contain no other {name}, got"):
                     benchmark.export(place)
                 assert [path.name for path in place.iterdir()] == [name]
             assert mine.read_text() == "mine" and not (tmp_path / "nowhere").exists()

@@ -40,14 +40,14 @@ def test_examples_follow_no_link(tmp_path: Path) -> None:
         place = tmp_path / f"with {name}"
         place.mkdir()
         (place / name).symlink_to(target)
-        with pytest.raises(ValueError, match=rf"folder must not have another .*{name}"):
+        with pytest.raises(ValueError, match=rf"folder must contain no other .*{name}"):
             rl.examples(place)
         assert [path.name for path in place.iterdir()] == [name] and not any(empty.iterdir())
     for make in (Path.touch, os.mkfifo):
         make(place / "01_first_roll.ipynb")
         (place / "reference").unlink()
         make(place / "reference")
-        with pytest.raises(ValueError, match=r"another 01_first_roll\.ipynb, reference/\w+\.csv,"):
+        with pytest.raises(ValueError, match=r"no other 01_first_roll\.ipynb, reference/\w+\.csv,"):
             rl.examples(place)
         (place / "01_first_roll.ipynb").unlink()
     assert [path.name for path in place.iterdir()] == ["reference"]

@@ -89,7 +89,7 @@ def test_unknowns_that_a_film_cannot_determine_are_named(
     """A flight without a touch determines neither ground nor scale; rest determines no clock."""
     fit = fit_motion(**filmed(scene), scene=scene, free=free, sigma=SIGMA)
     finite = [name for name in lost.split(", ") if not math.isinf(fit.errors[name])]
-    assert finite == [] and "the film cannot tell" in fit.message
+    assert finite == [] and "the film cannot determine" in fit.message
 
 
 def test_a_wrong_scene_is_not_explained_by_its_camera() -> None:

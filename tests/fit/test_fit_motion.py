@@ -131,7 +131,7 @@ def test_an_undetermined_parameter_keeps_its_guess() -> None:
     ):
         fit = fit_motion(**filmed(scene, TIMES), scene=scene, free=free, sigma=SIGMA)
         assert [name for name, error in fit.errors.items() if math.isinf(error)] == lost
-        assert f"cannot tell {', '.join(lost)}" in fit.message
+        assert f"cannot determine {', '.join(lost)}" in fit.message
         assert not np.isnan(fit.covariance).any()
         if len(lost) == 1:  # of dx and dz the film determines only a sum
             kept = value_of(scene, lost[0])

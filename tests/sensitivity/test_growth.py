@@ -104,7 +104,8 @@ def test_a_column_has_the_size_of_the_derivatives() -> None:
 def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
     motion = simulate(FLAT, 2.0)
     found = motion.growth()
-    assert "It ends before the motion" in found.message and "by theta" in found.message
+    assert "growth ends before the motion" in found.message
+    assert "with respect to theta" in found.message
     assert 0 < found.t[-1] < motion.events[-1].t and np.isfinite(found.log[-1, 0])
     assert found.message in repr(found) and found.exponents.shape == (6,)
 

@@ -312,7 +312,7 @@ def test_a_short_time_limit_leaves_out_the_costliest_runs_with_a_reason(clock: C
     states = [(run.status, run.reason) for run in found.runs if run.name == "slow"]
     assert [status for status, _ in states] == ["COMPLETED"] * 2 + ["NOT_RUN"] * 5
     assert {reason for _, reason in states[2:]} == {
-        "max_seconds: a run that may take 0.71 s is more than its share"
+        "max_seconds: a run that may take 0.71 s exceeds its share"
     }
     assert slow.prepared == [1e-4, 1e-5]
     assert only(found, "flow").completed
@@ -344,7 +344,7 @@ def test_a_slow_contender_takes_no_time_from_the_others(clock: Clock) -> None:
     for peer in others:
         assert all(run.completed for run in found.runs if run.name == peer.name)
     assert [run.completed for run in found.runs if run.name == "hog"] == [True] + 12 * [False]
-    assert "hog was not run beyond 1e-02: no time left (100 s a call so far)" in found.verdict()
+    assert "hog was not run beyond 1e-02: no time left (100 s per call so far)" in found.verdict()
 
 
 def test_every_contender_runs_at_the_coarsest_setting(clock: Clock) -> None:
@@ -398,13 +398,13 @@ def test_knowing_the_end_in_advance_does_not_win() -> None:
     assert not only(found, "nothing").completed and "nan" in only(found, "nothing").reason
     assert set(found.unbeaten()) == {"flow"} and "rubbish" in found.least(1e-12, x="final")
     text = found.verdict()
-    assert "rubbish came no nearer than 3" in text and "rubbish is unbeaten" not in text
+    assert "rubbish reached no error below 3" in text and "rubbish is unbeaten" not in text
     assert found.best(1e-2).name == "flow"  # type: ignore[union-attr]
 
 
 def test_the_verdict_says_what_was_judged() -> None:
     text = raced(Peer("whole"), Peer("silent", samples=None)).verdict()
-    assert ", at the sample times and the end (of silent at the end alone):\n" in text
+    assert ", at the sample times and the end (of silent only at the end):\n" in text
 
 
 # ------------------------------------------------------------------------------- refusals

@@ -97,12 +97,12 @@ def test_the_verdict_agrees_with_the_table() -> None:
         "    fast takes 5 × at 1e-04, 5 × at 1e-05, 5 × at 1e-06, 20 × at 1e-07, 20 × at 1e-08, "
         "20 × at 1e-09"
     )
-    assert lines[5] == "    no other gets there from 1e-10 to 1e-12"
+    assert lines[5] == "    no other method reaches errors from 1e-10 to 1e-12"
     assert lines[6] == (
-        "nobody has reached an error from 1e-13 to 1e-14, which the reference could not tell"
+        "no method has reached errors from 1e-13 to 1e-14, which the reference cannot resolve"
     )
-    assert lines[7] == "lost reached nothing: MAX_STEPS, too many steps"
-    assert lines[8] == "poor came no nearer than 3.0e+00"
+    assert lines[7] == "lost has no answer: MAX_STEPS, too many steps"
+    assert lines[8] == "poor reached no error below 3.0e+00"
     assert len(lines) == 9
 
 
@@ -111,7 +111,7 @@ def test_the_verdict_begins_with_peers_that_are_ahead() -> None:
     exact = [replace(each, steps=0) if each.name == "sure" else each for each in RUNS]
     few = run("few", 1e-2, 2e-6, tags=("peer",), steps=3)
     near = run("near", 1e-14, 1e-6, tags=("peer",), steps=0)
-    reason = ": so few steps cost less than what sure sets up;"
+    reason = ": so few steps cost less than the initial work of sure;"
 
     def second(*runs: Run) -> list[str]:
         said = replace(FOUND, runs=(*exact, *runs)).verdict().splitlines()
@@ -124,7 +124,7 @@ def test_the_verdict_begins_with_peers_that_are_ahead() -> None:
     even = run("even", 1e-13, 9.5e-6, tags=("peer",))
     (_, equal) = second(even)
     assert equal.startswith("even is ahead of sure, 1.05 × at 1e-04 (10 steps), ")
-    assert equal.endswith("1.05 × at 1e-12 (10 steps) (as good as equal);")
+    assert equal.endswith("1.05 × at 1e-12 (10 steps) (practically equal);")
     own = run("quick", 1e-3, 3e-6)
     assert second(few, own) == ["few is ahead of quick, 1.5 × at 1e-02 (3 steps);"]
     assert second(own) == []
@@ -149,7 +149,7 @@ CUT = replace(
 
 
 def test_a_method_that_was_not_run_is_not_beaten() -> None:
-    """The verdict does not say that a method that was not run came no nearer or reached nothing."""
+    """A method that was not run is not said to have no answer or an inaccurate one."""
     assert CUT.not_run(1e-2) == ("rough", "lost", "never")
     assert CUT.not_run(1e-5) == ("rough", "lost", "never")
     assert CUT.not_run(1e-6) == ("late", "rough", "lost", "never")
@@ -158,14 +158,14 @@ def test_a_method_that_was_not_run_is_not_beaten() -> None:
     lines = CUT.verdict().splitlines()
     assert lines[2] == "fast is the fastest that was run from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
     assert "sure is the fastest that was run from 1e-04 to 1e-12 (10 µs, set-up 10 µs);" in lines
-    assert "    no other was seen there from 1e-10 to 1e-12" in lines
+    assert "    no other method was seen to reach errors from 1e-10 to 1e-12" in lines
     assert lines[-7:] == [
-        "lost reached nothing so far: MAX_STEPS, too many steps",
-        "poor came no nearer than 3.0e+00",
-        "fast was not run beyond 1e-09: no time left (200 µs a call so far)",
+        "lost has no answer so far: MAX_STEPS, too many steps",
+        "poor reached no error below 3.0e+00",
+        "fast was not run beyond 1e-09: no time left (200 µs per call so far)",
         "lost was not run beyond 1e-01: no time left",
-        "late was not run beyond 1e-02: no time left (1 ms a call so far)",
-        "rough was not run beyond 5e-01: no time left (100 ns a call so far)",
+        "late was not run beyond 1e-02: no time left (1 ms per call so far)",
+        "rough was not run beyond 5e-01: no time left (100 ns per call so far)",
         "never was not run at all: no time left",
     ]
     assert not any(word in CUT.verdict() for word in ("unbeaten", "rough came", "never reached"))

@@ -1,1 +1,1 @@
-"""Arguments: numbers, the scene with its blow, and the settings of a computation."""
+"""Arguments of the public functions: numbers, scenes with their blows, and solver settings."""

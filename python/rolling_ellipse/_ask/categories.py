@@ -2,16 +2,16 @@
 
 
 class ValidityWarning(UserWarning):
-    """Warning: part of the motion is impossible for a body on the ground."""
+    """Part of the motion is impossible for a body on the ground."""
 
 
 class StabilityWarning(UserWarning):
-    """Warning: the computed motion has lost energy or drifts off its constraints."""
+    """The computed motion has lost energy or drifted off its constraints."""
 
 
 class CompletenessWarning(UserWarning):
-    """Warning: the results of a search are not proved to be complete."""
+    """The results of a search are not proved to be complete."""
 
 
 class ExtrapolationWarning(UserWarning):
-    """Warning: a forecast is for a change large enough to alter the order of events."""
+    """A forecast extrapolates to a change large enough to alter the sequence of events."""

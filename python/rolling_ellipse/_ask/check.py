@@ -1,8 +1,8 @@
-"""Conversion of arguments to doubles; anything else is rejected with the name of the argument.
+"""Conversion of arguments to doubles, with errors that name the argument.
 
-Real numbers within the range of doubles are accepted: those of Python and NumPy (also arrays
-without axes), Decimals and Fractions. Text, complex numbers, times, masked entries and quantities
-with units are rejected. An array with one element does not count as a number.
+Real numbers within the range of doubles are accepted: those of Python and NumPy (including
+zero-dimensional arrays), Decimals and Fractions. Text, complex numbers, times, masked entries and
+quantities with units are rejected. An array of shape (1,) does not count as a number.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # largest number of characters of a value in a message
-_FEW = 64  # longest list for the fast path; for a longer one it would save nothing
+_FEW = 64  # longest list for the fast path, which saves no time for longer ones
 _FLOATS = {float}
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
-_PIECE = 2**17  # numbers converted at a time, within 10 ms: Ctrl-C acts between pieces
+_PIECE = 2**17  # numbers converted at a time, in at most 10 ms; Ctrl-C acts between pieces
 _SLICED = (list, tuple, range)
-_TEXT = (str, bytes, bytearray, memoryview)  # sequence types that hold no numbers
+_TEXT = (str, bytes, bytearray, memoryview)  # sequence types that are not searched for numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # number types that need no further check
 _UNITS = ("unit", "units", "dimensions")
 
@@ -52,7 +52,7 @@ def number(name: str, value: Any) -> float:
     if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
-        with suppress(OverflowError):  # an int beyond doubles, rejected below
+        with suppress(OverflowError):  # an int too large for a double is rejected below
             return float(value)
     double = _doubles(name, value)
     if double is None or double.ndim:
@@ -92,7 +92,7 @@ def whole_within(name: str, value: Any, most: int) -> int:
 
 
 def worker_count(workers: int) -> int:
-    """Return the number of threads that ``workers`` requests; -1: one per core."""
+    """Return the number of threads that ``workers`` requests; -1 requests one per core."""
     count = whole("workers", workers)
     if count == -1:
         return min(os.cpu_count() or 1, _MOST_WORKERS)
@@ -111,9 +111,9 @@ def flag(name: str, value: Any) -> bool:
 
 
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a contiguous float64 array; errors are those of `number`.
+    """Return ``value`` as a contiguous float64 array; raise the errors of `number`.
 
-    With another layout NumPy's results may differ in the last bits.
+    With other memory layouts, results of NumPy may differ in the last bits.
     """
     doubles = _doubles(name, value)
     if doubles is None:
@@ -137,7 +137,7 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
-    """Do the work of `_doubles` for a value without masks and units, in pieces for a long list."""
+    """Do the work of `_doubles` for a value without masks or units; split a long list in pieces."""
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
@@ -147,7 +147,7 @@ def _converted(name: str, value: Any) -> FloatArray | None:
             return numbers if dtype is _DOUBLE else copied(numbers)
         if dtype.kind != "f" and (dtype.kind != "O" or hasattr(type(value), "__array__")):
             return None
-        # Decimals, Fractions, ints of more than 64 bits and long doubles convert themselves
+        # Decimals, Fractions, ints of more than 64 bits and long doubles define `__float__`
         doubles = np.array(vector("d", numbers.ravel().tolist())).reshape(numbers.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
@@ -171,14 +171,14 @@ def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
 
 
 def _size(value: Any) -> int:
-    """Return how many numbers nested lists hold, assuming that entries are like the first one."""
+    """Return how many numbers nested lists contain if all entries are like the first one."""
     if isinstance(value, _SLICED):
         return len(value) * _size(value[0]) if value else 0
     return value.size if type(value) is np.ndarray else 1
 
 
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
-    """Yield an array piece by piece, in C order: the index of its first number, and the piece."""
+    """Yield the pieces of an array in C order, each after the index of its first number."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
     for first in range(0, values.size, _PIECE):
         yield first, flat[first : first + _PIECE]
@@ -202,7 +202,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
             if _PLAIN.issuperset(map(type, piece)):
                 continue
             nested = [entry for entry in piece if type(entry) in _SLICED]
-            if nested:  # one call for all entries: there may be a million pairs
+            if nested:  # one call for all of them, since there may be a million pairs
                 if axes == _MOST_AXES:
                     deep = shown(nested[0])
                     raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {deep}")
@@ -213,7 +213,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
                         _require_plain(name, entry, axes + 1)
         return
     is_masked = isinstance(value, np.ndarray) and np.any(getattr(value, "mask", False))
-    # An xarray object holds its array, which may have units, in `data`
+    # The array of an xarray object, which may have units, is in `data`
     held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)
     if is_masked or _has_units(value) or _has_units(held):
         raise TypeError(
@@ -222,10 +222,11 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
 
 
 def _has_units(value: Any) -> bool:
-    """Whether an object carries units, as quantities of pint, astropy, unyt and brian2 do.
+    """Return whether an object has units, like quantities of pint, astropy, unyt and brian2.
 
-    Only attributes of its class and of its `__dict__` count: other attributes of pandas and xarray
-    objects may be the user's labels. A tuple does not count: it names a netCDF4 variable's axes.
+    Only attributes of its class and of its `__dict__` count, because other attributes of pandas and
+    xarray objects may be the user's labels. A tuple does not count, because netCDF4 variables list
+    their axes in a tuple.
     """
     own = getattr(value, "__dict__", ())
     return any(
@@ -236,7 +237,7 @@ def _has_units(value: Any) -> bool:
 
 
 def shown(value: Any) -> str:
-    """Return ``repr(value)``, cut to `_LONGEST` characters for a message."""
+    """Return ``repr(value)`` for a message, truncated to `_LONGEST` characters."""
     try:
         text = _short.repr(value)
     except Exception:  # for example an int with more digits than Python prints
@@ -245,7 +246,7 @@ def shown(value: Any) -> str:
 
 
 def require(name: str, requirement: str, values: Any, holds: Any) -> None:
-    """Raise ValueError showing the first value for which `holds` is False, if any."""
+    """Raise a ValueError that shows the first value for which `holds` is False, if any."""
     if not holds.all():
         raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]!s}")
 
@@ -283,7 +284,10 @@ def require_together(**arguments: Any) -> None:
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Return the common shape, and each argument as a 1-D array: broadcast, or its one element."""
+    """Return the common shape, and each argument broadcast to it as a 1-D array.
+
+    An argument with a single element is not repeated.
+    """
     arrays = {name: array(name, value) for name, value in arguments.items()}
     shape = common_shape(arrays, slice(None))
     return shape, [
@@ -293,7 +297,7 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
 
 
 def shaped(flat: Any, shape: tuple[int, ...]) -> Any:
-    """Return a 1-D array, or each array of a tuple, in the given shape; a float for shape ()."""
+    """Return a 1-D array, or each array of a tuple, in the given shape; for () return a float."""
     if isinstance(flat, tuple):
         return tuple([shaped(values, shape) for values in flat])
     return float(flat[0]) if shape == () else flat.reshape(shape)
@@ -303,8 +307,8 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
     """Return the result of a core function for arguments that broadcast, in their common shape.
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
-    settings. A ``gyration2`` of None stands for uniform discs of semi-axes ``a`` and ``b``. An
-    error names an array element by its indices: ``a[3] must be ...``. A wrong number is rejected
+    settings. A ``gyration2`` of None stands for uniform discs with semi-axes ``a`` and ``b``. An
+    error names an array element by its indices: ``a[3] must be ...``. An invalid number is rejected
     even if another argument is empty.
     """
     given = {k: value for k, value in arguments.items() if k != "gyration2" or value is not None}
@@ -322,7 +326,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _number_of(name: str, known: dict[str, FloatArray]) -> FloatArray:
-    """Return an argument; for an empty array, a number that is valid with the other arguments."""
+    """Return an argument, or for an empty array a number that is valid with the other arguments."""
     if known[name].size:
         return known[name]
     lengths = [*(known[axis] for axis in ("a", "b")), np.ones(1)]
@@ -344,8 +348,8 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
-    """Return k^2 = I/m = (a^2 + b^2)/4 of uniform discs with semi-axes a, b [m^2]."""
-    with np.errstate(over="ignore"):  # the core rejects such an a or b by name
+    """Return k^2 = I/m = (a^2 + b^2)/4 [m^2] of uniform discs with semi-axes a, b [m]."""
+    with np.errstate(over="ignore"):  # the core rejects an a or b this large, and names it
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 
@@ -354,7 +358,7 @@ def require_near(name: str, size: float, farthest: float) -> None:
     """Raise ValueError if a double near `farthest` [m] cannot resolve a thousandth of `size`."""
     if not size > 1e3 * np.spacing(farthest):
         raise ValueError(
-            f"{name} must stay where a double resolves a thousandth of its body of {size:.6g} m, "
+            f"{name} must stay where a double resolves 1/1000 of the body's size, {size:.6g} m, "
             f"got a centre {farthest:.6g} m away"
         )
 
@@ -363,7 +367,7 @@ def file_name(name: str, value: Any) -> str:
     """Return the path of a file as text, or raise an error naming the argument."""
     path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
     if not isinstance(path, str):
-        raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
+        raise TypeError(f"{name} must be a path, a str or an os.PathLike, got {shown(value)}")
     encoded = b""
     with suppress(UnicodeEncodeError):  # a lone surrogate, which no file name can contain
         encoded = os.fsencode(path)
@@ -373,7 +377,7 @@ def file_name(name: str, value: Any) -> str:
 
 
 def readable(name: str, value: Any) -> str:
-    """Return the path of a file or folder as text; refuse pipes and devices, which may not end."""
+    """Return the path of a file or folder as text; reject pipes and devices, which may not end."""
     path = file_name(name, value)
     if stat.S_IFMT(os.stat(path).st_mode) not in (stat.S_IFREG, stat.S_IFDIR):
         raise ValueError(f"{name} must name a file, got {path!r}, which is a pipe or a device")
@@ -381,7 +385,7 @@ def readable(name: str, value: Any) -> str:
 
 
 def choice(name: str, value: Any, valid: tuple[_Name, ...]) -> _Name:
-    """Return the valid name equal to ``value`` in any case; a ValueError suggests a similar one."""
+    """Return the valid name equal to ``value``, ignoring case; errors suggest a similar name."""
     word = value.casefold() if isinstance(value, str) else ""
     for known in valid:
         if word == known.casefold():

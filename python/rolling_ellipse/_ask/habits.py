@@ -1,4 +1,4 @@
-"""Names that people type out of habit, with the names that they mean here."""
+"""Names that users type out of habit, and the names that this package uses instead."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _Found = TypeVar("_Found")
 def meant(word: str, names: Iterable[str]) -> str:
     """Return the end of a message about an unknown name: the names that were probably intended.
 
-    These are our names for a habitual one, or else the name with the most similar spelling, or else
-    those that share a part with it.
+    They are the package's names for a habitual word. If there are none, it is the valid name with
+    the most similar spelling; failing that, all names that share a dotted part with the word.
     """
-    from difflib import get_close_matches  # only on a mistake: it takes a millisecond
+    from difflib import get_close_matches  # imported only after a mistake: it takes a millisecond
 
     known = {name.casefold(): name for name in names}
     near = [name for name in MEANT.get(word, "").split() if name in known]
@@ -41,7 +41,7 @@ def meant(word: str, names: Iterable[str]) -> str:
 
 
 def understood(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Make the TypeError of a wrong call name the intended arguments, or show the signature."""
+    """Wrap a function so that the TypeError of a wrong call suggests names or the signature."""
 
     @wraps(function)
     def call(*given: _Given.args, **named: _Given.kwargs) -> _Found:

@@ -1,4 +1,4 @@
-"""The blow: one impulse at a point of the body, or many of them as arrays that broadcast."""
+"""Blows: one impulse at a point of the body, or many as arrays that broadcast."""
 
 from __future__ import annotations
 
@@ -21,24 +21,23 @@ _Given = ParamSpec("_Given")
 class Impulse:
     """An impulse applied to a point of the body, or many impulses.
 
-    Arrays that broadcast make one impulse for each element of their common shape; `outcome` takes
-    many, a Scene takes one. Arrays are kept as read-only copies. Two impulses are equal if their
-    values and array shapes are equal.
+    Arrays broadcast, and their common shape has one impulse for each element. `outcome` accepts
+    many impulses, a Scene only one. Arrays are stored as read-only copies. Two objects are equal if
+    their values and array shapes are equal.
 
     Parameters
     ----------
     jx, jz : float or array_like
-        Components along the ground and away from it [N s], given by name: unnamed, as in
-        ``Impulse(48, 1.5)``, they look like the force and distance of `press`, and a
-        DeprecationWarning is issued.
+        Components along the ground and away from it [N s]. Pass them by name: positional ones, as
+        in ``Impulse(48, 1.5)``, look like the arguments of `press` and give a DeprecationWarning.
     dx, dz : float or array_like
         Point of attack relative to the centre, in ground axes [m].
 
     Raises
     ------
     ValueError
-        If a number is not finite or beyond 1e50 (its index in an array is named), or shapes do not
-        broadcast.
+        If a number is not finite or exceeds 1e50 in magnitude (the message gives its index in an
+        array), or shapes do not broadcast.
     TypeError
         If an argument is neither a number nor an array of numbers.
 
@@ -71,7 +70,7 @@ class Impulse:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """() for one blow; the common shape of the arrays for many."""
+        """Common shape of the arrays; () for a single blow."""
         return common_shape(self._arrays, slice(None))
 
     @property
@@ -87,12 +86,12 @@ class Impulse:
     def press(cls, F: Any, d: Any) -> Impulse:
         """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
 
-        A negative F is a pull, which no contact can exert; it gives a ValidityWarning.
+        A negative F is a pull, which no contact can exert. It gives a ValidityWarning.
 
         Parameters
         ----------
         F, d : float or array_like
-            Arrays that broadcast make many blows.
+            Impulse [N s] and distance [m]. Arrays broadcast, and give many blows.
 
         Examples
         --------
@@ -138,14 +137,14 @@ class Impulse:
 
 
 def _by_name(make: Callable[_Given, None]) -> Callable[_Given, None]:
-    """Warn about unnamed components, which may be intended as the arguments of `press`."""
+    """Warn about positional components, which may be intended as the arguments of `press`."""
 
     @wraps(make)
     def init(*given: _Given.args, **named: _Given.kwargs) -> None:
         if len(given) > 1:  # the first is self
             message = (
-                f"Impulse({', '.join(map(shown, given[1:]))}) has the components jx, jz [N s]: "
-                "write their names, or Impulse.press(F, d) for a press F at the distance d"
+                f"Impulse({', '.join(map(shown, given[1:]))}) sets the components jx, jz [N s]: "
+                "pass them by name, or use Impulse.press(F, d) to press with F at distance d"
             )
             warnings.warn(message, DeprecationWarning, stacklevel=2)
         make(*given, **named)
@@ -157,7 +156,7 @@ Impulse.__init__ = _by_name(Impulse.__init__)  # type: ignore[method-assign]
 
 
 def one_blow(name: str, value: Any) -> _core.Impulse:
-    """Return one impulse in the core's form, or raise an error that names the argument."""
+    """Return one impulse as an object of the core, or raise an error that names the argument."""
     if not isinstance(value, Impulse):
         raise TypeError(f"{name} must be an Impulse, got {shown(value)}")
     if value.shape != ():
@@ -181,7 +180,7 @@ def numbers(name: str, value: Any) -> Any:
 def let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
     """Let the core check the worst value of each piece; its error names `argument`."""
     for first, piece in pieces(values):
-        worst = int(np.abs(piece).argmax())  # NaN, or else the largest
+        worst = int(np.abs(piece).argmax())  # the first NaN, or the largest magnitude
         try:
             _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: piece[worst]}))
         except ValueError as error:

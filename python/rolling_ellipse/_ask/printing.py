@@ -1,4 +1,4 @@
-"""Printing of values: tables as text and as HTML without colours of its own."""
+"""Values as text, and tables as text and as HTML without fixed colours."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 from .._core import EventKind, Mode, Outcome, Validity
 
 Row = tuple[str, ...]
-# For each unit of length: the smallest body [m] it is used for, units per metre, and its name
+# For each unit of length: the smallest body for which it is used [m], units per metre, and name
 _LENGTHS = (500.0, 1e-3, "km"), (0.05, 1.0, "m"), (5e-5, 1e3, "mm"), (0.0, 1e6, "µm")
 _Enum = TypeVar("_Enum", bound=type[enum.Enum])
 
@@ -26,12 +26,12 @@ def _dotted(value: enum.Enum) -> str:
 
 
 def _formatted(value: enum.Enum, spec: str) -> str:
-    """Format an enum: as its code for a number format (``f"{mode:d}"``), else as its name."""
+    """Format an enum by its code for a number format (``f"{mode:d}"``), otherwise by its name."""
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 
 def equal_to_names(kind: _Enum) -> _Enum:
-    """Make the members of an enum equal to their names, too; hashes do not change."""
+    """Make the members of an enum compare equal to their names; their hashes do not change."""
     same, differs = kind.__eq__, kind.__ne__
 
     def equal(member: Any, other: object) -> bool:
@@ -42,14 +42,14 @@ def equal_to_names(kind: _Enum) -> _Enum:
 
     about = "A member equals its name, a str"
     if issubclass(kind, int):
-        about += ", and its code, which is its hash: dicts and arrays of codes know no names"
+        about += ", and its code. It hashes like its code: look it up in dicts by code, not by name"
     faces = {"__eq__": equal, "__ne__": unequal, "__doc__": f"{kind.__doc__}\n\n{about}."}
     for name, face in faces.items():
         setattr(kind, name, face)
     return kind
 
 
-# These enums print as Kind.NAME; Python would print <Kind.NAME: 1> in lists, an IntEnum as 1.
+# These enums print as Kind.NAME. By default Python prints <Kind.NAME: 1> in lists, or 1.
 for _kind in (EventKind, Mode, Outcome, Validity):
     equal_to_names(_kind)
     for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
@@ -64,7 +64,7 @@ _IN_ASCII = {
 
 
 def _without_code(error: UnicodeError) -> tuple[str, int]:
-    """Codec error handler: return ASCII for characters without a code, and where to resume."""
+    """Handle a codec error: return ASCII for the characters that cannot be encoded."""
     assert isinstance(error, UnicodeEncodeError)
     lost = normalize("NFD", error.object[error.start : error.end])
     return "".join(_IN_ASCII.get(each, ascii(each)[1:-1]) for each in lost), error.end
@@ -76,7 +76,7 @@ codecs.register_error("rolling_ellipse", _without_code)
 def printable(text: str) -> str:
     """Return a text that standard output can print: ASCII for characters that it cannot encode.
 
-    Consoles in ASCII, Latin-1 and cp1252 would raise an error for an arrow.
+    On an ASCII, Latin-1 or cp1252 console, printing an arrow would raise an error.
     """
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "rolling_ellipse").decode(encoding)
@@ -100,25 +100,25 @@ def _range(ends: Any) -> str:
 
 
 def with_unit(value: Any, unit: str) -> str:
-    """Return `brief` of a value and its unit; None and empty tuples have no unit."""
+    """Return `brief` of a value, with its unit unless the value is None or an empty tuple."""
     missing = value is None or (isinstance(value, tuple) and not value)
     return brief(value) if missing else f"{brief(value)} {unit}".rstrip()
 
 
 def length_unit(size: float) -> tuple[float, str]:
-    """Return the unit that suits lengths of about `size` [m]: units per metre, and its name."""
+    """Return the unit for lengths of about `size` [m]: units per metre, and its name."""
     return next((per_metre, name) for least, per_metre, name in _LENGTHS if size >= least)
 
 
 def text_table(rows: Sequence[Row]) -> str:
-    """Return rows of equally many cells as text with aligned columns."""
+    """Return rows with the same number of cells as text with aligned columns."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)) for row in rows)
     return "\n".join(line.rstrip() for line in lines)
 
 
 def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
-    """Return an HTML table without colours of its own; the first cell of a row is its heading.
+    """Return an HTML table without fixed colours; the first cell of each row is a heading.
 
     All text is escaped.
     """
@@ -152,7 +152,7 @@ class Listed:
 
 
 def required(package: str, method: str, extra: str = "data") -> Any:
-    """Import and return a package of an extra; an ImportError names that extra."""
+    """Import and return an optional package; the ImportError names the extra that installs it."""
     try:
         return importlib.import_module(package)
     except ModuleNotFoundError as error:

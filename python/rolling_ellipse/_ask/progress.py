@@ -1,4 +1,4 @@
-"""Progress of long work on stderr: a tqdm bar where tqdm is installed, else a line."""
+"""Progress of long computations on stderr: a tqdm bar if tqdm is installed, or a line of text."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Report = Callable[[int, int | None], Any]
 
 @contextmanager
 def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
-    """Yield a function to be called with two counts: done, and total (None: unknown).
+    """Yield a function to call with two counts: done so far, and the total (None if unknown).
 
-    A callable `progress` is yielded unchanged. True gives a function that shows a bar labelled
-    `name`, False one that does nothing.
+    A callable `progress` is yielded unchanged. For True the function shows a bar labelled `name`;
+    for False it does nothing.
     """
     if callable(progress):
         yield progress

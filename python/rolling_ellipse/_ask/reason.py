@@ -1,4 +1,4 @@
-"""The core's reasons and the numbers of blows, as English text."""
+"""English text for the reasons that the core returns, and for the numbers of a blow."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ASCII = str.maketrans({"θ": "theta", "°": " deg", "é": "e", "−": "-", "∞
 
 
 def in_words(sentences: Sequence[Sentence]) -> str:
-    """Return the text for keys and their values, in characters that every console can show."""
+    """Return sentences as English text in ASCII, which every console can display."""
     return joined(table("en"), sentences, 6).translate(_ASCII)
 
 

@@ -1,4 +1,4 @@
-"""Dataclass helpers: pickles of fields only, and values that are computed on first access."""
+"""Helpers for dataclasses: pickles of the fields alone, and values computed on first access."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
 _Value = TypeVar("_Value")
-UNREAD = "_unread"  # key of a function, given to `trusted`, that returns all late fields
-_new, _set = object.__new__, object.__setattr__  # bound once: this speeds up each use
+UNREAD = "_unread"  # key, in the values for `trusted`, of a function that returns all late fields
+_new, _set = object.__new__, object.__setattr__  # looked up once, for speed
 
 
 class cached_property(Generic[_Value]):
-    """A property that is computed on first access, and then kept in the object's `__dict__`.
+    """A property that is computed on first access and then stored in the object's `__dict__`.
 
-    Up to Python 3.11, the one in functools has a single lock for all objects: threads wait for each
-    other, and a process forked meanwhile hangs forever. Here two threads may compute the same
-    value; both get the one that was stored first.
+    Up to Python 3.11, `functools.cached_property` has a single lock for all objects: threads wait
+    for each other, and a process forked while the lock is held hangs forever. This class has no
+    lock. Two threads may compute the same value; both get the one that was stored first.
     """
 
     def __init__(self, compute: Callable[[Any], _Value]) -> None:
@@ -37,21 +37,21 @@ class cached_property(Generic[_Value]):
 
 
 class _late_field(cached_property[Any]):
-    """A field that is read by the object's own reader, or else computed, on first access."""
+    """A field obtained on first access: from the object's `UNREAD` function, or by computation."""
 
     def __get__(self, instance: object | None, owner: type) -> Any:
         known = {} if instance is None else instance.__dict__
         if read := known.get(UNREAD):
             for name, value in read().items():
-                known.setdefault(name, value)  # the value of the first of several threads
+                known.setdefault(name, value)  # of several threads, the first one sets the value
             known.pop(UNREAD, None)
         return known[self._name] if self._name in known else super().__get__(instance, owner)
 
 
 class FieldsOnly:
-    """A base of dataclasses: pickles and deep copies hold the fields, not the cached values.
+    """Base class of dataclasses whose pickles and deep copies omit cached values.
 
-    Cached values are recomputed on access: objects of the core cannot be pickled, and arrays that
+    Cached values are recomputed on access. Objects of the core cannot be pickled, and arrays that
     follow from the fields would only make a pickle larger.
     """
 
@@ -59,25 +59,26 @@ class FieldsOnly:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def __copy__(self) -> Self:
-        """Return a copy that shares all values, cached ones too: they never change."""
+        """Return a copy that shares all values, even cached ones, since values never change."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         return other
 
 
 def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
-    """Make a dataclass object from valid values, three times as fast as with checks."""
+    """Create a dataclass object from valid values, three times as fast as its constructor."""
     made: _Owner = _new(kind)
     _set(made, "__dict__", values)
     return made
 
 
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
-    """Compute, on first access, the fields that `trusted` leaves out of an object of this class.
+    """Give a class the functions that compute, on first access, fields that `trusted` leaves out.
 
-    Call it once the class exists: inside the class, a dataclass would take them for defaults.
+    Call this after the class is defined: `dataclass` would take descriptors in its body for
+    default values.
     """
     for name, find in finds.items():
-        found = _late_field(find)
-        found.__set_name__(of, name)
-        setattr(of, name, found)
+        descriptor = _late_field(find)
+        descriptor.__set_name__(of, name)
+        setattr(of, name, descriptor)

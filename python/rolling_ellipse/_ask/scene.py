@@ -1,4 +1,4 @@
-"""The scene: body, ground, start and blow."""
+"""The scene: a body, its ground, its initial state and its blow."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ _DEGREES = {"theta": 15.0, "omega": 45.0}  # multiples of these are probably mea
 
 @dataclass(frozen=True, repr=False)
 class InitialState(Listed):
-    """The state just after the impulse is applied.
+    """The state just after the scene's impulse is applied.
 
     Attributes
     ----------
     theta, omega, x, z, x_dot, z_dot : float
         Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
     mode : Mode
-        Motion from now on, as contact and friction allow it: ROLLING, SLIDING, FLIGHT or REST.
+        Mode in which the motion continues: ROLLING, SLIDING, FLIGHT or REST.
     reaction_x, reaction_z : float
-        Impulse of the ground on the body at t = 0 [N s]: against a blow, or (with infinite
-        friction) against a slip.
+        Impulse of the ground on the body at t = 0 [N s], in response to a blow, or to a slip that
+        infinite friction removes.
     free_omega : float
-        Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
+        Angular velocity after the blow if the ground did not react, the report's eq 48 [rad/s].
     energy_lost : float
-        Energy lost in an impact, or when infinite friction removes a slip [J]. 0 for a blow, whose
-        work depends on how the forces vary in time.
+        Energy lost in an impact, or when infinite friction removes a slip [J]. It is 0 for a blow,
+        whose work depends on how the forces vary in time.
     reason : str
-        One sentence: the effect of the blow, the motion after it, and why.
+        Explanation: the effect of the blow, the motion after it, and why.
 
     Examples
     --------
@@ -80,54 +80,58 @@ class InitialState(Listed):
 
 
 class _Nothing(TypedDict):
-    """No arguments besides the named ones, for type checkers."""
+    """Tells type checkers that a function takes no other keyword arguments."""
 
 
 @dataclass(frozen=True, init=False, repr=False)
 class Scene(FieldsOnly, Listed):
-    """An ellipse, its ground, its state at t = 0 and the impulse, if any, that it then receives.
+    """An ellipse, its ground, its state at t = 0, and the impulse, if any, applied at that time.
 
-    SI units, radians; theta is positive clockwise, so that rolling forwards increases x. At
-    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all their arguments are
-    equal; `repr` returns a call that makes an equal scene. Each speed, height and blow may
-    contribute an energy of up to 1e12 m g max(a, b); a motion down a slope may gain more.
+    Quantities are in SI units and radians. theta is positive clockwise, so that rolling forwards
+    increases x. At theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all
+    their arguments are equal; `repr` returns a call that creates an equal scene. Each speed, height
+    and blow may contribute an energy of up to 1e12 m g max(a, b); a motion down a slope may gain
+    more.
 
     Parameters
     ----------
     a, b : float
-        Semi-axes [m], in any order; 1e-3 <= a/b <= 1e3.
+        Semi-axes [m], either of which may be the longer one; 1e-3 <= a/b <= 1e3.
     mass, gravity : float
         Mass [kg], acceleration of gravity [m/s^2].
     inertia : float, optional
-        Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
-        None, a uniform disc, m (a^2 + b^2)/4. ``scene.mass * scene.gyration2`` is always its
-        value.
+        Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2. None
+        stands for that of a uniform disc, m (a^2 + b^2)/4. ``scene.mass * scene.gyration2`` is the
+        value in either case.
     slope : float
         Angle of the ground [rad], descending towards +x; ``|slope| <= 1.5``.
     friction : float
         Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
         as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.
-        An initial slip does not follow that limit: where a large coefficient would press the body
-        into the ground until it jams, an impulse of the ground removes the slip at t = 0, which
-        costs energy (`initial_state.energy_lost`). A slip the other way continues with N = 0.
-        Without friction a moving contact is SLIDING, even under a circle.
+        An initial slip does not follow that limit: if a large coefficient would press the body into
+        the ground until it jams, an impulse of the ground removes the slip at t = 0, which costs
+        energy (`initial_state.energy_lost`). A slip in the opposite direction continues with N = 0.
+        Without friction a moving contact is SLIDING, even that of a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     rolling_resistance : float
-        Lever [m] by which the normal force N acts ahead of the contact, from 0 to min(a, b)/2: a
-        couple of at most lever * N opposes the rotation, so that a rocking body comes to rest. It
-        acts while the body rolls or slides, not in flight, and by choice not in impacts and blows,
-        whose law is that of a point contact. Steel on steel has some 1e-5 m, a glass marble on wood
-        5e-5 m, wood on wood 5e-4 m.
+        Lever arm [m], from 0 to min(a, b)/2: the distance by which the normal force N acts ahead of
+        the contact. A couple of at most lever * N opposes the rotation, so that a rocking body
+        comes to rest. The couple acts while the body rolls or slides. It does not act in flight,
+        nor, by convention, in impacts and blows, which obey the law of a point contact. Typical
+        values are 1e-5 m for steel on steel, 5e-5 m for a glass marble on wood, and 5e-4 m for wood
+        on wood.
     theta, omega : float
         Angle [rad] and angular velocity [rad/s]; ``|omega|`` below 1e-100 rad/s counts as rest.
     x : float
         Position of the centre along the ground [m].
     z : float, optional
-        Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
+        Height of the centre [m]. None, or a height within 8 ulp of contact, places the body on the
+        ground.
     x_dot, z_dot : float, optional
-        Velocity of the centre [m/s]. On the ground the default is the velocity of rolling; x_dot
-        within 32 ulp and z_dot within 8 ulp of it count as rolling. In the air it is 0.
+        Velocity of the centre [m/s]. On the ground the defaults are the velocity of rolling; an
+        x_dot within 32 ulp and a z_dot within 8 ulp of it count as rolling. In the air the defaults
+        are 0.
     impulse : Impulse, optional
         Blow received at t = 0; its line of action must meet the body.
 
@@ -141,10 +145,10 @@ class Scene(FieldsOnly, Listed):
 
     Notes
     -----
-    Any state that a motion returns (a sample, an end, the state after an event) is a valid start:
-    the motion continues in the mode that follows, without repeating the event. Where a start is at
-    the limit of its mode, abs(F) = mu N, N = 0 or slip 0 to within eight roundings, the motion just
-    afterwards decides the mode, without an event.
+    Any state of a computed motion (a sample, its end, the state after an event) is a valid start:
+    the new motion continues in the mode that follows, without repeating the event. If a start is at
+    the limit of its mode (abs(F) = mu N, N = 0 or zero slip, to within eight roundings), the motion
+    just after the start determines the mode, and there is no event.
 
     Examples
     --------
@@ -176,7 +180,7 @@ class Scene(FieldsOnly, Listed):
     z_dot: float | None = None
     impulse: Impulse | None = None
 
-    def __init__(  # twice as fast as a frozen dataclass's, although it checks
+    def __init__(  # twice as fast as that of a frozen dataclass, in spite of the checks
         self,
         a: float,
         b: float,
@@ -205,7 +209,7 @@ class Scene(FieldsOnly, Listed):
         self._hold(given)
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
-        """Check the arguments, and keep them as the fields of this scene."""
+        """Check the arguments, and store them as the fields of this scene."""
         blow = None if given["impulse"] is None else one_blow("impulse", given["impulse"])
         core = _core.scene_of(given, blow, reached)  # rejects numbers out of range
         if core is None:  # some numbers are of types other than float
@@ -220,16 +224,16 @@ class Scene(FieldsOnly, Listed):
     def from_density(
         cls, a: float, b: float, *, density: float, thickness: float, **others: Any
     ) -> Self:
-        """Return the scene of a uniform elliptical cylinder of mass pi a b density thickness.
+        """Return the scene of a uniform elliptic cylinder with mass pi a b density thickness.
 
         Parameters
         ----------
         a, b : float
             Semi-axes [m].
         density, thickness : float
-            Density [kg/m^3], and length of the cylinder across the plane of motion [m].
+            Density [kg/m^3], and length of the cylinder perpendicular to the plane of motion [m].
         **others
-            As for `Scene`.
+            Other arguments of `Scene`.
 
         Raises
         ------
@@ -242,28 +246,29 @@ class Scene(FieldsOnly, Listed):
         >>> print(f"{log.mass:.1f} kg, {log.mass * log.gyration2:.3f} kg m^2")
         131.9 kg, 4.288 kg m^2
         """
-        height = positive("thickness", thickness) * positive("density", density)
-        return cls(a, b, mass=math.pi * number("a", a) * number("b", b) * height, **others)
+        areal = positive("thickness", thickness) * positive("density", density)  # [kg/m^2]
+        return cls(a, b, mass=math.pi * number("a", a) * number("b", b) * areal, **others)
 
     @classmethod
     def from_json(cls, source: str | os.PathLike[str]) -> Scene:
         """Return the scene in a JSON text, in a link to the live page, or in a file with either.
 
-        Arguments of Scene that are left out have their defaults. Like a state in a motion, the
-        start may be about to hit the ground, and have more energy than the constructor takes.
+        Missing arguments of Scene take their defaults. The start may be any state that a motion
+        reaches: the body may be about to hit the ground, and its energy may exceed the limit of the
+        constructor.
 
         Parameters
         ----------
         source : str or path
-            Text that begins with ``{`` as `to_json` writes it, or a link that begins with ``#`` or
-            ``http``; its ``t``, ``blows`` and ``lang`` are ignored. A path is an `os.PathLike`,
-            such as ``pathlib.Path("scene.json")``, not a str.
+            Text in braces ``{}``, as `to_json` writes it, or a link that starts with ``#``,
+            ``http:``, ``https:`` or ``file:``, whose ``t``, ``blows`` and ``lang`` are ignored. A
+            path is an `os.PathLike`, such as ``pathlib.Path("scene.json")``, not a str.
 
         Raises
         ------
         ValueError
             If a key is unknown, missing or repeated, the version differs, or a value is not a
-            number or out of its range; the message begins with the key.
+            number or out of its range; the message starts with the key.
         TypeError
             If the source is of another type, or a required number is null.
 
@@ -283,14 +288,14 @@ class Scene(FieldsOnly, Listed):
         return reached_scene(self.__dict__).core
 
     def replace(self, **changes: Any) -> Scene:
-        """Return a new scene with some of the arguments changed.
+        """Return a new scene with some arguments changed.
 
         Raises
         ------
         TypeError
-            If scenes have no such argument.
+            If a name is not an argument of Scene.
         ValueError
-            As for the constructor: kept and changed arguments must fit together.
+            As for the constructor, which checks changed and unchanged arguments together.
 
         Examples
         --------
@@ -302,7 +307,7 @@ class Scene(FieldsOnly, Listed):
         for name in changes:
             if name not in kept:
                 hint = meant(name, kept)
-                raise TypeError(f"changes must be of {', '.join(kept)}, got {name}{hint}")
+                raise TypeError(f"changes must be among {', '.join(kept)}, got {name}{hint}")
         scene = object.__new__(type(self))
         scene._hold(kept | changes)
         return scene
@@ -314,7 +319,7 @@ class Scene(FieldsOnly, Listed):
 
     @cached_property
     def initial_state(self) -> InitialState:
-        """State just after the impulse: the collision law without restitution (InitialState)."""
+        """State just after the impulse, by the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
         return InitialState(**known, reason=in_words(start["reason"]))
@@ -322,7 +327,7 @@ class Scene(FieldsOnly, Listed):
     to_json, to_link, to_mjcf, to_sdf = to_json, to_link, to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
-        """Return the semi-axes, which have no defaults, and fields that differ from defaults."""
+        """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
         values = ((field, getattr(self, field.name)) for field in fields(self))
         return {field.name: value for field, value in values if value != field.default}
 
@@ -331,7 +336,7 @@ class Scene(FieldsOnly, Listed):
         return f"Scene({', '.join(given)})"
 
     def _rows(self) -> list[Row]:
-        """Return the rows of a table: the changed fields, then the motion at the start."""
+        """Return the rows of a table: the changed fields, then the mode at the start."""
         changed = self._changed()
         impulse = changed.pop("impulse", None)
         rows: list[Row] = [
@@ -346,7 +351,7 @@ class Scene(FieldsOnly, Listed):
 
 
 def _doubt(name: str, value: float) -> str:
-    """Return a remark on a legal value in rad or rad/s that looks as if it were in degrees."""
+    """Return a remark on a valid value in rad or rad/s that looks as if it were in degrees."""
     whole = _DEGREES.get(name)
     return " (degrees? times pi/180)" if whole and value and value % whole == 0 else ""
 
@@ -356,10 +361,10 @@ OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is N
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
-    """Return the scene with all these arguments, in a state that some motion has reached.
+    """Return the scene with these arguments, whose start may be any state that a motion reaches.
 
-    After a descent its energy may exceed the limit of the constructor, and the body may be about
-    to hit the ground.
+    After a descent the energy may exceed the limit of the constructor, and the body may be about to
+    hit the ground.
     """
     scene = object.__new__(Scene)
     known = {each.name: arguments.get(each.name, each.default) for each in fields(Scene)}

@@ -17,10 +17,10 @@ Method = Literal["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"]
 Stabilization = Literal["none", "baumgarte", "projection", "projection+energy", "ggl"]
 MODELS: tuple[Model, ...] = get_args(Model)
 METHODS: tuple[Method, ...] = get_args(Method)
-GIVEN: Any = "arrays"  # the method of a trajectory from arrays; no setting has this name
+GIVEN: Any = "arrays"  # the method of a trajectory from arrays; it cannot be requested
 Blows = tuple[tuple[float, Impulse], ...]
 Stop = str | _core.EventKind | Iterable[str | _core.EventKind] | None
-DECIDED = "decided"  # the stop at no kind of event
+DECIDED = "decided"  # a stop once the outcome is decided, rather than at a kind of event
 _KINDS = (*_core.EventKind.__members__, DECIDED)
 STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
@@ -45,7 +45,7 @@ class Options(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(FieldsOnly):
-    """Arguments of `simulate` besides scene and times; the core checks their ranges."""
+    """Arguments of `simulate` other than the scene and the times; the core checks their ranges."""
 
     model: Model = "auto"
     method: Method = "auto"
@@ -68,13 +68,13 @@ class Settings(FieldsOnly):
 
     @cached_property
     def core(self) -> _core.Settings:
-        """The settings in the core's form."""
+        """The settings as an object of the core."""
         blows = [(t, impulse.core) for t, impulse in self.blows]
         return _core.Settings(self.__getstate__() | {"blows": blows})
 
 
 def settings(*given: Any) -> Settings:
-    """Return the Settings for values in field order; equal values are checked only once."""
+    """Return the Settings for values in field order; the same values are checked only once."""
     for known, made in (_last[0], _BY_DEFAULT):
         if _core.hold_the_same(given, known):
             return made
@@ -122,7 +122,7 @@ def _blows(name: str, value: Any) -> Blows:
 
 
 def _stop(name: str, value: Any) -> tuple[str, ...]:
-    """Return the names of different kinds of events, or DECIDED alone."""
+    """Return the names of kinds of events without repetitions, or DECIDED alone."""
     kinds = () if value is None else (value,) if isinstance(value, (str, int)) else value
     try:
         given = [each.name if isinstance(each, _core.EventKind) else each for each in kinds]
@@ -137,13 +137,13 @@ def _stop(name: str, value: Any) -> tuple[str, ...]:
 
 
 def _whole(name: str, value: Any) -> int:
-    found = whole(name, value)
-    if not -(2**31) <= found < 2**31:
-        raise ValueError(f"{name} must be less than 2**31 in size, got {shown(value)}")
-    return found
+    count = whole(name, value)
+    if not -(2**31) <= count < 2**31:
+        raise ValueError(f"{name} must be less than 2**31 in magnitude, got {shown(value)}")
+    return count
 
 
-_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # the check for each type of field
+_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by type of field
     "Model": partial(choice, valid=MODELS),
     "Method": partial(choice, valid=METHODS),
     "Stabilization": partial(choice, valid=STABILIZATIONS),
@@ -160,4 +160,4 @@ DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
 _BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES), DEFAULTS
 _last = [_BY_DEFAULT]  # the last plain values other than the defaults, and their Settings
-_PLAIN = (float, int, str, type(None))  # types of immutable values, which `_kept` may hold
+_PLAIN = (float, int, str, type(None))  # immutable types, whose values `_kept` can cache

@@ -17,15 +17,15 @@ _VERSION = 1
 _NAMES, _BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 LINKS = ("#", "http:", "https:", "file:")
 _BESIDE = ("t", "blows", "lang")  # in a link: end and blows of the motion, language of the page
-_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older links, and Scene's
+_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # arguments of Scene by older name
 
 
 def to_json(scene: Any) -> str:
     """Return the scene as JSON text; `Scene.from_json` restores it bit for bit.
 
-    The text is an object with the arguments of Scene that are not None, by their names and in SI
-    units, and with the key ``version``, which is 1. An infinite number is the word ``"inf"``; the
-    blow is an object with the arguments of Impulse.
+    The text is a JSON object. It contains the arguments of Scene that are not None, by name and in
+    SI units, and ``version``, which is 1. An infinite number is written as ``"inf"``, and the blow
+    as an object with the arguments of Impulse.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def to_json(scene: Any) -> str:
     >>> rl.Scene.from_json(text)
     Scene(a=2.0, b=1.0, mass=10.0, omega=3.2)
     """
-    from json import dumps  # it takes a tenth of the package's import time
+    from json import dumps  # json takes a tenth of the package's import time
 
     given = _given(scene)
     endless = {name: "inf" for name, value in given.items() if value == math.inf}
@@ -45,16 +45,16 @@ def to_json(scene: Any) -> str:
 def to_link(scene: Any, page: str | os.PathLike[str] = "", *, t: float | None = None) -> str:
     """Return a link that opens the scene in the live page; `Scene.from_json` reads it exactly.
 
-    The link holds the arguments of Scene and of the blow by name. The page shows a blow without
-    force as no blow.
+    The link contains the arguments of Scene and of its blow by name. The page omits a blow whose
+    components are both zero.
 
     Parameters
     ----------
     page : str or path
         Address of the page, such as that of ``live/index.html`` in the built site; anything from
-        ``#`` on is replaced. Without a page, the link begins with ``#``.
+        ``#`` on is replaced. Without a page, the link starts with ``#``.
     t : float, optional
-        Time that the page shows [s]; None: the page's default.
+        Duration of the motion on the page [s]; None: the page's default.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _given(scene: Any) -> _Given:
 
 
 def arguments(source: Any) -> _Given:
-    """Return the arguments of Scene in a source of `Scene.from_json`."""
+    """Return the arguments of Scene that a source of `Scene.from_json` contains."""
     if isinstance(source, os.PathLike):
         with open(readable("source", source), encoding="utf-8-sig", errors="replace") as file:
             source = file.read()
@@ -103,7 +103,7 @@ def _of_json(text: str) -> _Given:
     except (ValueError, RecursionError) as error:
         raise ValueError(f"source must be JSON, got {shown(text)}: {error}") from None
     version = dict(pairs).get("version", _VERSION)
-    if type(version) is not int or version != _VERSION:  # a newer one may have other keys
+    if type(version) is not int or version != _VERSION:  # a newer version may have other keys
         cure = "newer texts need pip install --upgrade rolling-ellipse"
         raise ValueError(f"version must be {_VERSION}, got {shown(version)}: {cure}")
     given = _known("source", pairs, ("version", *_NAMES, "impulse"), ("version", "a", "b"))
@@ -135,7 +135,7 @@ def _of_link(link: str) -> _Given:
 
 
 def _of_older(given: _Given) -> _Given:
-    """Return Scene's arguments for the numbers of an older link, as `sceneOf` of the page does."""
+    """Return the arguments of Scene for the numbers of an older link, like the page's `sceneOf`."""
     k, height, slip = (given.pop(name) for name in _OLDER)
     a, b = given["a"], given["b"]
     ground = evaluate(_core.support, theta=finite("theta", given["theta"]), a=a, b=b)
@@ -146,12 +146,12 @@ def _of_older(given: _Given) -> _Given:
 
 
 def _known(what: str, pairs: Any, names: Sequence[str], required: Sequence[str] = ()) -> _Given:
-    """Return pairs of keys and values as a dict; each key must be a known name, and occur once."""
+    """Return pairs of keys and values as a dict; each key must be known and occur only once."""
     given: _Given = {}
     for key, value in pairs:
         if key not in names:
             wrong = f"got {shown(key)}{meant(key, names)}"
-            raise ValueError(f"{what} must have keys of {', '.join(names)}, {wrong}")
+            raise ValueError(f"{what} must have keys among {', '.join(names)}, {wrong}")
         if key in given:
             both = f"{shown(given[key])} and {shown(value)}"
             raise ValueError(f"{key} must be given once, got {both}")
@@ -163,7 +163,7 @@ def _known(what: str, pairs: Any, names: Sequence[str], required: Sequence[str] 
 
 
 def _number(name: str, value: Any) -> Any:
-    """Return a number other than NaN, or None, which Scene may refuse."""
+    """Return None or a number other than NaN; Scene checks whether None is valid."""
     if value == "inf":
         return math.inf
     if value is None or (type(value) in (int, float) and value == value):
@@ -172,7 +172,7 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _linked(name: str, text: str) -> Any:
-    """Return a number from its text in a link."""
+    """Return the number that a text in a link stands for."""
     value: Any = text
     with suppress(ValueError):
         value = float(text)

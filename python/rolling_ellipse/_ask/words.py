@@ -1,4 +1,4 @@
-"""Texts of reasons and pages by key, from one JSON file per language beside this module."""
+"""Texts of reasons and web pages by key, from one JSON file per language in this folder."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from functools import cache
 LANGUAGES = ("en", "de")
 BRACES = re.compile(r"\{(\w+)\}")
 
-Sentence = tuple[str, list[tuple[str, float]]]  # a key, and values for its placeholders
+Sentence = tuple[str, list[tuple[str, float]]]  # the key of a text, and its placeholders' values
 
 
 @cache
 def table(language: str) -> dict[str, str]:
-    """Return the text strings of a language, with placeholders in braces."""
+    """Return the texts of a language by key, with placeholders in braces."""
     from json import loads  # json and pathlib take a tenth of the package's import time
     from pathlib import Path
 
@@ -23,13 +23,13 @@ def table(language: str) -> dict[str, str]:
 
 
 def written(value: float, words: Mapping[str, str], digits: int = 4) -> str:
-    """Return a number as the language writes it."""
+    """Return a number as text, with the decimal separator of the language."""
     text = f"{value:.{digits}g}".replace("inf", "∞").replace("-", "−")
     return text.replace(".", words["decimal"])
 
 
 def joined(words: Mapping[str, str], sentences: Sequence[Sentence], digits: int) -> str:
-    """Return sentences as text; each is a key with its values."""
+    """Return sentences, given by their keys and values, as one text."""
     return " ".join(filled(words, key, digits, **dict(numbers)) for key, numbers in sentences)
 
 

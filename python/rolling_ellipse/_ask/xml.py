@@ -1,4 +1,4 @@
-"""Scenes as text for physics engines: MJCF and SDF."""
+"""Scenes as files for physics engines: MJCF and SDF."""
 
 import math
 from typing import Any
@@ -10,26 +10,26 @@ from .check import positive
 def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None = 4.0) -> str:
     """Return the scene as MJCF, the format of MuJoCo, also read by Newton, MJX and Brax.
 
-    An ellipsoid with the semi-axes a, max(a, b), b along x, y, z is held in its plane by two slides
-    ``x``, ``z`` and a hinge ``theta``: z points away from the ground, theta turns clockwise, and
-    gravity is tilted by the slope. The key frame ``start`` is the `initial_state`. MJCF has no
-    coefficient of restitution: a contact is a critically damped spring, or an undamped one for
-    restitution 1. Rolling resistance becomes MuJoCo's rolling friction, which acts like it while
-    the body rolls; a sliding contact shares one friction cone between slip and rotation.
+    An ellipsoid with semi-axes a, max(a, b), b along x, y, z is kept in its plane by two slide
+    joints ``x``, ``z`` and a hinge ``theta``. z points away from the ground, theta is positive
+    clockwise, and gravity is tilted by the slope. The key frame ``start`` is the `initial_state`.
+    MJCF has no coefficient of restitution: a contact is a critically damped spring, or an undamped
+    one for restitution 1. Rolling resistance becomes MuJoCo's rolling friction, which has the same
+    effect while the body rolls. In a sliding contact, slip and rotation share one friction cone.
 
     Parameters
     ----------
     timestep : float
-        Step [s].
+        Time step [s].
     contact_steps : float or None
         Time constant of the contact in steps, with elliptic friction cones and an impedance of
-        0.9999; MuJoCo requires at least 2. None: MuJoCo's own contact of 0.02 s.
+        0.9999; MuJoCo requires at least 2. None: MuJoCo's default contact, with 0.02 s.
 
     Raises
     ------
     ValueError
-        If a number is not positive, or the contact's time extreme; if friction is infinite, or
-        restitution neither 0 nor 1.
+        If a number is not positive, the time constant of the contact is outside [1e-50, 1e50] s,
+        friction is infinite, or restitution is neither 0 nor 1.
 
     Examples
     --------
@@ -56,9 +56,10 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
 def to_sdf(scene: Any) -> str:
     """Return the scene as SDF, the format of Gazebo, also read by Drake.
 
-    The body of `to_mjcf` hangs on prismatic joints ``x``, ``z`` and a revolute one ``theta``, which
-    are 0 at the start; two links between them have 1e-9 of its mass. SDF has no velocities: set
-    the joints to x_dot, z_dot, omega of `initial_state`. URDF has no ellipsoid.
+    The body of `to_mjcf` has prismatic joints ``x``, ``z`` and a revolute joint ``theta``, all of
+    which are 0 at the start. The two links between the joints have 1e-9 of the body's mass. SDF
+    cannot describe velocities: set those of the joints to x_dot, z_dot, omega of `initial_state`.
+    URDF has no ellipsoids.
 
     Raises
     ------
@@ -76,14 +77,14 @@ def to_sdf(scene: Any) -> str:
 
 
 def gravity(scene: Any) -> tuple[float, float, float]:
-    """Return gravity along x, y, z [m/s^2]."""
+    """Return the acceleration of gravity along x, y, z [m/s^2]."""
     return scene.gravity * math.sin(scene.slope), 0.0, -scene.gravity * math.cos(scene.slope)
 
 
 def _filled(template: str, scene: Any, **others: Any) -> str:
     if scene.friction == math.inf:
         raise ValueError(f"friction must be finite in {template[6:].upper()}, got inf")
-    from pathlib import Path  # it takes a tenth of the package's import time
+    from pathlib import Path  # pathlib takes a tenth of the package's import time
 
     inertia = scene.mass * scene.gyration2
     return Path(__file__).with_name(template).read_text(encoding="utf-8").format(

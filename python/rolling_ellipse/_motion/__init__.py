@@ -1,1 +1,1 @@
-"""Motions: samples, events and states, files and tables."""
+"""Motions: their samples, events and derivatives, and their export to files and tables."""

@@ -1,10 +1,10 @@
-"""Derivatives of a motion with many events, part by part, by the chain rule.
+"""Derivatives of a motion with many events, computed part by part with the chain rule.
 
-A part has a few events and starts in the middle of an arc, in the state that the motion has there.
-If M are its derivatives with respect to that state, and P those with respect to the parameters of
-the body, the derivatives S at its start become M S + P at its end. Differences then only have to
-cope with the growth within a part, so derivatives exist even where no neighbour of the whole motion
-has the same events, up to a growth of 1e13.
+A part has a few events and starts in the middle of an arc, in the state of the motion at that time.
+Let M be its derivatives with respect to that state, and P those with respect to the parameters of
+the body. Then the derivatives S at the start of the part become M S + P at its end. Differences
+only have to cope with the growth within a part. Hence derivatives exist even if no neighbour of the
+whole motion has the same events, up to a growth of 1e13.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from .samples import FREE, Pair
 from .trajectory import Trajectory
 
 EVENTS = 3  # number of events of a part
-# Duration of the shortest flight with a cut, in units of sqrt(L/g): it rises to L/1000, a hundred
-# times as high as steps of differences with ten digits. A lower hop depends on smaller changes.
+# Duration of the shortest flight that is cut, in units of sqrt(L/g). It rises to L/1000, a hundred
+# times the steps that give differences with ten digits. A lower hop would require smaller steps.
 _HOP = 0.1
 # Relative difference between the derivatives along the computed arcs and the exact ones, in units
-# of rounding times the growth of the motion: at most 42 in 120 motions growing by up to 4e12
+# of rounding times the growth of the motion: at most 42 in 120 motions with a growth of up to 4e12
 _ROUNDINGS = 64
 
 
 class Chained(NamedTuple):
     """Vectors like those of `neighbours`, for k inputs, and their errors.
 
-    `error` belongs to the derivatives along the computed arcs; `parted` is their distance from the
-    derivatives of the exact motion.
+    `error` is the error of the derivatives along the computed arcs; `parted` estimates how far the
+    latter are from the derivatives of the exact motion.
     """
 
     value: FloatArray  # (6, n + m, k)
@@ -46,20 +46,20 @@ class Chained(NamedTuple):
 
 
 class Part(NamedTuple):
-    motion: Trajectory  # has the whole motion's samples, and one at the start of the next part
-    rows: FloatArray  # indices of its samples and events in the whole motion
-    end: float  # time of its end in the whole motion
+    motion: Trajectory  # sampled where the whole motion is, and at the start of the next part
+    rows: FloatArray  # indices of the part's samples and events in the whole motion
+    end: float  # time at which the part ends in the whole motion
 
 
 def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | None:
-    """Return the derivatives with respect to several inputs, or None if a part has none."""
+    """Return the derivatives with respect to several inputs, or None if some part has none."""
     rows = len(motion.t) + len(motion.events)
     whole = Chained(np.zeros((len(STATE), rows, len(names))), *np.zeros((2, rows, len(names))))
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
-    growth = 1.0  # growth of changes of the inputs, or of the state after the first part
-    # For each earlier part: the derivatives of the current state with respect to the state at its
-    # end, and its own errors
+    growth = 1.0  # of changes of the inputs, or of the state at the end of the first part
+    # For each earlier part: the derivatives of the current state with respect to the state at the
+    # end of that part, and the errors made in it
     since: list[tuple[FloatArray, FloatArray]] = []
     for index, (part, own, _) in enumerate(parts_of(motion, EVENTS)):
         last = len(part.t) - 1
@@ -86,7 +86,7 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 
 
 def free_of(scene: Scene) -> tuple[str, ...]:
-    """Return the coordinates that a start leaves free: those that neither ground nor grip give."""
+    """Return the coordinates of a start that neither contact nor grip determines."""
     mode = (scene if scene.impulse is None else scene.replace(impulse=None)).initial_state.mode
     in_air = scene.z is not None
     return tuple(name for name in FREE[mode] if in_air or getattr(scene, name) is not None)
@@ -95,9 +95,9 @@ def free_of(scene: Scene) -> tuple[str, ...]:
 def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
     """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if not free.
 
-    They are in natural units on both sides.
+    Both the states and the start are in natural units.
     """
-    # No arc depends on x
+    # The shape of an arc does not depend on x
     names = [name if name in free and name != "x" else None for name in STATE]
     value, error = _derivatives(part, names, 0)
     units = units_of(part.scene)
@@ -108,7 +108,7 @@ def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
 def _derivatives(part: Trajectory, names: list[str | None], side: int) -> Pair:
     """Return derivatives with respect to k inputs, (6, r, k), and errors, (r, k); 0 for None.
 
-    ValueError gives the reason for a missing one.
+    A ValueError gives the reason if a derivative does not exist.
     """
     rows = len(part.t) + len(part.events)
     value, error = np.zeros((len(STATE), rows, len(names))), np.zeros((rows, len(names)))
@@ -116,14 +116,16 @@ def _derivatives(part: Trajectory, names: list[str | None], side: int) -> Pair:
         if name is not None:
             best, problem = neighbours(part, name, side)
             if problem:
-                raise ValueError(f"by {name}, {problem}") from problem
+                raise ValueError(f"with respect to {name}, {problem}") from problem
             value[..., k], error[:, k] = best.value, best.error
     return value, error
 
 
 def parts_of(motion: Trajectory, events: int) -> list[Part]:
-    """Return parts of so many events; one whose events differ from the motion's is merged into the
-    previous."""
+    """Split a motion into parts of `events` events, or more if an arc cannot be cut.
+
+    A part that does not reproduce its events is merged with the part before it.
+    """
     cuts = _cuts(motion, events)
     while True:
         parts = [_part(motion, *pair) for pair in pairwise(cuts)]
@@ -134,11 +136,11 @@ def parts_of(motion: Trajectory, events: int) -> list[Part]:
 
 
 def _cuts(motion: Trajectory, events: int) -> list[int]:
-    """Return how many events precede each cut, from 0 to all; cuts are in the middle of an arc."""
+    """Return how many events precede each cut, from none to all; cuts are in the middle of arcs."""
     cuts, spin = [0], float(units_of(motion.scene)[-1])
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode
-        # A flight that does not end with an impact is the sum of many bounces
+        # A flight that does not end with an impact stands for a sum of many bounces
         plain = mode is not Mode.REST and (
             mode is not Mode.FLIGHT
             or (after.kind is EventKind.IMPACT and (after.t - before.t) * spin > _HOP)
@@ -149,7 +151,8 @@ def _cuts(motion: Trajectory, events: int) -> list[int]:
 
 
 def _part(motion: Trajectory, first: int, last: int) -> Part | None:
-    """Return the part between two cuts, given as event counts, or None if its events differ."""
+    """Return the part between two cuts, given as event counts, or None if its events differ from
+    those of the motion."""
     knots, whole = knots_of(motion), last == len(motion.events)
     start = float(knots[first : first + 2].mean()) if first else 0.0
     end = motion.t_end if whole else float(knots[last : last + 2].mean())

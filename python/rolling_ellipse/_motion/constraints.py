@@ -1,6 +1,6 @@
-"""The report's coordinates q = (x, z, theta, psi, r), and the constraints of a state.
+"""The report's coordinates q = (x, z, theta, psi, r), their constraints, and errors of a motion.
 
-Errors of a motion are dimensionless: rounding errors are about 1e-16 for every body.
+The errors are dimensionless, so that rounding errors are about 1e-16 for every body.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ Errors = Mapping[str, FloatArray]  # by name, (n,) each
 
 @dataclass(frozen=True)
 class ConstraintResiduals:
-    """Residuals of the constraints of one state or many; the axes of the states come first.
+    """Residuals of the constraints of one state or of an array of states.
 
     Attributes
     ----------
     position : ndarray, shape (..., 3)
         f2 [m], f3 [m], f4 [rad].
     velocity : ndarray, shape (..., 4)
-        f1 [m/s] and the rates of f2, f3, f4.
+        f1 [m/s] and the rates of f2, f3, f4 [m/s, m/s, rad/s].
     gap : ndarray, shape (...)
         Height of the lowest point above the ground [m], from the implicit equation of the ellipse.
     slip : ndarray, shape (...)
-        Velocity of the material point there, along the ground [m/s].
+        Velocity along the ground of the material point at the lowest point [m/s].
 
     Examples
     --------
@@ -56,9 +56,9 @@ class ConstraintResiduals:
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
-    """Return the residuals of the four constraints of any state, and its gap and slip.
+    """Return the residuals of the four constraints for any state, and its gap and slip.
 
-    Gap and slip are computed independently of the constraints:
+    Gap and slip are computed independently of the constraints, which are
 
     f1 = x_dot - r cos(psi - theta) theta_dot, f2 = z - r cos(psi - theta),
     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi),
@@ -67,7 +67,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     Parameters
     ----------
     q, q_dot : array_like, shape (..., 5)
-        Coordinates x, z, theta, psi, r [m, rad] and their rates; shapes broadcast.
+        Coordinates x, z, theta, psi, r [m, m, rad, rad, m] and their rates; shapes broadcast.
     a, b : float
         Semi-axes [m].
 
@@ -98,7 +98,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
 
 
 def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArray, FloatArray]:
-    """Return the state that satisfies all constraints at an angle and angular velocity.
+    """Return the state that satisfies all constraints for an angle and an angular velocity.
 
     Parameters
     ----------
@@ -134,9 +134,9 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
 def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
     """Return the relative errors of the constraints by name: positions, then velocities, (n,).
 
-    Lengths are divided by the longer semi-axis, rates also by max|omega|, or sqrt(gravity/length)
-    for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, or
-    f1 and slip in a slide: they are NaN there.
+    Lengths are divided by the longer semi-axis. Rates are divided by max|omega| as well, or by
+    sqrt(gravity/length) for a motion without rotation. Quantities that the ground does not
+    constrain are NaN: f1, f2, gap and slip in flight, and f1 and slip in a slide.
     """
     scene, residuals = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)
@@ -157,19 +157,19 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 
 def may_lose_energy(motion: Trajectory) -> bool:
-    """Whether blows, impacts or friction may change the energy: impacts may be elastic."""
+    """Return whether blows, impacts, friction or rolling resistance may change the energy."""
     inelastic = motion.scene.friction > 0 or motion.scene.restitution < 1
     lossy = inelastic and bool(motion.events or np.any(motion.mode == Mode.SLIDING))
     return lossy or bool(motion.blows) or motion.scene.rolling_resistance > 0
 
 
 def losses(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return the energies lost in rolling, in slides and in impacts [J] up to each sample, (n,).
+    """Return the energy lost up to each sample in rolling, in slides and in impacts [J], (n,) each.
 
-    There is a sample at every event, so energy lost after a sample in flight is lost in an impact.
-    Energy that a blow gives or takes is not a loss.
-    Where rolling resistance and friction take energy together, the work of rolling resistance is
-    computed from its couple by the trapezoidal rule between samples.
+    The motion must have a sample at every event. Then energy that is lost between a sample in
+    flight and the next sample is lost in an impact. The work of a blow is not a loss. If rolling
+    resistance and friction dissipate energy at the same time, the work of rolling resistance is
+    computed from its couple with the trapezoidal rule between samples.
     """
     t, mode, last = motion.t, motion.mode, np.roll(motion.mode, 1)
     lost = -np.diff(motion.energy, prepend=motion.energy[:1])
@@ -189,10 +189,10 @@ def losses(motion: Trajectory) -> dict[str, FloatArray]:
 def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
-    E0 is the energy of the first sample. Losses by impacts and friction are not errors: after an
-    event that may take energy, E0 is the energy of the next sample, and in a slide, or while the
+    E0 is the energy of the first sample. Losses in impacts and by friction are not errors: after an
+    event that may change the energy, E0 is the energy of the next sample. In a slide, or while the
     body rolls with resistance, the error is NaN. Heights are measured from the ground at the first
-    sample: the origin of x does not matter.
+    sample, so that the origin of x does not matter.
     """
     scene = motion.scene
     along = motion.x - motion.x[0]
@@ -213,5 +213,5 @@ def energy_error(motion: Trajectory) -> FloatArray:
 
 
 def worst(errors: Errors) -> FloatArray:
-    """Return the largest of several errors at each time, (n,), ignoring NaN."""
+    """Return the largest error at each time, (n,), ignoring NaN."""
     return np.fmax.reduce(list(errors.values()))

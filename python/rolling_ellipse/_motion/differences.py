@@ -1,4 +1,4 @@
-"""Derivatives of a motion from differences of its neighbours, with the best of many steps."""
+"""Derivatives of a motion from differences between neighbours, with the best of many steps."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .status import Status
 from .trajectory import Trajectory
 
 RATES = ("x_dot", "z_dot", "omega", "x_ddot", "z_ddot", "omega_dot")
-STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in turn, as fractions of the input's natural size
+STEPS = 0.016 * 0.5 ** np.arange(23)  # tried in this order, relative to the input's natural size
 WORST = 1e-3  # relative error above which there is no derivative
-FINE = 1e-8  # relative error below which a better step is not needed
-_GROWN = 8.0  # trials end once the error is this many times the least one
-_UNITS = 8  # error bound of states and times that the package promises
+FINE = 1e-8  # relative error below which no better step is needed
+_GROWN = 8.0  # trials end when the error exceeds the smallest one by this factor
+_UNITS = 8  # error bound [ulp] of states and times that the package guarantees
 
-_LEAST_LEVER = 1e-200  # [m]; stands for a rolling resistance of 0
+_LEAST_LEVER = 1e-200  # [m]; replaces a rolling resistance of 0
 _END = "no event"  # stands for a missing event
 
 # For each side: offsets in steps, and weights of sixth order (Fornberg [1])
@@ -40,14 +40,14 @@ def differenced(
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives from values at the nodes of a rule (first axis), and rounding errors.
 
-    `moved` holds the actual changes of the input: neighbours are at the nearest doubles. A value
-    may be off by `_UNITS` roundings, both of its own and of an input of size `scale`.
+    `moved` contains the actual changes of the input, since neighbours are at the nearest doubles. A
+    value may be wrong by `_UNITS` roundings of itself and of an input of magnitude `scale`.
     """
     weights = RULES[side][1].tolist()
-    # Summed in the same order for one vector and for many
+    # The order of summation is the same for one vector and for many
     rise = sum((w * value for w, value in zip(weights, values, strict=True)), np.zeros(()))
     step = sum((w * change for w, change in zip(weights, moved, strict=True)), np.zeros(()))
-    moves = step != 0  # a step below the input's rounding changes nothing
+    moves = step != 0  # a step below the rounding of the input does not change it
     slopes: FloatArray = np.divide(rise, step, out=np.zeros(rise.shape), where=moves)
     unit = np.finfo(float).eps * (np.abs(values).max(axis=0) + scale * np.abs(slopes))
     rounding = _UNITS * sum(map(abs, weights)) * unit
@@ -55,33 +55,34 @@ def differenced(
 
 
 def size(values: FloatArray) -> FloatArray:
-    """Return the largest component, in magnitude, of vectors along the first axis."""
+    """Return the largest magnitude among the components of vectors along the first axis."""
     return np.abs(values).max(axis=0)
 
 
 class Best:
-    """Derivative vectors from smaller and smaller steps: for each vector, the best and its error.
+    """The best of the derivatives from successively smaller steps, for each vector.
 
-    The error is the rounding error plus the distance to the result of the step before or after,
-    whichever is farther: the one before for large steps, the one after for small ones. The trials
-    of each vector end independently, once its error has grown.
+    The error is the rounding error plus the distance to the result of the previous or the next
+    step, whichever is larger. For large steps this is the previous one, for small steps the next
+    one. The trials of each vector end independently, when its error has grown.
 
     Attributes
     ----------
     value : ndarray, shape (d, ...)
+        Best derivatives.
     error, step : ndarray, shape (...)
-        Infinite and 0 until three steps have been taken.
+        Their errors and steps: infinite and 0 until three steps have been tried.
     """
 
     def __init__(self, shape: tuple[int, ...], least: Any) -> None:
-        self.value, self._least = np.zeros(shape), least  # `least`: smallest size to compare with
+        self.value, self._least = np.zeros(shape), least  # errors are relative to `least` or more
         self.error, self.step = np.full(shape[1:], np.inf), np.zeros(shape[1:])
         self._done = np.zeros(shape[1:], bool)
         self._last: tuple[FloatArray, FloatArray, Any] | None = None
-        self._apart = np.full(shape[1:], np.inf)  # distance between the last two
+        self._apart = np.full(shape[1:], np.inf)  # distance between the last two results
 
     def take(self, value: FloatArray, rounding: FloatArray, step: Any) -> bool:
-        """Take the derivatives of the next step; return whether all trials have ended."""
+        """Process the derivatives from the next step; return whether all trials have ended."""
         if self._last is not None:
             last, error, its_step = self._last
             apart = size(value - last)
@@ -100,8 +101,8 @@ class Best:
 def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueError | None]:
     """Return derivatives of n sampled states and of m event times with respect to an input.
 
-    The derivatives are vectors in natural units, shape (6, n + m); for times they are (dt, 0, ...).
-    The exception states the reason for an infinite error.
+    The derivatives are vectors in natural units, shape (6, n + m); for event times they are
+    (dt, 0, ...). If an error is infinite, the exception gives the reason.
     """
     scale = size_of(motion.scene, name)
     best = Best((len(STATE), len(motion.t) + len(motion.events)), 1 / scale)
@@ -120,17 +121,17 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
 
 
 def _with_turns(motion: Trajectory) -> Trajectory:
-    """Return the motion with next to no rolling resistance, so that its turns are known."""
+    """Return the motion with a negligible rolling resistance, so that its turns are computed."""
     resisted = motion.scene.replace(rolling_resistance=_LEAST_LEVER)
     settings = dataclasses.replace(settings_of(motion), model="contact", method="auto")
-    found = Trajectory.computed(resisted, settings, motion.t)
-    if kinds_of(found.events) != kinds_of(motion.events):
+    turning = Trajectory.computed(resisted, settings, motion.t)
+    if kinds_of(turning.events) != kinds_of(motion.events):
         raise ValueError("the contact model has other events")
-    return found
+    return turning
 
 
 def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> FloatArray:
-    """Return how far the vectors of `neighbours` are from those with tighter settings."""
+    """Return the distance of the vectors of `neighbours` from those with tighter settings."""
     settings, step = settings_of(motion), float(best.step[size(best.value).argmax()])
     finer = dataclasses.replace(
         settings, rtol=settings.rtol / 8, atol=settings.atol / 8,
@@ -141,14 +142,14 @@ def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> Flo
 
 
 def settings_of(motion: Trajectory) -> Settings:
-    """Return the settings of a motion, with its model in place of "auto", that do not stop it."""
+    """Return the settings of a motion without its stop, and with its actual model for "auto"."""
     return dataclasses.replace(motion.settings, model=motion.model, stop=(), count=1)
 
 
 def _differences(
     motion: Trajectory, settings: Settings, name: str, side: int, step: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of `neighbours` from one step, and their rounding errors.
+    """Return the derivatives of `neighbours` from a single step, and their rounding errors.
 
     Neighbours are compared at equal fractions of the arcs between events and turns.
     """
@@ -168,9 +169,9 @@ def _differences(
 
 
 def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> FloatArray:
-    """Return the times at the same fractions of the same arcs between other knots.
+    """Map times to arcs between other knots, at the same fraction of the same arc.
 
-    Knots are along the last axis; times stay at, or before, their event.
+    Knots are along the last axis. A time before an event remains before it.
     """
     arc = np.searchsorted(knots[:-1], times, side="right") - 1
     length = knots[arc + 1] - knots[arc]
@@ -181,7 +182,7 @@ def at_shares(times: FloatArray, knots: FloatArray, others: FloatArray) -> Float
 
 
 def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> Trajectory:
-    """Return the motion from changed inputs by the same model; ValueError if its events differ."""
+    """Return the motion for changed inputs by the same model; ValueError if its events differ."""
     values = {name: value_of(motion.scene, name) + change for name, change in changes.items()}
     other = Trajectory.computed(changed(motion.scene, values), settings, np.array([motion.span]))
     if difference := unlike(motion, other):
@@ -191,7 +192,7 @@ def moved(motion: Trajectory, settings: Settings, changes: dict[str, float]) -> 
 
 
 def unlike(motion: Trajectory, other: Trajectory) -> str:
-    """Return the first difference between the arcs of two motions in words, or ""."""
+    """Return a description of the first difference between the arcs of two motions, or ""."""
     for (known, t), (mode, _) in zip(_order(motion), _order(other), strict=False):
         if known != mode:
             if mode == _END:
@@ -202,7 +203,7 @@ def unlike(motion: Trajectory, other: Trajectory) -> str:
 
 
 def _order(motion: Trajectory) -> list[tuple[str, float]]:
-    """Return what neighbours must share, with times: start, events with their new modes, end."""
+    """Return descriptions and times of what neighbours must share: start, events, turns and end."""
     known = zip(kinds_of(motion.events), knots_of(motion)[1:-1].tolist(), strict=True)
     turns = (("a turn", t) for t in motion._solution.turns.tolist())
     events = sorted([*known, *turns], key=itemgetter(1))
@@ -213,17 +214,17 @@ def _order(motion: Trajectory) -> list[tuple[str, float]]:
 
 
 def kinds_of(events: Iterable[Event]) -> list[str]:
-    """Return the kinds of events, each with the mode after it."""
+    """Return the kind of each event with the mode after it."""
     return [f"{event.kind.name} to {event.state_after.mode.name}" for event in events]
 
 
 def knots_of(motion: Trajectory) -> FloatArray:
-    """Return the times between which the motion obeys one law: start, events, end."""
+    """Return the times of the start, the events and the end; one law holds between them."""
     return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
 
 
 def joints_of(motion: Trajectory) -> FloatArray:
-    """Return `knots_of`, and the turns of rolling resistance, where omega_dot jumps."""
+    """Return `knots_of` and the turns, at which rolling resistance makes omega_dot jump."""
     return np.sort(np.concatenate([knots_of(motion), motion._solution.turns]))
 
 

@@ -1,4 +1,4 @@
-"""Energies of a body's states."""
+"""Energies of the states of a body."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import Any
 
 
 def energies(body: Any, of: Any) -> tuple[Any, Any, Any]:
-    """Return translational, rotational and potential energy of a state, or of samples [J].
+    """Return the translational, rotational and potential energy [J] of a state or of samples.
 
-    A body is given by the numbers of `_core.Scene.body`, or by arrays of them. Squares are written
-    as products, since powers of floats and of arrays are rounded differently.
+    `body` is the list `_core.Scene.body`, or a list of arrays in the same order. Squares are
+    written as products because powers of floats and of arrays are rounded differently.
     """
     mass, _, gyration2, gravity, cosine, sine, _ = body
     translational = 0.5 * mass * (of.x_dot * of.x_dot + of.z_dot * of.z_dot)
@@ -18,6 +18,9 @@ def energies(body: Any, of: Any) -> tuple[Any, Any, Any]:
 
 
 def energy(body: Any, of: Any) -> Any:
-    """Return the energy of a state [J]; since Python 3.12 `sum` would round it differently."""
+    """Return the energy of a state [J].
+
+    The terms are added one by one, because `sum` rounds differently since Python 3.12.
+    """
     translational, rotational, potential = energies(body, of)
     return translational + rotational + potential

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-_EFFECTS = "reaction_x", "reaction_z", "energy_lost"  # only states after an event have them
+_EFFECTS = "reaction_x", "reaction_z", "energy_lost"  # fields of states after an event only
 _CODES = {"kind": EventKind, "mode_before": Mode, "mode_after": Mode}
 
 
 def _columns() -> dict[str, tuple[str, str]]:
-    """Return the columns of a table: where an `Event` has the value, and the unit."""
+    """Return, for each column of a table, the attribute path in an `Event` and the unit."""
     columns = {"t": ("t", "s"), "kind": ("kind", "1")}
     for when in ("before", "after"):
         for name, unit in (STATE_UNITS | {"mode": "1"}).items():
@@ -47,11 +47,12 @@ class EventTable(dict[str, npt.NDArray[Any]]):
 
     Notes
     -----
-    ``t`` [s], ascending, and ``kind``, codes of `EventKind`, which equal its members.
-    ``theta_before``, ``theta_after`` and so on: states just before and after, also ``mode_before``
-    (codes of `Mode`) and ``energy_before`` [J].
-    ``reaction_x``, ``reaction_z`` [N s], ``energy_lost`` [J]: impulse of the ground in an impact
-    or a blow, and energy lost in an impact, 0 for other events; ``reason``: why the event happens.
+    ``t`` [s] is ascending; ``kind`` contains codes of `EventKind`, which equal its members.
+    ``theta_before``, ``theta_after`` and so on are the states just before and after an event,
+    including ``mode_before`` (codes of `Mode`) and ``energy_before`` [J]. ``reaction_x`` and
+    ``reaction_z`` [N s] are the impulse of the ground in an impact or a blow, and ``energy_lost``
+    [J] is the energy lost in an impact; they are 0 for other events. ``reason`` states why the
+    event happens.
 
     Examples
     --------
@@ -72,7 +73,7 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         vars(self).update(about)
 
     def __reduce__(self) -> Any:
-        """Make the arrays read-only again: pickles and deep copies leave them writeable."""
+        """Recreate the table from its columns, so that the arrays are read-only again."""
         return partial(type(self), **vars(self)), (dict(self),)
 
     def __repr__(self) -> str:
@@ -83,12 +84,12 @@ class EventTable(dict[str, npt.NDArray[Any]]):
     def to_dataframe(self) -> DataFrame:
         """Return a pandas DataFrame with a row for each event; kinds and modes are names.
 
-        ``attrs["units"]`` has the units by column.
+        ``attrs["units"]`` has the unit of each column.
 
         Raises
         ------
         ImportError
-            If pandas is missing: it comes with ``rolling_ellipse[data]``.
+            If pandas is missing; the extra ``rolling_ellipse[data]`` installs it.
 
         Examples
         --------
@@ -107,12 +108,12 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         return frame
 
     def to_xarray(self) -> Dataset:
-        """Return an xarray Dataset over ``event``, with codes of kinds and modes, and units.
+        """Return an xarray Dataset over ``event``, with units and with codes of kinds and modes.
 
         Raises
         ------
         ImportError
-            If xarray is missing: it comes with ``rolling_ellipse[data]``.
+            If xarray is missing; the extra ``rolling_ellipse[data]`` installs it.
 
         Examples
         --------
@@ -123,8 +124,8 @@ class EventTable(dict[str, npt.NDArray[Any]]):
         about = {name: {"units": _unit(name)} for name in self}
         about |= {name: about[name] | flags(kind) for name, kind in _CODES.items()}
         variables = {name: ("event", self[name].copy(), about[name]) for name in self}
-        found: Dataset = required("xarray", "to_xarray").Dataset(variables)
-        return found
+        dataset: Dataset = required("xarray", "to_xarray").Dataset(variables)
+        return dataset
 
 
 def _unit(column: str) -> str:
@@ -132,33 +133,33 @@ def _unit(column: str) -> str:
 
 
 def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
-    """Return the columns of a table from rows of the core, for one body, or a body for each row."""
-    found: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
+    """Return the columns of a table from rows of the core, for one body or for one body per row."""
+    columns: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
     with np.errstate(all="ignore"):
         for when in ("before", "after"):
-            state = SimpleNamespace(**{name: found[f"{name}_{when}"] for name in STATE_UNITS})
-            found[f"energy_{when}"] = energy(body, state)
+            state = SimpleNamespace(**{name: columns[f"{name}_{when}"] for name in STATE_UNITS})
+            columns[f"energy_{when}"] = energy(body, state)
     *_, friction = body
-    pulled = (found["kind"] == EventKind.SLIP) & np.isinf(friction)
+    pulled = (columns["kind"] == EventKind.SLIP) & np.isinf(friction)
     names = [*(f"{kind.name}_why" for kind in EventKind), "SLIP_pulled"]
     reasons = np.array([table("en")[name] for name in names], object)
-    found["reason"] = reasons[np.where(pulled, len(EventKind), found["kind"]).astype(int)]
-    return {name: found[name] for name in COLUMNS}
+    columns["reason"] = reasons[np.where(pulled, len(EventKind), columns["kind"]).astype(int)]
+    return {name: columns[name] for name in COLUMNS}
 
 
 def with_effects(rows: FloatArray, body: Any) -> FloatArray:
-    """Return rows of an older version, which knew no blows, with the effects of their impacts."""
-    found = dict(zip(_core.COLUMNS["events"], rows.T, strict=False))
+    """Return rows of an older version, without blows, with the effects of their impacts added."""
+    columns = dict(zip(_core.COLUMNS["events"], rows.T, strict=False))
     mass, inertia, *_ = body
 
     def gained(name: str) -> Any:
-        return found[f"{name}_after"] - found[f"{name}_before"]
+        return columns[f"{name}_after"] - columns[f"{name}_before"]
 
     def lost(name: str) -> Any:
-        return -0.5 * gained(name) * (found[f"{name}_before"] + found[f"{name}_after"])
+        return -0.5 * gained(name) * (columns[f"{name}_before"] + columns[f"{name}_after"])
 
     with np.errstate(all="ignore"):
         energy_lost = np.fmax(mass * (lost("x_dot") + lost("z_dot")) + inertia * lost("omega"), 0.0)
         effects = mass * gained("x_dot"), mass * gained("z_dot"), energy_lost
-    x, z, energy_lost = np.where(found["kind"] == EventKind.IMPACT, effects, 0.0)
-    return np.column_stack([rows, x, z, found["omega_before"], energy_lost])
+    x, z, energy_lost = np.where(columns["kind"] == EventKind.IMPACT, effects, 0.0)
+    return np.column_stack([rows, x, z, columns["omega_before"], energy_lost])

@@ -1,4 +1,4 @@
-"""Events of a contact motion: slip, stick, reversal, lift-off, impact, rest, jam and blow."""
+"""Events of a motion with contact: slip, stick, reversal, lift-off, impact, rest, jam and blow."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FIRST, _LAST = 12, 4  # events shown at the top and bottom of a long table
 
 @dataclass(frozen=True, repr=False)
 class Event(FieldsOnly):
-    """One event of a motion: an impact, a blow, or a change of mode or of the slip's direction.
+    """One event of a motion: an impact, a blow, or a change of mode or of the direction of slip.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class Event(FieldsOnly):
     kind : EventKind
         SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST, JAM or BLOW.
     state_before, state_after : InitialState
-        State just before and just after; the state after an impact or a blow includes the impulse
-        of the ground, that after an impact the lost energy.
+        State just before and just after the event. The state after an impact or a blow includes the
+        impulse of the ground, and that after an impact also the lost energy.
     energy_before, energy_after : float
         Kinetic and potential energy of the two states [J].
     theta, x : float
@@ -100,9 +100,9 @@ class Event(FieldsOnly):
 
 
 class Events(tuple[Event, ...]):
-    """A tuple of events in order of time that prints as a table, as its slices do.
+    """A tuple of events in order of time that prints as a table; its slices do the same.
 
-    The table of many events shows the first and the last ones.
+    For many events the table shows the first and the last ones.
     """
 
     @overload
@@ -150,16 +150,16 @@ class Events(tuple[Event, ...]):
 
 
 def events(scene: Scene, rows: npt.ArrayLike) -> Events:
-    """Return the events from rows of numbers; states and table are made on first access."""
+    """Return the events for rows of numbers; states and table are computed on first access."""
     each = np.reshape(rows, (-1, len(_core.COLUMNS["events"])))
-    found = Events(
+    result = Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_numbers": row, "_scene": scene})
             for row in each.tolist()
         ]
     )
-    vars(found)["_rows"] = each, scene
-    return found
+    vars(result)["_rows"] = each, scene
+    return result
 
 
 def _state(event: Any, *, after: bool) -> InitialState:

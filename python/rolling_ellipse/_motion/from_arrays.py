@@ -1,4 +1,4 @@
-"""Trajectories from external samples: a tracker's, or another simulator's."""
+"""Trajectories from external samples, such as those of a tracker or another simulator."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made", bound="Trajectory")
 _NEAR = 5  # number of samples of a local polynomial
-_PIECE = 2**12  # times solved for at once, within 20 ms: Ctrl-C acts between pieces
+_PIECE = 2**12  # times solved for at once, in at most 20 ms; Ctrl-C acts between pieces
 _SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
 
 
@@ -37,28 +37,31 @@ def from_arrays(
     *,
     scene: Scene,
 ) -> _Made:
-    """Return a trajectory made of external samples: a tracker's, or another simulator's.
+    """Return a trajectory made of external samples, from a tracker or another simulator.
 
-    Each track is the fourth-degree polynomial through five samples about the nearest one: rates
-    have errors of fourth order; accelerations, from which forces follow, of third. Before the first
-    sample the body stays in its position there. It flies where its gap is more than 0.01 max(a, b),
-    else slides where its contact slips by more than 0.01 sqrt(gravity max(a, b)), else rolls. There
-    are no events: within two samples of an impact, rates and forces are wrong.
+    Each track is interpolated by the fourth-degree polynomial through the five samples around the
+    nearest one. Rates have errors of fourth order, and accelerations, which give the forces, of
+    third order. Before the first sample the body keeps its first position. It flies if its gap
+    exceeds 0.01 max(a, b); otherwise it slides if its contact slips by more than
+    0.01 sqrt(gravity max(a, b)), and rolls if not. There are no events: within two samples of an
+    impact, rates and forces are wrong.
 
     Parameters
     ----------
     t : array_like, shape (n,)
         Increasing times since the start of the scene, n >= 5 [s].
     x, z, theta : array_like, shape (n,)
-        Centre [m] and angle [rad], unwrapped. If x and z are missing, they follow from rolling from
-        the scene's start, as for angles from an equation of motion.
+        Centre [m] and angle [rad], unwrapped. If x and z are missing, the body is assumed to roll
+        from the start of the scene; this suits angles from an equation of motion.
     scene : Scene
-        Body and ground; its start is what `plot_error` compares with.
+        Body and ground. `plot_error` compares the samples with the motion of this scene.
 
     Raises
     ------
     ValueError
         If times do not increase or are negative, or arrays differ in length or are not finite.
+    TypeError
+        If `scene` is not a Scene.
 
     Examples
     --------
@@ -70,9 +73,7 @@ def from_arrays(
     """
     times = vector("t", finite("t", t))
     if times.size < _NEAR or times[0] < 0 or not (np.diff(times) > 0).all():
-        raise ValueError(
-            f"t must be {_NEAR} or more increasing times [s] from 0 on, got {shown(t)}"
-        )
+        raise ValueError(f"t must be {_NEAR} or more increasing times >= 0 [s], got {shown(t)}")
     body, given = require_scene(scene), {"x": x, "z": z, "theta": theta}
     if x is None and z is None and theta is not None:
         axes = {"a": body.a, "b": body.b}
@@ -134,6 +135,6 @@ class _Samples:
         return t, *(values.copy() for values in columns), mode
 
     def passages(self, *_: Any) -> Any:
-        raise ValueError("trajectory must be computed to know passages, got one from arrays")
+        raise ValueError("trajectory must be computed to have passages, got one from arrays")
 
     zeros = passages

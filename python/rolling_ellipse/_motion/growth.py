@@ -1,4 +1,4 @@
-"""How fast small changes of a motion's state grow: sums of logarithms, arc by arc."""
+"""How fast small changes of a motion's state grow, as sums of logarithms arc by arc."""
 
 from __future__ import annotations
 
@@ -20,33 +20,34 @@ from .sensitivity import require_its_own, without_derivative
 from .trajectory import Trajectory
 
 COORDINATES = ("theta", "omega", "x", "x_dot", "z", "z_dot")
-# Growth after which a rounding of the start, 2^-53, is 1e-3 of the body
+# Growth after which a rounding of the start, 2^-53, has become 1e-3 of the body
 _KNOWN = 1e-3 * 2.0**53
-# Events that take no change away: of all others some may end up without a part of the state
+# Events after which all changes of the state persist; other events may remove some of them
 _KEEPING = {EventKind.SLIP, EventKind.REVERSE, EventKind.LIFT_OFF}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Growth(FieldsOnly):
-    """How much changes of the state at t = 0 have grown, after each arc of a motion.
+    """The growth of small changes of the state at t = 0, after each arc of a motion.
 
     Attributes
     ----------
     wrt : tuple of str, k names
         Coordinates that are changed at the start.
     t : ndarray, shape (m,)
-        Times [s]: in the middle of the arc after each event, and the end.
+        Times [s]: one in the middle of the arc after each event, and the end.
     log : ndarray, shape (m, k)
-        Sums of ``log |R_ii|`` up to these times. The first column belongs to changes of the first
-        coordinate, the first two to areas of changes of the first two, and so on: their sum is the
-        logarithm of the growth of the volume. -inf from where such changes end up in those of the
-        columns before: where a contact begins without a rebound, or its slip ends.
+        Sums of ``log |R_ii|`` up to these times. The first column is the logarithm of the growth of
+        a change of the first coordinate. The sum of the first two columns is that of the area
+        spanned by changes of the first two coordinates, and so on for volumes. An entry is -inf
+        once an event has made its change dependent on those of the previous columns: where a
+        contact starts without a rebound, or its slip ends.
     message : str
-        Why `t` ends before the motion does, "" if it does not.
+        The reason if `t` ends before the motion does, otherwise "".
     known_until : float
-        Time [s] at which a change of the start by 2^-53, a rounding of one unit, has grown beyond
-        1e-3, in whatever direction it grows most; infinite if it has not. The motion in doubles is
-        then no longer that of its scene.
+        Time [s] at which a change of the start by 2^-53, one rounding, has grown beyond 1e-3 in the
+        direction of fastest growth; infinite if it has not. After this time the motion in doubles
+        is no longer that of its scene.
 
     Examples
     --------
@@ -66,9 +67,9 @@ class Growth(FieldsOnly):
 
     @property
     def exponents(self) -> FloatArray:
-        """Mean rates of growth, the last of `log` over its time [1/s], shape (k,).
+        """Mean rates of growth, the last row of `log` divided by its time [1/s], shape (k,).
 
-        Over a long time they tend to the Lyapunov exponents of the motion.
+        In the limit of long times they are the Lyapunov exponents of the motion.
         """
         return np.asarray(self.log[-1] / self.t[-1])
 
@@ -85,10 +86,10 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     Parameters
     ----------
     wrt : str or iterable of str, optional
-        Which coordinates are changed, in this order: those of ``"theta"``, ``"omega"``, ``"x"``,
-        ``"x_dot"``, ``"z"``, ``"z_dot"`` that the scene leaves free, which is also the default. In
-        the air that is all six, for a body that slides the first four, for one that rolls or rests
-        until a blow the first three.
+        Coordinates that are changed, in this order. They must be free in the scene. The default is
+        all free ones among ``"theta"``, ``"omega"``, ``"x"``, ``"x_dot"``, ``"z"``, ``"z_dot"``:
+        all six for a body in the air, the first four for a body that slides, and the first three
+        for a body that rolls, or rests until a blow.
 
     Returns
     -------
@@ -97,20 +98,21 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     Raises
     ------
     ValueError
-        If a name is unknown, repeated, or that of a coordinate without a derivative, as the motion
-        is after its first event; if the motion starts at rest, takes no time, or does not reach its
-        end.
+        If a name is unknown, repeated or not free; if the motion has no derivative up to the arc
+        after its first event; or if the motion starts at rest, has no duration, or does not reach
+        its end.
 
     Notes
     -----
-    Between the middles of two arcs the derivatives of the state by the state are those of
-    `sensitivity`: differences of the arcs as they were computed, of which the jumps at events
-    (saltation matrices [2]_) are a part. They change all six coordinates, in units of L = max(a, b)
-    and sqrt(L/g), and are applied to orthonormal vectors, at first the axes `wrt`, which a QR
-    decomposition then makes orthonormal again [1]_. Each factor is known to some 1e-11. A number on
-    the diagonal within its error is 0 at an event where changes may be lost; elsewhere the growth
-    ends, with a message. It ends so, too, where there is no derivative, as where a body falls flat
-    and would settle on an end if it were tilted.
+    The derivatives of the state in the middle of an arc with respect to the state in the middle of
+    the previous arc are computed as in `sensitivity`. They are differences of the computed arcs,
+    and include the jumps at events (saltation matrices [2]_). They map changes of all six
+    coordinates, in units of L = max(a, b) and sqrt(L/g). They are applied to orthonormal vectors,
+    initially the axes `wrt`, and a QR decomposition makes the results orthonormal again [1]_. The
+    relative error of each factor is about 1e-11. If a diagonal entry of R is smaller than its
+    error, it counts as 0 if an event may have removed the change; otherwise the growth ends with a
+    message. It also ends if there is no derivative, for example if a body falls flat and would
+    settle on one of its ends if it were tilted.
 
     References
     ----------
@@ -127,7 +129,7 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
     """
     require_its_own(motion)
     if motion.t_end == 0:
-        raise ValueError("motion must take some time, got one that ends at t = 0 s")
+        raise ValueError("motion must have a positive duration, got one that ends at t = 0 s")
     free = tuple(sorted(free_of(motion.scene), key=COORDINATES.index))
     names = free if wrt is None else distinct("wrt", wrt, free)
     basis = np.eye(len(STATE))[:, [STATE.index(name) for name in names]]
@@ -139,8 +141,8 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
         except ValueError as reason:
             if len(logs) == 1:
                 raise without_derivative(", ".join(names), reason) from reason
-            ended = f"It ends before the motion, at t = {times[-1]:.6g} s"
-            message = f"{ended}. With times from there: {reason}"
+            ended = f"The growth ends before the motion, at t = {times[-1]:.6g} s"
+            message = f"{ended}. With times counted from this one: {reason}"
             break
         with np.errstate(divide="ignore"):
             log = log + np.log(np.diag(r))
@@ -156,18 +158,19 @@ def growth(motion: Trajectory, wrt: str | Iterable[str] | None = None) -> Growth
 
 
 def _stretched(part: Trajectory, basis: FloatArray, free: tuple[str, ...]) -> Pair:
-    """Return what a part makes of orthonormal columns, orthonormal again, and R of that QR.
+    """Map orthonormal columns through a part; return Q and R of the result.
 
-    A column that is lost is 0 in both from then on. ValueError gives the reason for no answer.
+    A column whose change is lost is 0 in Q and R from then on. A ValueError gives the reason if the
+    derivatives are too inaccurate.
     """
     value, errors = (each[..., len(part.t) - 1, :] for each in by_state(part, free))
-    error = math.sqrt(len(STATE)) * float(errors.sum())  # of what becomes of any unit vector
+    error = math.sqrt(len(STATE)) * float(errors.sum())  # of the image of any unit vector
     if not error < WORST * max(1.0, size(value).max()):
-        raise ValueError(f"steps agree to {error:.1g} only")
+        raise ValueError(f"steps agree only to {error:.1g}")
     columns, made, r = value @ basis, np.zeros_like(basis), np.zeros((basis.shape[1],) * 2)
     unsure = np.zeros(len(r))  # error of each direction
     for j, column in enumerate(columns.T):
-        for _ in range(2):  # Gram and Schmidt: once is not enough beside a small rest
+        for _ in range(2):  # Gram-Schmidt, repeated because a small remainder loses accuracy
             along = made.T @ column
             column = column - made @ along
             r[:, j] += along

@@ -1,4 +1,4 @@
-"""Inputs of a motion: their names, values and natural sizes."""
+"""Inputs of a motion, with their values and natural sizes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ INPUTS = (*BODY, "theta", "omega", "x", "z", "x_dot", "z_dot", *_BLOW, "t")
 
 
 def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) -> tuple[str, ...]:
-    """Return one or more of the valid names, each once, or raise ValueError."""
+    """Return the given names as a tuple; raise ValueError for an unknown or repeated name."""
     several = isinstance(names, Iterable) and not isinstance(names, str)
     chosen = tuple(choice(argument, name, valid) for name in (names if several else (names,)))
     if not chosen or len(set(chosen)) < len(chosen):
@@ -29,7 +29,7 @@ def distinct(argument: str, names: str | Iterable[str], valid: tuple[str, ...]) 
 
 
 def changed(scene: Scene, values: dict[str, float]) -> Scene:
-    """Return the scene with other values of inputs, including those of its impulse."""
+    """Return the scene with new values of some inputs, which may be those of its impulse."""
     blow: dict[str, Any] = {name: value for name, value in values.items() if name in _BLOW}
     others: dict[str, Any] = {name: value for name, value in values.items() if name not in _BLOW}
     if blow and scene.impulse is not None:
@@ -47,14 +47,14 @@ def value_of(scene: Scene, name: str) -> float:
     if value is None and scene.z is not None:  # a default velocity in the air
         return 0.0
     if value is None:
-        raise ValueError(f"wrt must be inputs of the scene, got {name!r}, which follows rolling")
+        raise ValueError(f"wrt must be inputs of the scene, got {name!r}, set by rolling")
     if math.isinf(value):
         raise ValueError(f"wrt must be finite inputs, got {name!r}, which is infinite")
     return float(value)
 
 
 def size_of(scene: Scene, name: str) -> float:
-    """Return the natural size of an input: its value, or the unit of its kind if larger."""
+    """Return the natural size of an input: its magnitude, or its natural unit if that is larger."""
     length, _, one, speed, _, spin = units_of(scene).tolist()
     push = scene.mass * speed
     units = {
@@ -67,7 +67,10 @@ def size_of(scene: Scene, name: str) -> float:
 
 
 def units_of(scene: Scene) -> FloatArray:
-    """Return the natural units of a state: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L)."""
+    """Return the natural units of a state: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L).
+
+    L is the longer semi-axis.
+    """
     length = max(scene.a, scene.b)
     speed = math.sqrt(scene.gravity * length)
     return np.array([length, length, 1.0, speed, speed, speed / length])

@@ -1,11 +1,11 @@
-"""Methods of Trajectory whose modules import that class or are slow to load."""
+"""Methods of Trajectory from modules that import this class or load slowly."""
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import Any
 
-#: Names of methods by module; the functions have the same names.
+#: Names of the methods by module; each is a function of the same name in that module.
 METHODS = {
     "_motion.from_arrays": ("from_arrays",),
     "_motion.growth": ("growth",),
@@ -24,7 +24,7 @@ _OF_THE_CLASS = ("load", "from_arrays")
 
 
 class _Later:
-    """A method that is imported on first access, and then replaces this object."""
+    """A placeholder that imports a method on first access and replaces itself with it."""
 
     def __init__(self, of: type, module: str, name: str) -> None:
         self._of, self._module, self._name = of, module, name
@@ -38,7 +38,7 @@ class _Later:
 
 
 def bind_methods(owner: type) -> None:
-    """Give a class the methods of other modules."""
+    """Bind the methods from other modules to the class."""
     for module, names in METHODS.items():
         for name in names:
             setattr(owner, name, _Later(owner, module, name))

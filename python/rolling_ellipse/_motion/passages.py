@@ -1,4 +1,4 @@
-"""Times at which a motion passes a value, with a warning where they may be incomplete."""
+"""Times at which a motion passes a value, with a warning if the list may be incomplete."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .._ask.check import FloatArray, array, choice, finite, shown, whole
 from .._core import EventKind, Quantity
 
 _EVENTS = (*(kind.name.lower() for kind in EventKind), "roll_over")
-_MOST = 10**6  # how often a value may be passed; the core has the same limit
+_MOST = 10**6  # largest number of passages; the core has the same limit
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -46,45 +46,45 @@ def when(
 ) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    The times belong to the motion itself, accurate to the last bits; they do not depend on its
-    samples. A `CompletenessWarning` is issued where some may be missed, as for every `function`.
+    The times are accurate to the last bits and do not depend on the motion's samples. A
+    `CompletenessWarning` is issued if some may be missed, as is possible for every `function`.
 
     Parameters
     ----------
     theta, x, z, omega, contact_x : float or array_like, shape (n,), optional
-        One value, or n values, of this quantity [rad, m, rad/s]; exactly one quantity is given,
-        or `function`.
+        One value or n values of this quantity [rad, m, rad/s]. Give exactly one of these
+        quantities, `function` or `event`.
     function : callable, optional
         Takes a Trajectory and returns one number for each sample; `when` returns its zeros.
     event : EventKind or str, optional
-        Kind of events, or its name in any case; or ``"roll_over"``: the body passes a position
-        with its long axis perpendicular to the ground (a circle: its axis a).
+        Kind of events, or its name in any case. ``"roll_over"`` is the passage of a position with
+        the long axis (for a circle: the axis a) perpendicular to the ground.
     direction : {0, 1, -1}
         1: only where the quantity rises through the value; -1: only where it falls; 0: both, and
-        touches.
+        also where it only touches the value.
 
     Returns
     -------
     ndarray, shape (m,), or list of them
-        Times, ascending [s]; empty if the value is never passed. A list of such arrays for n
-        values, in their order.
+        Times in ascending order [s]; empty if the value is never passed. For n values, a list of n
+        such arrays in the same order.
 
     Raises
     ------
     ValueError
-        If there are more than a million times, no quantity or several are given, or a value is
-        not finite.
+        If there are more than a million times, not exactly one of the arguments is given, or a
+        value is not finite.
 
     Notes
     -----
-    No time is missed where the turning points of the quantity are known: they are found, by
-    Bernstein coefficients, from polynomials of degree 8 that agree with it to 1000 ulp. A
-    `CompletenessWarning` is issued where no polynomial agrees, and for a `function`, whose values
-    are known only at single times.
+    No time is missed if the turning points of the quantity are known. They are located with
+    Bernstein coefficients of polynomials of degree 8 that agree with the quantity to 1000 ulp. A
+    `CompletenessWarning` is issued if no polynomial agrees to that accuracy, and for a `function`,
+    whose values are known only at single times.
 
-    A jump of omega across the value counts, at the event. A value that is only touched, as at a
-    turning point, counts once, even at the start or end; a value that is held for a while counts
-    when it is reached. Touching is resolved to 8 ulp of the quantity.
+    If omega jumps across the value at an event, the time of the event counts. A value that is only
+    touched, as at a turning point, counts once, even at the start or end. A value that is held for
+    a while counts when it is reached. Touching is resolved to 8 ulp of the quantity.
 
     Examples
     --------
@@ -127,7 +127,7 @@ def when(
         times, unproved = motion._solution.passages(Quantity[name], values.ravel(), sense)
     if unproved:
         warnings.warn(
-            f"the times at which {name} passes are not proved to be all of them "
+            f"the times at which {name} passes are not proved to be complete "
             f"{' and '.join(unproved)}: two passages close together may be missed",
             CompletenessWarning,
             stacklevel=2,
@@ -138,7 +138,7 @@ def when(
 
 
 def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
-    """Warn about angles that are never reached, but would be if they were in degrees."""
+    """Warn if angles are never reached as radians, but would be reached as degrees."""
     degrees = values[(values != 0) & (values % 15 == 0)]
     times, _ = motion._solution.passages(Quantity.theta, np.radians(degrees), 0)
     if any(each.size for each in times):
@@ -150,14 +150,17 @@ def _ask_for_radians(motion: Trajectory, values: FloatArray) -> None:
 
 
 def _tips(motion: Trajectory) -> FloatArray:
-    """Return the tip angles that are reached; between turning points theta is monotonic."""
+    """Return the angles of the tip positions within the range of theta.
+
+    theta is monotonic between its turning points.
+    """
     turning = motion._solution.passages(Quantity.omega, np.zeros(1), 0)[0][0]
     theta = motion.sol([0.0, *turning, motion.t_end]).theta
     tip = math.pi / 2 if motion.scene.a >= motion.scene.b else 0.0
     first = math.ceil((theta.min() - tip) / math.pi)
     last = math.floor((theta.max() - tip) / math.pi)
     if last - first > _MOST:
-        raise ValueError(f"event must happen at most {_MOST} times, got {last - first}")
+        raise ValueError(f"event must occur at most {_MOST} times, got {last - first}")
     return tip + math.pi * np.arange(first, last + 1, dtype=float)
 
 
@@ -168,7 +171,7 @@ def _measured(
     values = array("function's result", function(motion.sol(times)))
     if values.shape != times.shape:
         raise ValueError(
-            f"function must return one number a sample, shape {times.shape}, "
+            f"function must return one number per sample, shape {times.shape}, "
             f"got shape {values.shape}"
         )
     if np.isnan(values).any():

@@ -1,4 +1,4 @@
-"""Units and meanings of the arrays of a trajectory, and names of codes."""
+"""Units and meanings of the arrays of a trajectory, and attributes for enum codes."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class Quantity(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """Meaning, unit and shape as a docstring."""
+        """Docstring with the meaning, unit and shape."""
         return f"{self.meaning[0].upper()}{self.meaning[1:]} [{self.unit}], shape {self.shape}."
 
 
 TIME = Quantity("t", "s", "time")
 QUANTITIES = (
     Quantity("x", "m", "position of the centre along the ground"),
-    Quantity("z", "m", "height of the centre over the ground"),
+    Quantity("z", "m", "height of the centre above the ground"),
     Quantity("theta", "rad", "angle of the body, clockwise positive"),
     Quantity("psi", "rad", "angle in the body from its axis b to the contact"),
     Quantity("r", "m", "distance from the centre to the contact"),
@@ -37,17 +37,17 @@ QUANTITIES = (
     Quantity("x_ddot", "m/s^2", "acceleration of the centre along the ground"),
     Quantity("z_ddot", "m/s^2", "acceleration of the centre away from the ground"),
     Quantity("omega_dot", "rad/s^2", "angular acceleration, clockwise positive"),
-    Quantity("psi_ddot", "rad/s^2", "second rate of psi"),
-    Quantity("r_ddot", "m/s^2", "second rate of r"),
-    Quantity("contact_x", "m", "place of the contact along the ground"),
-    Quantity("turns", "1", "turns made since the start of the scene"),
+    Quantity("psi_ddot", "rad/s^2", "second derivative of psi with respect to time"),
+    Quantity("r_ddot", "m/s^2", "second derivative of r with respect to time"),
+    Quantity("contact_x", "m", "position of the contact along the ground"),
+    Quantity("turns", "1", "number of turns since the start of the scene"),
     Quantity("normal_force", "N", "contact force on the body away from the ground"),
     Quantity("friction_force", "N", "contact force on the body along the ground"),
     Quantity("friction_needed", "1", "friction force over normal force"),
-    Quantity("energy", "J", "kinetic and potential energy"),
+    Quantity("energy", "J", "sum of kinetic and potential energy"),
     Quantity("kinetic_energy", "J", "kinetic energy"),
-    Quantity("translational_energy", "J", "kinetic energy of the centre"),
-    Quantity("rotational_energy", "J", "kinetic energy of the rotation about the centre"),
+    Quantity("translational_energy", "J", "kinetic energy of translation"),
+    Quantity("rotational_energy", "J", "kinetic energy of rotation about the centre"),
     Quantity("potential_energy", "J", "potential energy"),
 )
 MATRICES = (
@@ -61,10 +61,10 @@ MULTIPLIERS = (
     Quantity("lambda3", "N", "multiplier of the constraint f3"),
     Quantity("lambda4", "N m", "multiplier of the constraint f4"),
 )
-MODE = Quantity("mode", "1", "what the body does")
+MODE = Quantity("mode", "1", "code of the mode of motion")
 
 
 def flags(kind: type[enum.IntEnum]) -> dict[str, Any]:
-    """Return attributes with the names of codes, as in the CF conventions."""
+    """Return attributes that name the codes of an enum, following the CF conventions."""
     names = " ".join(each.name for each in kind)
     return {"flag_values": np.array(list(kind), dtype=np.int8), "flag_meanings": names}

@@ -1,4 +1,4 @@
-"""The arrays of a Trajectory: read-only, with one number for every sample."""
+"""Samples of a motion: read-only arrays with one entry per sample, and single states."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from .events import MODES
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
-DEFAULT_SAMPLES = 1001  # of a motion whose end time alone is given
+DEFAULT_SAMPLES = 1001  # number of samples if only the end time is given
 Pair = tuple[FloatArray, FloatArray]  # q and q_dot
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
 class ContactSamples(NamedTuple):
-    """Samples of a contact motion in addition to theta, omega and x."""
+    """The samples of a contact motion other than theta, omega and x."""
 
     z: FloatArray
     x_dot: FloatArray
@@ -37,7 +37,7 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
 
-# Components of a state that the ground leaves free
+# Components of a state that can be chosen independently in each mode
 _ON_GROUND = ("theta", "omega", "x")
 FREE: dict[Mode, tuple[str, ...]] = {
     Mode.ROLLING: _ON_GROUND, Mode.REST: _ON_GROUND, Mode.SLIDING: (*_ON_GROUND, "x_dot"),
@@ -47,18 +47,18 @@ _OF_COORDINATES = 3  # number of arrays of the multiplier model's samples
 
 
 def frozen(values: _Values) -> _Values:
-    """Make an array read-only, and return the array itself."""
+    """Make an array read-only, and return the same array."""
     values.setflags(write=False)
     return values
 
 
 def even_times(begin: float, end: float, count: int) -> FloatArray:
-    """Return `count` even times, none beyond `end`: `np.linspace` rounds subnormal steps up."""
+    """Return `count` evenly spaced times up to `end`; `np.linspace` can exceed it by rounding."""
     return np.minimum(np.linspace(begin, end, count), end)
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return a solution's samples at times, in any order, as fields of a Trajectory."""
+    """Return the samples of a solution at times in any order, as fields of a Trajectory."""
     if _core.sample_times(times) is not None:
         return fields_of(solution.samples(times))
     order = np.argsort(times, kind="stable")
@@ -69,8 +69,8 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 def fields_of(samples: tuple[Any, ...]) -> dict[str, Any]:
     """Return samples as fields of a Trajectory.
 
-    Samples of rolling are t, theta, omega, x; contact adds the fields of ContactSamples; samples of
-    the multiplier model are t, q, q_dot.
+    The samples of the rolling model are t, theta, omega, x. The contact model adds the fields of
+    ContactSamples. The samples of the multiplier model are t, q, q_dot.
     """
     if len(samples) == _OF_COORDINATES:
         t, q, q_dot = samples
@@ -97,7 +97,7 @@ def details(of: Trajectory) -> dict[str, FloatArray]:
 
 
 def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-    """Return z, x_dot, z_dot, normal and friction force at the samples, cheaper than `details`."""
+    """Return z, x_dot, z_dot and both forces at the samples, at a lower cost than `details`."""
     if of.contact is not None:
         return of.contact._asdict()
     if of.coordinates is None:
@@ -110,7 +110,7 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return a read-only array: a copy, unless the array already is read-only and no view."""
+    """Return a read-only array: the array itself if it is read-only and not a view, or a copy."""
     is_own = values.base is None and not values.flags.writeable
     return values if is_own else frozen(values.copy())
 
@@ -118,12 +118,12 @@ def _untouchable(values: _Values) -> _Values:
 def sentence(name: str, value: Any) -> str:
     """Return a plain str, even if the value is of a subclass, or raise TypeError."""
     if not isinstance(value, str):
-        raise TypeError(f"{name} must be a sentence, got {shown(value)}")
+        raise TypeError(f"{name} must be a string, got {shown(value)}")
     return str.__str__(value)
 
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
-    """Return a read-only 1-D array of numbers, of the given size (None: any size)."""
+    """Return a read-only 1-D array of numbers; a `size` of None allows any size."""
     numbers = array(name, values)
     if numbers.ndim != 1:
         raise ValueError(f"{name} must be a 1-D array, got shape {numbers.shape}")
@@ -162,7 +162,7 @@ def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
 
 @dataclass(frozen=True)
 class Sample:
-    """A motion at one time: numbers with the names and units of the arrays of a Trajectory.
+    """The state of a motion at one time, with the names and units of the arrays of a Trajectory.
 
     Examples
     --------
@@ -189,11 +189,11 @@ class Sample:
 
 
 def sample_at(motion: Trajectory, t: float) -> Sample:
-    """Return a motion's sample at a time in [0, t_end]."""
+    """Return the state of a motion at a time in [0, t_end]."""
     scene = motion.scene
     if motion.method == GIVEN:
-        there = motion.sol(t)
-        values = {field.name: getattr(there, field.name)[0].item() for field in fields(Sample)}
+        state = motion.sol(t)
+        values = {field.name: getattr(state, field.name)[0].item() for field in fields(Sample)}
         return Sample(**values | {"mode": MODES[values["mode"]]})
     values = motion._solution.sample_at(scene.core, motion.settings.core, t)
     values["t"], values["turns"] = t, (values["theta"] - scene.theta) / (2 * math.pi)

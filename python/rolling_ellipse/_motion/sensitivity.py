@@ -1,4 +1,4 @@
-"""Derivatives of a motion, through its events, with respect to the arguments of its scene."""
+"""Derivatives of a motion with events with respect to the arguments of its scene."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ from .inputs import INPUTS, STATE, distinct, size_of, units_of
 from .status import Status
 from .trajectory import Trajectory
 
-_FARTHEST = 1e13  # growth beyond which a motion in doubles has parted from the exact one
-_NEAREST = 1e-6  # first distance of the search for other events, and its resolution
+_FARTHEST = 1e13  # growth beyond which a motion in doubles differs from the exact one
+_NEAREST = 1e-6  # initial distance in the search for other events, and its relative resolution
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,18 +46,19 @@ class Sensitivity(FieldsOnly):
     ----------
     trajectory : Trajectory
     wrt : tuple of str, k names
-        Inputs.
+        Names of the inputs.
     side : int
-        0; 1 or -1 for derivatives towards larger or smaller inputs only.
+        0, or 1 or -1 for one-sided derivatives, towards larger or smaller inputs.
     state : ndarray, shape (n, 6, k)
         Derivatives of x, z, theta, x_dot, z_dot, omega at the samples; at an event, just after it.
     event_times : ndarray, shape (m, k)
         Derivatives of the times of the m events. They do not depend on the samples.
     error, event_times_error : ndarray, shape (k,)
         Estimated error of each column of `state` and of `event_times`, relative to its largest
-        entry (or to one unit per natural size of the input, if larger). Units of the state are L,
-        L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b); the unit of time is sqrt(L/g). It
-        includes the errors of a stepped method, and the growth of rounding errors in the motion.
+        entry, or to one natural unit per natural size of the input if that is larger. The natural
+        units of the state are L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b), and that
+        of time is sqrt(L/g). The estimate includes the errors of a stepped method and the growth of
+        rounding errors in the motion.
 
     Examples
     --------
@@ -80,7 +81,7 @@ class Sensitivity(FieldsOnly):
     def at(self, t: float) -> FloatArray:
         """Return the derivatives at a time in [0, t_end] [s], shape (6, k), as in `state`.
 
-        Each call computes new differences; for many times ``motion.sol(times).sensitivity(wrt)`` is
+        Each call computes new differences. For many times ``motion.sol(times).sensitivity(wrt)`` is
         faster.
 
         Examples
@@ -90,19 +91,19 @@ class Sensitivity(FieldsOnly):
         >>> print(f"{theta:.4f} rad per N s")
         -0.3322 rad per N s
         """
-        there = self.trajectory.sol(number("t", t))
-        return sensitivity(there, self.wrt, side=self.side).state[0]
+        at_t = self.trajectory.sol(number("t", t))
+        return sensitivity(at_t, self.wrt, side=self.side).state[0]
 
     def forecast(self, **changes: float) -> FloatArray:
         """Return the states at the samples to first order in changes of inputs, shape (n, 6).
 
-        An ExtrapolationWarning is issued if a change is larger than its `distance` or not towards
-        its `side`, or if all changes together lead to other events.
+        An ExtrapolationWarning is issued if a change exceeds its `distance` or has the wrong sign
+        for `side`, or if all changes together lead to other events.
 
         Parameters
         ----------
         **changes : float
-            Additions to inputs in `wrt`.
+            Changes of inputs in `wrt`, to be added to their values.
 
         Examples
         --------
@@ -118,7 +119,7 @@ class Sensitivity(FieldsOnly):
             added[self.wrt.index(choice("changes", name, self.wrt))] = number(name, change)
         if beyond := self._beyond(added):
             warnings.warn(
-                f"{beyond}: the events of such a motion are others, and a forecast is a guess",
+                f"{beyond}: such a motion has other events, so that a forecast is unreliable",
                 ExtrapolationWarning,
                 stacklevel=2,
             )
@@ -126,20 +127,20 @@ class Sensitivity(FieldsOnly):
 
     @cached_property
     def distance(self) -> FloatArray:
-        """Change of each input at which the kinds or the order of events change, shape (k,).
+        """Smallest change of each input that alters the kinds or the order of events, shape (k,).
 
-        The search doubles a change from a millionth of the input's natural size up to that size,
-        and bisects. For "t": the least time from a sample to the next event. The impacts of a body
-        that settles are counted down to those at the `rest_speed`.
+        The search doubles the change, starting from 1e-6 of the natural size of the input, up to
+        that size, and then bisects. For "t" the distance is the shortest time from a sample to the
+        next event. Every impact of a body that settles counts, down to the `rest_speed`.
         """
         return np.array([_distance(self.trajectory, name, self.side) for name in self.wrt])
 
     def _beyond(self, added: FloatArray) -> str:
-        """Say in words which changes are too large for a forecast; "" if none is."""
+        """Describe which changes are too large for a forecast; return "" if none is."""
         given = {name: float(x) for name, x in zip(self.wrt, added, strict=True) if x}
         for name, change in given.items():
             if self.side * change < 0 and name != "t":
-                return f"{name} changes by {change:.3g}, which is not towards side = {self.side}"
+                return f"{name} changes by {change:.3g}, whose sign is not that of side {self.side}"
             farthest = float(self.distance[self.wrt.index(name)])
             if abs(change) > farthest:
                 return (
@@ -147,7 +148,7 @@ class Sensitivity(FieldsOnly):
                 )
         given.pop("t", None)
         if len(given) > 1 and not _same_events(self.trajectory, given):
-            return f"{', '.join(given)} change together beyond their distance"
+            return f"the changes of {', '.join(given)} together are beyond their distance"
         return ""
 
     def __repr__(self) -> str:
@@ -166,9 +167,10 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     ----------
     wrt : str or iterable of str
         Arguments of `Scene`, components of its impulse (``"jx"``, ``"jz"``, ``"dx"``, ``"dz"``), or
-        ``"t"``. All others stay as given; omitted ones take their defaults.
+        ``"t"``. All other arguments stay fixed; those that the scene omits keep their defaults.
     side : {0, 1, -1}
-        1 or -1: derivatives towards larger or smaller values only, as needed at an input's bound.
+        1 or -1: one-sided derivatives, towards larger or smaller values, as needed at the bound of
+        an input.
 
     Returns
     -------
@@ -178,18 +180,20 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
     ------
     ValueError
         If a name is unknown, repeated, or not a number of the scene; the motion starts at rest or
-        does not reach its end; there is no derivative, as where neighbours have other events; or
-        changes grow by more than 1e13, so that the motion in doubles is no longer the exact one.
+        does not reach its end; there is no derivative, for example because neighbours have other
+        events; or changes grow by more than 1e13, so that the motion in doubles differs from the
+        exact one.
 
     Notes
     -----
-    The motion is solved again at six or seven values of each input, and differences of sixth order
-    [1]_ are taken. The time between two events is stretched to its length in the motion, so that
-    states of the same arc are compared; the change of the motion during that shift is subtracted.
-    Of 23 steps, each half the one before, each state uses the one whose result agrees best with
-    those of the steps before and after it, at the least rounding error. Where a motion of many
-    events needs more than that, parts of three events are differentiated with respect to the states
-    at their starts, and combined by the chain rule along the computed arcs of the motion.
+    The motion is solved again for six or seven values of each input, and differences of sixth order
+    [1]_ are computed. The time between two events is stretched to its length in the motion, so that
+    states of the same arc are compared; the change of the motion during this shift is subtracted.
+    There are up to 23 steps, each half the previous one. Each state uses the step with the smallest
+    error, which is the rounding error plus the distance to the results of the steps before and
+    after it. If this is not accurate enough for a motion of many events, parts of three events are
+    differentiated with respect to the states at their starts, and combined with the chain rule
+    along the computed arcs.
 
     References
     ----------
@@ -219,13 +223,13 @@ def sensitivity(motion: Trajectory, wrt: str | Iterable[str], *, side: int = 0) 
 
 
 def require_its_own(motion: Trajectory) -> None:
-    """Raise ValueError unless the motion is that of its scene, moves, and goes on to its end."""
+    """Raise ValueError unless the motion is that of its scene, moves, and reaches its end."""
     if motion.start is not None or motion.method == GIVEN:
         source = "arrays" if motion.start is None else "coordinates"
         raise ValueError(f"motion must be that of its scene, got one from {source}")
     if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
         ended = f"{motion.status.name} at t = {motion.t_end:.6g} s"
-        raise ValueError(f"motion must go on to its end, got {ended}")
+        raise ValueError(f"motion must reach its end, got {ended}")
     if motion.scene.initial_state.mode is Mode.REST:
         raise ValueError(
             "motion must not start at rest, where derivatives differ, got REST at t = 0 s"
@@ -237,15 +241,14 @@ def _derivatives(
 ) -> tuple[FloatArray, FloatArray]:
     """Return derivatives for k inputs, (6, n + m, k), and their errors, (n + m, k).
 
-    The arrays are like those of `neighbours`, which has one input.
-
-    Whether the motion is split into parts depends on its events and its end, not on its samples.
+    The arrays are arranged as in `neighbours`, with a last axis for the inputs. Whether the motion
+    is split into parts depends on its events and its end, but not on its samples.
     """
     n = len(motion.t)
-    ends = slice(n, n + 1), slice(n + 1, None)  # rows of the end and of the events, after samples
+    ends = slice(n, n + 1), slice(n + 1, None)  # rows of the end and of the events
     whole = motion.sol(np.append(motion.t, motion.t_end))
     value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
-    error, others = np.zeros((2, *value.shape[1:]))  # errors of the steps, and of the motion
+    error, others = np.zeros((2, *value.shape[1:]))  # errors of differences, and of the motion
     problems: list[ValueError | None] = [None] * len(names)
     for k, name in enumerate(names):
         if name == "t":
@@ -270,7 +273,7 @@ def _derivatives(
     for k, name in enumerate(names):
         if not worst[k] < WORST:
             place = motion.t[error[:n, k].argmax()]
-            only = f"steps agree to {worst[k]:.1g} only at t = {place:.6g} s"
+            only = f"steps agree only to {worst[k]:.1g} at t = {place:.6g} s"
             problem = None if k in taken else problems[k]
             raise without_derivative(name, problem or only) from problem
         if k in taken:
@@ -279,13 +282,13 @@ def _derivatives(
 
 
 def _require_near(motion: Trajectory, name: str, growth: FloatArray) -> None:
-    """Raise ValueError where changes of an input have grown too much for doubles."""
+    """Raise ValueError if changes of an input have grown too much for doubles."""
     if (far := growth > _FARTHEST).any():
         first = motion.t[far].min()
         raise without_derivative(
             name,
-            f"changes grow {growth.max():.2g} times, and from {_FARTHEST:.0e} times on (at t = "
-            f"{first:.6g} s) the motion in doubles is not the exact one",
+            f"changes grow by a factor of {growth.max():.2g}; beyond {_FARTHEST:.0e} (from t = "
+            f"{first:.6g} s on) the motion in doubles differs from the exact one",
         )
 
 
@@ -296,7 +299,7 @@ def without_derivative(name: str, reason: object) -> ValueError:
 def _relative(
     motion: Trajectory, names: tuple[str, ...], value: FloatArray, error: FloatArray
 ) -> FloatArray:
-    """Return errors (r, k) relative to the largest entries of vectors (6, r, k), shape (k,)."""
+    """Return the largest errors of (r, k) relative to the largest entries of (6, r, k), (k,)."""
     least = [1.0 if name == "t" else 1 / size_of(motion.scene, name) for name in names]
     largest = np.maximum(np.abs(value).max(axis=(0, 1), initial=0.0), least)
     return error.max(axis=0, initial=0.0) / largest

@@ -1,4 +1,4 @@
-"""Advice for a computed motion that has lost energy or drifts off its constraints."""
+"""Advice for a computed motion that has lost energy or drifted off its constraints."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
-# Largest accepted constraint error relative to the long semi-axis: a pixel of a picture
+# Largest accepted constraint error relative to the long semi-axis: one pixel in a picture
 _MISSED = 1e-3
-_MOVED = 0.1  # largest accepted error of a step before its projection [long semi-axes]
+_MOVED = 0.1  # largest accepted constraint error of a step before projection [long semi-axes]
 _OF_RTOL = 10.0  # accepted relative change of the energy under error control, in units of rtol
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return one sentence of advice if a motion has lost energy or left its constraints, or None.
+    """Return a sentence of advice if a motion has lost energy or left its constraints, or None.
 
-    Both errors are measured at steps and between them. The loss of energy, which rolling conserves,
-    is relative to the largest kinetic plus |potential| energy, the latter with x = 0 at the start.
-    A projection keeps constraints and energy for any step size, but hides the local error. The
-    distance by which it moves a state reveals that error: the constraint error of a step is part of
-    its local error, and of the same size. If it is a tenth of the body, the projected state belongs
-    to another motion.
+    Both errors are measured at the steps and between them. Rolling conserves energy; its change is
+    taken relative to the largest kinetic plus |potential| energy, with x = 0 at the start. A
+    projection enforces constraints and energy for any step size, but it hides the local error. The
+    distance by which it moves a state reveals this error, because the constraint error of a step is
+    part of its local error and of the same order. If that distance is a tenth of the body, the
+    projected state belongs to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:
@@ -48,20 +48,20 @@ def advice(motion: Trajectory) -> str | None:
     if projected > _MOVED:
         return (
             f"a step has missed the constraints by {projected:.2g} of the long semi-axis "
-            f"before stabilization {settings.stabilization!r}, which moves the body elsewhere: "
+            f"before stabilization {settings.stabilization!r}, which leads to another motion: "
             f"take {finer}"
         )
     if constraints > _MISSED:
         return (
-            f"the constraints are missed by {constraints:.2g} of the long semi-axis "
+            f"the constraint error has reached {constraints:.2g} of the long semi-axis "
             f"{by} with stabilization {settings.stabilization!r}: use 'projection', "
-            "which keeps them, or the model 'rolling', which has none to miss"
+            "which enforces the constraints, or the model 'rolling', which has none"
         )
     better = "method 'exact', which takes none"
     if motion.model == "multipliers":
         better = "stabilization 'projection+energy'"
     return (
-        f"the energy has changed by {energy:.2g} of itself {by} with "
+        f"the relative change of the energy has reached {energy:.2g} {by} with "
         f"method {settings.method!r}: take {finer}, or {better}"
     )
 
@@ -76,8 +76,8 @@ def _too_stiff(settings: Settings, step: float, growth: float) -> str:
         else:
             stable = middle
     return (
-        f"each step of {step:g} s multiplies what the constraints are missed by by "
-        f"{growth:.3g}, as method {settings.method!r} does not bear the gains {settings.baumgarte} "
-        f"there: take steps of at most {math.floor(stable * 1e6) / 1e6:g} s, smaller gains, or "
+        f"each step of {step:g} s multiplies the constraint error by {growth:.3g}, because "
+        f"method {settings.method!r} is unstable with the gains {settings.baumgarte} at this step: "
+        f"take steps of at most {math.floor(stable * 1e6) / 1e6:g} s, smaller gains, or "
         "stabilization 'projection'"
     )

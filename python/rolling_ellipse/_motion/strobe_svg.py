@@ -1,4 +1,4 @@
-"""A motion in a notebook: a table of its facts above a small picture in SVG.
+"""The display of a motion in a notebook: a table of facts above a small SVG picture.
 
 The picture shows the body at evenly spaced times, in the colour of the text.
 """
@@ -22,17 +22,17 @@ _Places = npt.NDArray[np.complex128]
 
 _BODIES, _POINTS = 9, 81
 _WIDTH, _HEIGHT = 480.0, 180.0  # largest size of the picture [px]
-_MARGIN = 1.1  # room around the centres in the picture [long semi-axes]
+_MARGIN = 1.1  # margin around the centres in the picture [long semi-axes]
 _REACH = 12.0  # largest distance from the start in the picture [long semi-axes]
-_TURNING = 4 * math.pi  # largest total rotation, back and forth, in the picture [rad]
+_TURNING = 4 * math.pi  # largest rotation in the picture, summed over both senses [rad]
 
 
 def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
     """Return the picture, with gravity downwards; "" for a motion without samples.
 
-    Points are complex numbers, x - iz relative to the foot of the first centre: i points down as on
-    a screen, and clockwise rotation is positive. Their unit is the long semi-axis, so that no scene
-    is too large or too far away.
+    Points are complex numbers x - iz relative to the ground point below the first centre. On the
+    screen i points down, and clockwise rotation is positive. The unit is the long semi-axis, so
+    that scenes of any size and position can be drawn.
     """
     if trajectory.t.size == 0:
         return ""
@@ -53,7 +53,7 @@ def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
-    if size.real == 0 or size.imag == 0:  # too far away for doubles to resolve the picture
+    if size.real == 0 or size.imag == 0:  # too far from the origin for doubles to resolve the body
         return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)
@@ -74,7 +74,7 @@ def strobe_svg(trajectory: Trajectory, style: str = "") -> str:
 
 
 def _shown_until(trajectory: Trajectory) -> float:
-    """Return the time [s] at which the picture ends: at `_REACH`, `_TURNING` or the last sample."""
+    """Return the time [s] at which the picture ends: by `_REACH`, `_TURNING` or the last sample."""
     t, x, z, theta = (getattr(trajectory, name) for name in ("t", "x", "z", "theta"))
     reach = _REACH * max(trajectory.scene.a, trajectory.scene.b)
     away = np.maximum(np.abs(x - x[0]), np.abs(z - z[0])) / reach
@@ -97,7 +97,7 @@ def _line(places: Any, width: float) -> str:
 
 
 def _repr_html_(trajectory: Trajectory) -> str:
-    """Return a table of the motion's facts and, if there are samples, the picture `strobe_svg`."""
+    """Return a table of facts about the motion and, if it has samples, the picture `strobe_svg`."""
     return f"{html_table(repr(trajectory)[1:-1], _rows(trajectory))}{strobe_svg(trajectory)}"
 
 

@@ -1,4 +1,4 @@
-"""A sampled motion, and everything that follows from it, computed on demand."""
+"""A sampled motion, with derived quantities that are computed on demand."""
 
 from __future__ import annotations
 
@@ -57,32 +57,32 @@ if TYPE_CHECKING:
 
     _Path = str | os.PathLike[str]
 
-# For files, pickles and `sol`, not for users
+# Attributes for files, pickles and `sol`, which `dir` omits
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# Effects of a blow that only `initial_state` explains; they come first among the reasons
+# Reasons that are omitted because `initial_state` gives them; one of them can come first
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
 def _derived(
     function: Callable[[Trajectory], npt.NDArray[_Number]],
 ) -> cached_property[npt.NDArray[_Number]]:
-    """Make a property of a Trajectory: a read-only array, computed on first access."""
+    """Return a property of a Trajectory: a read-only array, computed on first access."""
     return cached_property(lambda self: frozen(np.ascontiguousarray(function(self))))
 
 
 def _part(whole: str, key: Any) -> cached_property[FloatArray]:
-    """Make a property of a Trajectory that is a part of another property."""
+    """Return a property of a Trajectory that is a part of another property."""
     return _derived(lambda self: getattr(self, whole)[key])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory(FieldsOnly):
-    """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
+    """A motion sampled at n times. Arrays are float64 and read-only, and time is the first axis.
 
     Two trajectories are equal if their scenes, settings, starts and times are equal, and their
-    samples and events agree bit for bit, as they do after saving and loading, pickling, or
-    simulating again. `stats` is not compared.
+    samples and events agree bit for bit. This is the case after saving and loading, pickling, or a
+    second simulation. `stats` is not compared.
 
     Attributes
     ----------
@@ -91,55 +91,57 @@ class Trajectory(FieldsOnly):
     theta, omega : ndarray, shape (n,)
         Angle, clockwise positive [rad]; angular velocity [rad/s].
     x, z, psi, r : ndarray, shape (n,)
-        Centre [m]; angle and distance from the centre to the contact [rad, m].
+        Position of the centre [m]; angle and distance of the contact from the centre [rad, m].
     x_dot, z_dot, psi_dot, r_dot, x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot : ndarray, shape (n,)
-        Their rates.
+        First and second derivatives with respect to time.
     q, q_dot : ndarray, shape (n, 5)
         x, z, theta, psi, r and their rates.
     contact_x : ndarray, shape (n,)
-        Where the body touches the ground [m].
+        Position of the contact along the ground [m].
     turns : ndarray, shape (n,)
-        Turns made since the start of the scene.
+        Number of turns since the start of the scene.
     normal_force, friction_force : ndarray, shape (n,)
-        Contact force on the body, away from the ground and along it [N].
+        Components of the contact force on the body, away from the ground and along it [N].
     friction_needed : ndarray, shape (n,)
-        ``|F|/N`` (infinite where N <= 0 without F = 0).
+        ``|F|/N``; where N <= 0 it is 0 if F = 0 and infinite otherwise.
     multipliers : ndarray, shape (n, 4)
         Lagrange multipliers of the four constraints; the first two are F and N.
     energy, kinetic_energy, translational_energy, rotational_energy, potential_energy : ndarray
-        Computed from the state itself [J], shape (n,).
+        Energies of the state [J], shape (n,).
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
-    scene, model, method, status, message, reason : Scene, str, str, Status, str, str
-        Scene, model and method used, how the motion ended, and what happens in it: when rolling
-        ends, what is proved about it, and the friction that it and the blow need.
+    scene, model, method, status, message : Scene, str, str, Status, str
+        Scene, model and method used; how the motion ended, as a Status and as a sentence.
+    reason : str
+        Explanation of the motion: when rolling ends, what is proved about it, and the friction
+        needed for rolling and for the blow.
     valid_until : float
         Time until which the model is valid [s]; infinite if it always is.
     t_end : float
-        Last time reached [s]; `sol` works up to it.
+        Last time reached [s], up to which `sol` can be evaluated.
     span : float
         Last time requested [s].
     settings : Settings
         Arguments of `simulate`: model, method and their options.
     blows : tuple of (float, Impulse)
-        Blows during the motion: times [s] and impulses, as given to `simulate`.
+        Blows during the motion: times [s] and impulses, as passed to `simulate`.
     events : tuple of Event
-        Impacts, blows, and changes of mode and of the slip's direction, of the model "contact", in
-        order of time; it prints as a table and has `to_dataframe`.
+        Events of the model "contact" in order of time: impacts, blows, and changes of mode or of
+        the direction of slip. The tuple prints as a table and has `to_dataframe`.
     stats : dict
-        Counts of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
-        the right-hand side, without those for the dense output).
+        Solver statistics: numbers of ``segments``, ``steps``, ``rejected_steps`` and
+        ``evaluations`` (of the right-hand side, without those for the dense output).
 
     Other Parameters
     ----------------
     coordinates, start : tuple of ndarray, or None
-        Stored data of a motion of "multipliers": q and q_dot at the samples, (n, 5) each, and at
-        the start, (5,) each, if the start is not the scene's (see `computed`).
+        Stored data of the model "multipliers": q and q_dot at the samples, (n, 5) each, and at the
+        start, (5,) each, if the start differs from that of the scene (see `computed`).
     contact : ContactSamples or None
-        Stored data of "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the
-        samples.
+        Stored data of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at
+        the samples.
     kept_events : tuple of Event, or None
-        Events from a file, for `events`; if missing, the motion is solved again for its events.
+        Events read from a file. If they are None, `events` solves the motion again.
 
     Examples
     --------
@@ -198,12 +200,12 @@ class Trajectory(FieldsOnly):
         for name, kind in (("settings", Settings), ("status", Status)):
             if not isinstance(given[name], kind):
                 got = shown(given[name])
-                raise TypeError(f"{name} must be of the class {kind.__name__}, got {got}")
+                raise TypeError(f"{name} must be an instance of {kind.__name__}, got {got}")
         _require_events(self.kept_events)
         _require_counts(self.stats)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: pickles and deep copies lose that."""
+        """Make the arrays read-only again, since pickles and deep copies leave them writeable."""
         self.__dict__.update(state)
         for group in self._arrays():
             for values in group:
@@ -215,8 +217,8 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Solve a scene up to the last of the times, and sample it at all times reached.
 
-        A start (q, q_dot) off the constraints replaces the start of the scene. A single time, 0-d,
-        is that of the end of a motion that stops, whose samples are even.
+        A start (q, q_dot) off the constraints replaces the start of the scene. For a motion with a
+        stop, `times` may be 0-d: the latest end, with evenly spaced samples up to the actual end.
         """
         until = times if times.ndim else times.reshape(1)
         solution, samples = _core.simulate(scene.core, settings.core, until, start)
@@ -240,7 +242,7 @@ class Trajectory(FieldsOnly):
         times = np.array([self.span])
         return _core.simulate(self.scene.core, self.settings.core, times, self.start)[0]
 
-    # -- derived from the samples ---------------------------------------------------------------
+    # -- quantities derived from the samples ------------------------------------------------------
 
     @cached_property
     def _details(self) -> dict[str, FloatArray]:
@@ -329,7 +331,7 @@ class Trajectory(FieldsOnly):
         Raises
         ------
         ValueError
-            If a time is outside.
+            If a time is outside [0, t_end], or `t` has more than one axis.
 
         Examples
         --------
@@ -349,12 +351,12 @@ class Trajectory(FieldsOnly):
         return trusted(type(self), kept | sampled(solution, times) | {"_solution": solution})
 
     def at(self, t: float) -> Sample:
-        """Return the state at time t [s] in plain floats.
+        """Return the state at time t [s] as plain floats.
 
         Raises
         ------
         ValueError
-            If t is outside of [0, t_end].
+            If t is outside [0, t_end].
 
         Examples
         --------
@@ -369,20 +371,20 @@ class Trajectory(FieldsOnly):
         return sample_at(self, time)
 
     def scene_at(self, t: float) -> Scene:
-        """Return a Scene that continues from time t [s]; give it an impulse with `Scene.replace`.
+        """Return a Scene that continues from time t [s]; `Scene.replace` can add an impulse.
 
-        At the time of an event it continues in the mode after the event, without later ``blows``.
-        If a motion ended because
-        of ``max_events``, the next event is due at its `t_end`. If that event is an impact, it is
-        the first event of the new motion, at t = 0 or a rounding later: no other scene may start by
-        moving into the ground. Any other change happens without an event where the state is at the
-        limit of its mode to within rounding, else a moment later. Bounces too low to be resolved
-        are summed after an impact; a scene that starts among them sums them after one more impact.
+        At the time of an event the scene continues in the mode after the event. It does not include
+        later ``blows``. If the motion ended because of ``max_events``, its next event is due at
+        `t_end`. An impact that is due is then the first event of the new motion, at t = 0 or one
+        rounding later; this is the only way to obtain a scene that moves into the ground. A change
+        of mode that is due happens without an event if the state is at the limit of its mode to
+        within rounding, otherwise a moment later. Bounces too low to be resolved are summed after
+        an impact; a scene that starts among them sums them after one more impact.
 
         Raises
         ------
         ValueError
-            If t is outside of [0, t_end].
+            If t is outside [0, t_end].
 
         Examples
         --------
@@ -396,7 +398,7 @@ class Trajectory(FieldsOnly):
         constrained = dict.fromkeys(("z", "x_dot", "z_dot", "impulse"))
         return reached_scene(self.scene.__getstate__() | constrained | state)
 
-    # -- methods of other modules, bound by `methods` ---------------------------------------------
+    # -- methods from other modules, bound by `bind_methods` --------------------------------------
 
     if TYPE_CHECKING:
         when, sensitivity, growth = passages.when, derivatives.sensitivity, growing.growth
@@ -421,13 +423,13 @@ class Trajectory(FieldsOnly):
             theta: npt.ArrayLike | None = None, *, scene: Scene,
         ) -> Self: ...  # fmt: skip
 
-    else:  # with it a type checker would accept any attribute name
+    else:  # if type checkers saw this method, they would accept any attribute name
 
         def __getattr__(self, name: str) -> Any:
-            if name in dir(type(self)):  # its value has no cause but an error: raise that again
+            if name in dir(type(self)):  # computing a property failed: raise that error again
                 return object.__getattribute__(self, name)
             hint = meant(name, dir(self)) if name in MEANT else ""
-            known = {} if hint else {"name": name, "obj": self}  # Python suggests a near name
+            known = {} if hint else {"name": name, "obj": self}  # Python suggests a similar name
             raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}", **known)
 
     def __dir__(self) -> list[str]:
@@ -446,7 +448,7 @@ class Trajectory(FieldsOnly):
         return hash(_facts(self))
 
     def _arrays(self) -> list[tuple[npt.NDArray[Any], ...]]:
-        """Return the stored arrays: samples, coordinates, start, contact; () for missing ones."""
+        """Return groups of stored arrays: samples, coordinates, start, contact; () if missing."""
         samples = self.t, self.theta, self.omega, self.x
         return [samples, self.coordinates or (), self.start or (), self.contact or ()]
 
@@ -462,7 +464,7 @@ class Trajectory(FieldsOnly):
         return f"<Trajectory {self.model}/{self.method}: {samples}, {self.status.name}>"
 
 
-# What decides equality besides arrays and events
+# Attributes that equality compares in addition to arrays and events
 _facts = attrgetter(
     "scene", "settings", "span", "model", "method", "status", "message", "reason", "valid_until",
     "t_end", "t.shape",
@@ -478,14 +480,14 @@ def _require_events(kept: Any) -> None:
 
 def _require_counts(stats: Any) -> None:
     if not (isinstance(stats, dict) and set(stats) <= set(_core.STATS)):
-        raise ValueError(f"stats must have no names but {_core.STATS}, got {shown(stats)}")
+        raise ValueError(f"stats must have names among {_core.STATS}, got {shown(stats)}")
     for name, count in stats.items():
         if type(count) is not int or not 0 <= count < 2**63:
             raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
 def _reason(self: Trajectory) -> str:
-    """What happens in a motion, then what is proved about its rolling."""
+    """What happens in the motion, then what is proved about its rolling."""
     if self.start is not None:
         return in_words([("off_constraints", [])])
     _, headline, reasons = _core.describe(self.scene.core, self._solution)
@@ -494,12 +496,12 @@ def _reason(self: Trajectory) -> str:
 
 
 def _fact(meaning: str, read: Callable[[Trajectory], Any]) -> Callable[[Trajectory], Any]:
-    """Return a function, with a docstring, that reads a fact of a motion from its solution."""
+    """Return the function that reads a fact about a motion, with its meaning as docstring."""
     read.__doc__ = meaning
     return read
 
 
-_HELD = {  # fields of every motion once it is read, with None for those that it does not have
+_HELD = {  # stored fields and their docstrings; a field that a motion lacks is None
     "t": "Times [s].",
     "theta": "",
     "omega": "",
@@ -508,16 +510,16 @@ _HELD = {  # fields of every motion once it is read, with None for those that it
     "span": "Last time requested [s].",
     "settings": "Arguments of `simulate`: model, method and their options.",
     "coordinates": 'Stored q and q_dot at the samples [m, rad], of "multipliers".',
-    "start": "Stored q and q_dot at the start [m, rad], if it is not the scene's.",
-    "contact": 'Stored samples besides theta, omega and x [m, m/s, N], of "contact".',
-    "kept_events": "Events from a file, for `events`.",
+    "start": "Stored q and q_dot at the start [m, rad], if it differs from the scene's.",
+    "contact": 'Stored samples other than theta, omega and x [m, m/s, N], of "contact".',
+    "kept_events": "Events read from a file.",
 }
 find_late(
     Trajectory,
     **{name: _fact(meaning, lambda _: None) for name, meaning in _HELD.items()},
     reason=_reason,
     stats=_fact(
-        f"Counts of the solver by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats
+        f"Solver statistics by name: {', '.join(_core.STATS)}.", lambda m: m._solution.stats
     ),
     model=_fact("Model used.", lambda m: m._solution.model),
     method=_fact("Method used.", lambda m: m._solution.method),

@@ -1,1 +1,1 @@
-"""Functions that take scenes: simulation of one or many, proofs, classification, races."""
+"""Functions of scenes: simulation of one or many, proofs, classification, fits and races."""

@@ -1,4 +1,4 @@
-"""The outcome of a blow, the friction that rolling requires, and the blow that gives a speed."""
+"""The outcome of a blow, the friction that rolling requires, and the blow for a given speed."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .batches.asked import BLOW, SceneGrid
 from .certify import certify
 from .workers import Columns, shared
 
-_SPEEDS = 2048  # number of speeds tried above the one that just reaches the tip
-_FASTEST = 1e3  # largest excess of these speeds, relative to the one that just reaches the tip
+_SPEEDS = 2048  # number of speeds tried beyond the one that just reaches the tip
+_FASTEST = 1e3  # largest relative excess of these speeds over the one that just reaches the tip
 
 
 @overload
@@ -29,49 +29,48 @@ def outcome(scene: Scene, impulse: None = None) -> Outcome: ...
 @overload
 def outcome(scene: Scene, impulse: Impulse) -> Any: ...
 def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArray[np.int8]:
-    """Return the first outcome of the motion after a blow.
+    """Return the first outcome of the motion after a blow, without integration.
 
-    No steps are taken; the Notes say what each outcome means.
+    The Notes define the outcomes.
 
     Parameters
     ----------
     scene : Scene
     impulse : Impulse, optional
-        Blow that replaces the scene's own; many blows if it has arrays.
+        Blow that replaces that of the scene; its arrays give many blows.
 
     Returns
     -------
     Outcome or ndarray of int8
-        For an impulse of arrays the codes of `Outcome`, in their common shape.
+        For an impulse of arrays, the codes of `Outcome` in their common shape.
 
     Raises
     ------
     ValueError
-        If a blow misses the body, or is stronger than a Scene accepts, or the scene has rolling
-        resistance: the events of `simulate` then tell what happens.
+        If a blow misses the body or is stronger than a Scene accepts, or the scene has rolling
+        resistance (use the events of `simulate` instead).
 
     Notes
     -----
     ==================  ==========================================================================
-    ``SLIPS``           the contact slides just after the blow (without friction whenever the body
-                        moves), or the body rolls until it slips, as in `classify`
+    ``SLIPS``           the contact slides just after the blow (without friction this happens
+                        whenever the body moves), or the body rolls until it slips, as in `classify`
     ``LOSES_CONTACT``   the blow lifts the body off the ground, or the body is in the air; or it
-                        is too fast for the ground, as in `classify`; or, on a slope, it rolls
-                        until it flies
-    ``JAMS``            the contact slides, and no rigid-body motion continues it, or two do
-                        (Painlevé)
-    ``RESTS``           it is in equilibrium and stays
+                        is too fast to stay on the ground, as in `classify`; or, on a slope, it
+                        rolls until it flies
+    ``JAMS``            the contact slides, and no rigid-body motion continues, or two do (Painlevé)
+    ``RESTS``           it stays in equilibrium
     ``ROCKS``           it rolls until it turns back
     ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, keeps rolling
     ``EDGE``            undecided within rounding
     ==================  ==========================================================================
 
-    The blow obeys the collision law of `Scene.initial_state`, and the rolling
-    after it is decided by the proofs of `classify`. On a slope the power series of `certify` follow
-    the rolling motion to the first of these events: ``ROCKS`` is the first instant without
-    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis perpendicular to the
-    ground (for a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which is
-    a flight if the body turns too fast for its weight by then (c < 0 < N).
+    The blow obeys the collision law of `Scene.initial_state`. The outcome of the rolling motion
+    after it follows from the proofs of `classify`. On a slope the power series of `certify` follow
+    the rolling motion to the first of these events. ``ROCKS`` is the first instant without
+    rotation. ``ROLLS_OVER`` is the first passage of a position with the long axis perpendicular to
+    the ground (for a circle, half a turn). ``SLIPS`` and ``LOSES_CONTACT`` are ends of rolling; the
+    end is a flight if the body then turns too fast for its weight (c < 0 < N).
 
     Examples
     --------
@@ -112,11 +111,12 @@ def required_friction(
     """Return the least coefficient of friction with which the body can roll forever.
 
     It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
-    ``|Gnt|/Gtt`` if that is larger: then the slip stops before the compression ends, and does not
+    ``|Gnt|/Gtt`` if that is larger; then the slip stops before the compression ends, and does not
     start again (the collision law of `Scene.initial_state`). The rolling that follows requires the
-    largest ``|F|/N`` of the whole motion: on level ground from `certify`; on a slope for a circle,
-    a body in equilibrium, or a body that rocks between two turning points (the maximum over the
-    angle, by a scan and golden section). The scene's own friction has no effect.
+    largest ``|F|/N`` of the whole motion. On level ground this comes from `certify`. On a slope it
+    is finite for a circle, a body in equilibrium, and a body that rocks between two turning points;
+    it is the maximum over the angle, from a scan and golden section search. The friction of the
+    scene has no effect.
 
     Parameters
     ----------
@@ -124,25 +124,26 @@ def required_friction(
         A mapping has the names of Scene's arguments, with numbers or arrays that broadcast, as for
         `simulate_many`.
     to : {"roll", "rest"}
-        "rest": the friction with which the body, whatever its start, can lie still on its slope:
-        tan(slope), or infinite if that is more than ``|a^2 - b^2|/(2 a b)``, the largest lead of
-        the contact over the height of the centre.
+        "rest" gives the friction with which the body can lie still on its slope, in any position.
+        It is tan(slope), or infinite if that exceeds ``|a^2 - b^2|/(2 a b)``, the largest ratio of
+        the lead of the contact to the height of the centre.
     workers : int or executor
         As for `flow`, for the scenes of a mapping.
 
     Returns
     -------
     float or ndarray
-        For a mapping with arrays an array of their common shape, bit for bit as for single scenes.
-        Infinite if no finite coefficient is enough: the blow lifts the body, or it is in the air;
-        its velocities make it slide; N vanishes; or it is not a circle and runs down a slope
-        forever. Infinite friction may hold some of these: see `certify`. 0 if any positive
-        coefficient is enough: without friction a moving contact slides.
+        For a mapping with arrays, an array in their common shape, bit for bit as for single scenes.
+        The value is infinite if no finite coefficient is sufficient: the blow lifts the body, or
+        the body is in the air; its velocities make it slide; N vanishes; or a body other than a
+        circle runs down a slope forever. Infinite friction may be sufficient in some of these
+        cases; see `certify`. The value is 0 if any positive coefficient is sufficient; without
+        friction a moving contact slides.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong; in an array the number is named with its index.
+        If an argument is wrong; the message gives the index of a number in an array.
 
     Examples
     --------
@@ -172,15 +173,15 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     Parameters
     ----------
     scene : Scene
-        Its own impulse is replaced.
+        Its impulse is ignored.
     distance : float
         Horizontal distance of the press from the centre [m], as in `Impulse.press`.
     omega : float, optional
-        Angular velocity just after the blow [rad/s], met to within rounding. Default: the least
-        press after which the body rolls over on level ground: the least double for which `outcome`
-        proves it. The search tries 2049 speeds, up to 1001 times the one that just reaches the tip,
-        since a harder press may need less friction (on a nearly round body), and ends with a
-        bisection.
+        Angular velocity just after the blow [rad/s], to within rounding. By default the least press
+        after which the body rolls over on level ground is returned, the smallest double for which
+        `outcome` proves it. The search tries 2049 speeds, up to 1001 times the one that just
+        reaches the tip, because a harder press may need less friction (on a nearly round body). It
+        ends with a bisection.
 
     Returns
     -------
@@ -190,10 +191,10 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     Raises
     ------
     ValueError
-        If no press at that distance can do it. The message states the reason: it misses the body,
-        has no lever, would have to pull, or slips; the ground cannot hold the body at that speed;
-        the body is in the air, rolls over without a blow, or, without omega, is on a slope or is a
-        circle.
+        If no press at that distance has the requested effect. The message gives the reason: the
+        press misses the body, has no lever arm, would have to pull, or slips; the ground cannot
+        hold the body at that speed; the body is in the air or rolls over without a blow; or omega
+        is missing on a slope or for a circle.
 
     Examples
     --------
@@ -212,7 +213,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     reach = float(support(bare.theta + math.pi / 2, a=bare.a, b=bare.b))
     if not abs(distance) <= reach:
         raise ValueError(
-            f"distance must be over the body, at most {reach!r} [m] from its centre, got "
+            f"distance must be above the body, at most {reach!r} [m] from its centre, got "
             f"{distance!r}"
         )
     if omega is None:
@@ -223,7 +224,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     start = after.initial_state
     if start.mode not in (Mode.ROLLING, Mode.REST):
         raise ValueError(
-            f"omega must be one that the ground can keep, got {wanted!r}: {start.reason}"
+            f"omega must be one that the ground can sustain, got {wanted!r}: {start.reason}"
             f"{_needed_friction(after)}"
         )
     return blow
@@ -233,19 +234,19 @@ def _needed_friction(scene: Scene) -> str:
     needed = _core.sticking_friction(scene.core)
     if not scene.friction < needed:
         return ""
-    return f" (it would need {needed:.6g})" if needed < math.inf else " (no finite one would hold)"
+    return f" (it requires {needed:.6g})" if needed < math.inf else " (no finite one suffices)"
 
 
 def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
-    """Return the press at a distance that gives an angular velocity, if the contact sticks."""
+    """Return the press at a distance that gives an angular velocity if the contact sticks."""
     F = _core.press_to(scene.core, distance, omega)
     _require_lever(F, distance)
     if F == 0:
-        raise ValueError(f"omega must differ from that of the body before, got {omega!r}")
+        raise ValueError(f"omega must differ from that before the blow, got {omega!r}")
     if F < 0:
         raise ValueError(
             f"distance must be on the other side of the contact, got {distance!r}: for omega = "
-            f"{omega!r} it would have to be a pull"
+            f"{omega!r} the blow would have to pull"
         )
     return Impulse.press(F, distance)
 
@@ -253,20 +254,20 @@ def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
 def _require_lever(F: float, distance: float) -> None:
     if math.isinf(F):
         raise ValueError(
-            "distance must not be right over the contact, where a press has no lever, got "
+            "distance must not be directly above the contact, where a press has no lever, got "
             f"{distance!r}"
         )
 
 
 def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
-    """Return the least press after which the body rolls over, by a scan and bisection."""
+    """Return the least press after which the body rolls over, from a scan and bisection."""
     if scene.slope != 0:
         raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
     if outcome(scene) is Outcome.ROLLS_OVER:
         raise ValueError("scene must not roll over without a blow")
     least = _core.speed_to_the_tip(scene.core, scene.theta)
     if least == 0:
-        raise ValueError("omega must be given for a circle and on the tip: the least press is none")
+        raise ValueError("omega must be given for a circle or on the tip: no press is the least")
     backwards, forwards = (_core.press_to(scene.core, distance, s * least) for s in (-1, 1))
     _require_lever(forwards, distance)
     side = 1 if forwards > backwards else -1
@@ -290,7 +291,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
 
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
-    """Return an error that explains why a press just reaching the tip does not roll it over."""
+    """Return an error that explains why a press to the tip does not make the body roll over."""
     after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
     start = after.initial_state
     why = f"{start.reason}{_needed_friction(after)}"

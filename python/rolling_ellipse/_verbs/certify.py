@@ -1,4 +1,4 @@
-"""Certificates: proofs that rolling is valid for a whole motion, or where it ends."""
+"""Certificates: proofs that rolling is valid for a whole motion, or of where it ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _VALIDITIES = tuple(Validity)  # members, indexed by their codes
 
 @dataclass(frozen=True, repr=False)
 class Certificate(FieldsOnly, Listed):
-    """Proof that rolling without slip is valid for the whole motion, or where it ends.
+    """Proof that rolling without slip is valid for the whole motion, or of where it ends.
 
     Attributes
     ----------
@@ -26,21 +26,21 @@ class Certificate(FieldsOnly, Listed):
         or a scene with rolling resistance).
     smallest_normal_force : float or None
         Least normal force [N] over the whole motion, in both directions of time. On a slope it is
-        -inf except for a circle, a body at rest and one that rocks: other bodies turn ever faster
-        downhill.
+        -inf because the body turns ever faster downhill, unless the body is a circle, rests or
+        rocks.
     smallest_normal_force_angle : float or None
-        The angle theta in [0, pi/2] of that force; by symmetry it occurs at every +-theta + k pi
-        that the motion reaches. On a slope, the unwrapped angle; None for an infinite force.
+        Angle theta in [0, pi/2] of this force; by symmetry it occurs at every +-theta + k pi that
+        the motion reaches. On a slope it is the unwrapped angle. None if the force is -inf.
     largest_friction_needed : float or None
-        Largest ``|F/N|`` over the whole motion (infinite where N <= 0); on a slope infinite if the
-        least normal force is -inf.
+        Largest ``|F/N|`` over the whole motion (infinite where N <= 0); on a slope it is infinite
+        if the least normal force is -inf.
     largest_friction_needed_angle : float or None
-        The angle at which it is needed, as above.
+        Angle at which this friction is needed, defined like that of the normal force.
     ends_at : float or None
-        The angle theta (unwrapped) at which rolling ends, forwards in time; None if VALID. For a
-        moving body without friction, whose contact slides at once, the angle of the start.
+        Unwrapped angle theta at which rolling ends, forwards in time; None if VALID. For a moving
+        body without friction, whose contact slides at once, it is the angle of the start.
     reason : str
-        What is proved, in words, with the friction that it assumes and that the blow needs.
+        Description of what is proved, with the friction that is assumed and that the blow needs.
 
     Examples
     --------
@@ -70,9 +70,9 @@ class Certificate(FieldsOnly, Listed):
 
 
 def certify(scene: Scene) -> Certificate:
-    """Return a proof that rolling is valid for the whole motion from a scene on, or where it ends.
+    """Return a proof that rolling is valid for the whole motion of a scene, or of where it ends.
 
-    Nothing is integrated: the signs of polynomials decide.
+    No equation is integrated: the proof examines the signs of polynomials.
 
     Parameters
     ----------
@@ -85,16 +85,16 @@ def certify(scene: Scene) -> Certificate:
     Notes
     -----
     On level ground N and F of rolling are rational functions of the height h of the centre.
-    Bernstein coefficients with subdivision decide the signs of a quintic (N > 0) and of a
-    polynomial of degree 10 (``|F| <= friction N``) on the heights that the motion reaches; every
-    coefficient carries the margin by which rounding may have moved it. The extremes are taken at
-    critical points, not at samples.
+    Bernstein coefficients with subdivision prove the signs of a quintic (N > 0) and of a polynomial
+    of degree 10 (``|F| <= friction N``) for the heights that the motion reaches; each coefficient
+    has a margin for its rounding error. The extremes are evaluated at critical points, not at
+    samples.
 
-    On a slope the forces are linear in the energy of the motion at every angle, so that the contact
-    law holds there for an interval of energies. Power series follow the motion with its N and F to
-    within rounding; their first root decides, again by Bernstein coefficients. Of many half turns
-    only those that decide all others are examined. A margin within rounding of 0 is EDGE.
-    Rolling that holds for 1e15 half turns is VALID.
+    On a slope the forces at each angle are linear in the energy of the motion, so that the contact
+    law holds for an interval of energies. Power series represent the motion with its N and F to
+    within rounding, and Bernstein coefficients locate the first violation of the law. Of many half
+    turns only those that imply the result for all others are examined. A violation within rounding
+    is EDGE. Rolling that holds for 1e15 half turns is VALID.
 
     Examples
     --------
@@ -108,8 +108,8 @@ def certify(scene: Scene) -> Certificate:
     >>> rl.certify(rl.scenes.jump).validity.name
     'INVALID'
     """
-    found = _core.certify(core := require_scene(scene).core)
-    return trusted(Certificate, found | {"validity": _VALIDITIES[found["validity"]], "_of": core})
+    proof = _core.certify(core := require_scene(scene).core)
+    return trusted(Certificate, proof | {"validity": _VALIDITIES[proof["validity"]], "_of": core})
 
 
 find_late(Certificate, reason=lambda proof: in_words(_core.describe_proof(**vars(proof))))

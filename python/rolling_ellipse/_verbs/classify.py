@@ -20,47 +20,48 @@ from .workers import shared
 
 @dataclass(frozen=True, repr=False)
 class Thresholds(FieldsOnly, Listed):
-    """Speeds, angles and coefficients at which the motion on level ground changes its kind.
+    """Speeds, angles and friction coefficients that separate kinds of motion on level ground.
 
-    Speeds are ``|omega|`` when passing the flat position [rad/s]; angles are theta in [0, pi/2]
-    [rad], None if the corresponding speed or coefficient is infinite (it never happens).
-    `lift_off_speed` and `jam_speeds` are computed on first access, in a few milliseconds, or up to
-    a tenth of a second for a body that may jam.
+    Speeds are ``|omega|`` in the flat position [rad/s]. Angles are theta in [0, pi/2] [rad], or
+    None if the corresponding speed or coefficient is infinite. `lift_off_speed` and `jam_speeds`
+    are computed on first access, in a few milliseconds, or up to a tenth of a second for a body
+    that may jam.
 
     Attributes
     ----------
     roll_over_speed : float
-        Above it the body rolls over; below it, it rocks.
+        Above this speed the body rolls over; below it, the body rocks.
     contact_loss_speed, contact_loss_angle : float
-        Above this speed rolling would need the ground to pull (N < 0), first at this angle.
+        Above this speed rolling would require the ground to pull (N < 0), first at this angle.
     slip_speed, slip_angle : float
-        The least speed at which rolling needs more than the given friction, first at this angle:
-        the start of the first of `slip_windows`. Larger speeds may hold again.
+        The least speed at which rolling requires more than the given friction, first at this angle.
+        It is the start of the first of `slip_windows`; the contact may hold again at larger speeds.
     slip_windows : tuple of (float, float)
-        Ranges of speed, ascending, in which rolling needs more than the given friction somewhere
-        along its path: one or two, the last one up to inf; none for a circle with friction. Between
-        two of them the body rolls forever: too fast to stop where it would slip from rest, and too
-        slow to slip in motion. The ends are determined by a scan over the angles; the proof of
-        `certify` then rules out that rolling fails at an angle that the scan missed.
+        Ranges of speed, ascending, in which rolling requires more than the given friction somewhere
+        along its path. There are one or two, the last of which ends at inf; a circle with friction
+        has none. Between two ranges the body rolls forever: it is too fast to stop where it would
+        slip from rest, and too slow to slip in motion. The ends are determined by a scan over the
+        angles; the proof of `certify` then excludes that rolling fails at an angle that the scan
+        missed.
     lift_off_speed : float
         The least speed at which a body with the given friction leaves the ground: it slips first,
-        and then N reaches 0 before it passes the tip. It also leaves at all larger speeds, except
-        in `jam_speeds`.
+        and then N reaches 0 before it passes the tip. The body also leaves the ground at all larger
+        speeds, except those in `jam_speeds`.
     jam_speeds : tuple of (float, float)
-        Ranges of speed, ascending, in which the slide jams before it leaves the ground or passes
-        the tip; inf ends an unbounded range. Empty up to `painleve_friction` and for infinite
-        friction; above, they are located by a scan in steps of 2 % up to 50 times the largest of
-        the other speeds (narrower ranges may be missed). Their ends are refined by bisection, to
-        only about 1e-5 where slides run into the point at which pressure and response vanish
-        together.
+        Ranges of speed, ascending, in which the slide jams before the body leaves the ground or
+        passes the tip; inf ends an unbounded range. There are none for infinite friction, nor for
+        friction up to `painleve_friction`. Otherwise the ranges are located by a scan in steps of
+        2 % up to 50 times the largest of the other speeds, which may miss narrower ranges. Their
+        ends are refined by bisection. They are accurate to only about 1e-5 where slides approach
+        the point at which c and B of the normal force N = c/B vanish together.
     friction_to_roll_over : float
         Largest ``|F/N|`` of rolling at the roll-over speed (infinite if N vanishes before the tip).
     painleve_friction, painleve_angle : float
-        Least friction coefficient for which sliding can jam, and the angle at which it can.
+        Least friction coefficient for which a sliding body can jam, and the angle at which it can.
     rocking_rate : float
         Angular frequency of small rocking [rad/s].
     tip_rate : float
-        Growth rate of the fall from the tip [1/s].
+        Exponential growth rate of the fall from the tip [1/s].
 
     Examples
     --------
@@ -134,9 +135,9 @@ def classify(
     gyration2: Any = None,
     workers: Any = 1,
 ) -> Outcome | npt.NDArray[np.int8]:
-    """Return the first outcome of rolling from t = 0 on, without integrating.
+    """Return the first outcome of rolling on level ground, without integration.
 
-    On level ground; the Notes say what each outcome means. `outcome` also takes blows and slopes.
+    The Notes define the outcomes. `outcome` also handles blows and slopes.
 
     Parameters
     ----------
@@ -144,41 +145,42 @@ def classify(
         As for `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
         [m/s^2], k^2 [m^2] and workers.
     friction : float or array_like
-        Coefficient of friction; inf allowed.
+        Coefficient of friction; it may be infinite.
 
     Returns
     -------
     Outcome or ndarray of int8
-        The outcome, if all arguments are scalars; else `Outcome` codes in the broadcast shape.
+        The outcome if all arguments are scalars, otherwise `Outcome` codes in the broadcast shape.
 
     Raises
     ------
     ValueError
-        If a number is out of its range (in an array it is named with its index in the common shape,
+        If a number is out of its range (the message gives its index in the common shape of arrays,
         ``a[3]``) or shapes do not broadcast.
 
     Notes
     -----
-    The body starts rolling without slip (or at rest) on level ground. It rolls until the first of
+    The body starts rolling without slip (or at rest) on level ground. The outcome is the first of
 
     ==================  ==========================================================================
-    ``RESTS``           nothing: it is in equilibrium and stays
+    ``RESTS``           it stays in equilibrium
     ``ROCKS``           it turns back
-    ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls forever
-    ``SLIPS``           it would need more friction than given (a moving body without friction
-                        slips at once); for infinite friction: the ground would have to pull
-                        (N < 0), and the body slides without pressure
-    ``LOSES_CONTACT``   the start itself is too fast for the ground, and the body leaves it at once;
-                        a body that rolls slips first
-    ``JAMS``            a slip starts inside the Painleve region. This never happens: rolling that
-                        ends can always continue as sliding. Kept for completeness.
-    ``EDGE``            undecided within rounding, as on the separatrix
+    ``ROLLS_OVER``      it passes the tip; a circle, which has no tip, rolls forever
+    ``SLIPS``           it would require more than the given friction (a moving body without
+                        friction slips at once); with infinite friction, the ground would have to
+                        pull (N < 0), and the body slides with N = 0
+    ``LOSES_CONTACT``   it leaves the ground at once, because it is too fast at the start; a body
+                        that has started to roll slips before it leaves the ground
+    ``JAMS``            a slip starts inside the Painleve region. This does not occur, because
+                        rolling that ends can always continue as sliding.
+    ``EDGE``            undecided within rounding, for example on the separatrix
     ==================  ==========================================================================
 
-    Thus a body that starts beyond the angles at which it would slip rolls over first and slips
-    later; `certify` covers the whole motion. The answers follow from proved signs of the
-    polynomials of N and ``friction N - |F|`` on the heights that the motion reaches (Bernstein
-    coefficients with subdivision, every coefficient with its margin for rounding).
+    Hence the outcome of a body that starts beyond the angles at which it would slip is that it
+    rolls over, even if it slips later; `certify` covers the whole motion. The outcomes follow from
+    proved signs of the polynomials of N and ``friction N - |F|`` for the heights that the motion
+    reaches. The signs are proved with Bernstein coefficients and subdivision, and each coefficient
+    has a margin for rounding.
 
     Examples
     --------
@@ -204,15 +206,15 @@ def thresholds(
     gyration2: float | None = None,
     friction: float = math.inf,
 ) -> Thresholds:
-    """Return the speeds and friction coefficients at which the motion changes its kind.
+    """Return the speeds and friction coefficients that separate kinds of motion on level ground.
 
     Parameters
     ----------
     a, b, gravity, gyration2 : float
         As for `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
     friction : float
-        Coefficient of friction for the slip, lift-off and jam speeds; if infinite, the slip speed
-        is the contact loss speed.
+        Coefficient of friction for the slip, lift-off and jam speeds. If it is infinite, the slip
+        speed is the contact loss speed.
 
     Returns
     -------

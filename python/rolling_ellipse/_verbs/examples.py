@@ -1,4 +1,4 @@
-"""The notebooks and the tables of reference states, which come with the package."""
+"""The notebooks and the tables of reference states that come with the package."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .._motion.export.new_files import write_new
 def examples(folder: str | PathLike[str]) -> list[Path]:
     """Write the notebooks, without outputs, and the tables of reference states into a folder.
 
-    The tables, in ``folder/reference``, hold states computed in 30 to 80 digits by programs that
-    share no code with the package.
+    The tables, in ``folder/reference``, contain states computed with 30 to 80 digits by programs
+    that share no code with the package.
 
     Parameters
     ----------
     folder : path
-        Created if it does not exist. Existing files equal to those to be written are kept.
+        Folder, created if it does not exist. Existing files with the same content are kept.
 
     Returns
     -------
@@ -30,12 +30,12 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
     Raises
     ------
     ValueError
-        If the folder has a different file with one of the names, such as a notebook that has been
-        run, or a link; nothing is written then.
+        If the folder has a link, or a file with different content (such as a notebook that has been
+        run), under one of the names. No file is written then.
     TypeError
         If `folder` is not a path.
     OSError
-        If a file cannot be written. Each file appears whole or not at all.
+        If a file cannot be written. Each file is written completely or not at all.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def examples(folder: str | PathLike[str]) -> list[Path]:
 def packed(archive: str, start: str = "") -> dict[str, bytes]:
     """Return the files of an archive that notebooks/pack.py puts next to the core in every build.
 
-    Only those whose names begin with `start` are read.
+    Only files whose names start with `start` are read.
     """
     with ZipFile(Path(str(_core.__file__)).with_name(archive)) as files:
         return {name: files.read(name) for name in files.namelist() if name.startswith(start)}

@@ -1,4 +1,4 @@
-"""Parameters of a scene, with errors, from a film of a motion."""
+"""Parameters of a scene, with their errors, from a film of a motion."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .._ask.printing import Row, html_table, printable, text_table
 from .._ask.scene import Scene, require_scene
 from .._motion.inputs import INPUTS, distinct
 from .._motion.trajectory import Trajectory
-from .films.camera import free_fall, require_told, unit_of
+from .films.camera import free_fall, require_determined, unit_of
 from .films.conventions import fitting, other_units, readings
 from .films.errors import near_guess, standard_errors
 from .films.film import CAMERA, Film, Unknowns, film_of, sigma_of, sizes_of
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
     from .._pictures.fit import FitChart
 
 _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
-_ROUNDS = 3  # rounds that estimate sigma and the fit in turn
-_FOREIGN = 1e3  # ratio of free fall to gravity at which the clock is too far off to fit
-_LOWER = 0.01  # smallest decrease of the cost that makes a rival a better minimum
+_ROUNDS = 3  # number of rounds that alternately estimate sigma and fit
+_FOREIGN = 1e3  # ratio of free fall to gravity beyond which the unit of time is too wrong to fit
+_LOWER = 0.01  # smallest decrease of the cost that makes a rival the better minimum
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
-    """Parameters that fit a film of a motion best, and how well the film determines them.
+    """The parameters that best fit a film of a motion, and how well the film determines them.
 
     Attributes
     ----------
@@ -47,18 +47,18 @@ class Fit:
     covariance : ndarray, shape (k, k)
         Covariance of the parameters in the order of `errors`, from the linearised residuals.
     chi2 : float
-        Sum of the squares of residuals over sigma. It is no test of fit if sigma is estimated.
+        Sum of the squares of residuals over sigma. If sigma is estimated, it does not test the fit.
     residuals : ndarray, shape (n, 3)
-        Measured minus fitted x, z [m] and theta [rad] as in the film, NaN where nothing was
-        measured. If the clock is free, frames before the first datum are left out.
+        Measured minus fitted x, z [m] and theta [rad], in units of the film; NaN for missing data.
+        If the clock is free, frames before the first datum are omitted.
     sigma : ndarray, shape (3,)
         Standard deviations of the data [m, m, rad], as given or estimated.
     trajectory : Trajectory
-        The fitted motion at the times of the film, in the scene's coordinates and time.
+        The fitted motion at the times of the film, in the coordinates and the time of the scene.
     message : str
-        Number of data, with chi2 over the degrees of freedom or the estimated deviations; what the
-        film does not determine; and whether the scene does not fit the film, with any reading of
-        the film that does.
+        Number of data, with chi2 over the degrees of freedom or the estimated deviations; the
+        parameters that the film does not determine; and a note if the scene does not fit the film,
+        with any other reading of the film that does fit.
 
     Examples
     --------
@@ -96,12 +96,12 @@ class Fit:
         return html_table(self.message, self._rows())
 
     def plot(self, path: Any = None, *, figure: Any = None, figsize: Any = None) -> FitChart:
-        """Draw each track over the fitted motion and, below, residuals in units of sigma.
+        """Draw each track over the fitted motion, with residuals in units of sigma below.
 
         Parameters
         ----------
         path, figure, figsize
-            As in `rolling_ellipse.plot`, with its errors.
+            As in `rolling_ellipse.plot`, including the errors raised.
 
         Examples
         --------
@@ -128,34 +128,35 @@ def fit_motion(
     sigma: Any = None,
     loss: str = "linear",
 ) -> Fit:
-    """Return the parameters of a scene, and of the camera, that fit a film best, with errors.
+    """Return the parameters of a scene, and of the camera, that best fit a film, with their errors.
 
-    Angles are in radians, from the ground to the semi-axis a, clockwise if x points to the right; z
-    is the height of the centre above the ground, and t the time since the start of the scene. If a
-    camera measures otherwise, its parameters can be free, too: x_film = scale x, z_film = ground +
-    scale z, t_scene = t_film + clock, where no frame with data precedes the start.
+    Angles are in radians from the ground to the semi-axis a, clockwise if x points to the right. z
+    is the height of the centre above the ground, and t is the time since the start of the scene. If
+    the camera uses other coordinates, its parameters can be fitted as well: x_film = scale x,
+    z_film = ground + scale z, t_scene = t_film + clock. No frame with data may precede the start.
 
     Parameters
     ----------
     t : array_like, shape (n,)
-        Increasing times of the frames since the start of the scene, from any time on if the clock
-        is free [s].
+        Increasing times of the frames since the start of the scene [s]; if the clock is free, their
+        origin is arbitrary.
     x, z, theta : array_like, shape (n,), optional
-        Tracks of the centre [m] and of the angle [rad], NaN where they are missing; angles are
-        compared modulo pi. At least one is needed.
+        Tracks of the centre [m] and of the angle [rad], with NaN for missing values; angles are
+        compared modulo pi. At least one track is required.
     scene : Scene
-        The known values; those of the free parameters are first guesses.
+        Known values, and initial guesses for the free parameters.
     free : iterable of str
-        The unknown parameters: of the scene "friction", "restitution", "theta", "omega", "inertia",
-        ..., finite in `scene`; of its impulse "jx", "jz", "dx", "dz"; of the camera "scale",
-        "ground" and "clock". The scale needs x or z and one of gravity, a, b known; the ground a
-        track of z and a touch; the clock x or z and one of theta, omega, x known (in the air: of x,
-        z, theta, z_dot). Where a motion passes a state again, the start nearest to the guess
-        counts, and of equal ones the last.
+        Unknown parameters: of the scene, "friction", "restitution", "theta", "omega", "inertia",
+        ..., which must be finite in `scene`; of its impulse, "jx", "jz", "dx", "dz"; of the camera,
+        "scale", "ground" and "clock". The scale requires x or z, and one of gravity, a, b must be
+        known. The ground requires z, and a frame in which the body touches the ground. The clock
+        requires x or z, and one of theta, omega, x must be known (in the air, one of x, z, theta,
+        z_dot). If the motion passes the same state more than once, the start nearest to the guess
+        is chosen, and among equal starts the last.
     sigma : float or mapping, optional
-        Standard deviation of all data, or by the names x, z and theta, from 1e-15 to 1e15 times
-        max(a, b) or one radian. Those of other tracks are estimated from the residuals, in turn
-        with the fit.
+        Standard deviation of all data, or a mapping from the names x, z and theta, each from 1e-15
+        to 1e15 times max(a, b) or one radian. Other deviations are estimated from the residuals,
+        alternately with the fit.
     loss : {"linear", "soft_l1", "huber", "cauchy", "arctan"}
         As for `scipy.optimize.least_squares`; all but "linear" are for films with outliers.
 
@@ -166,28 +167,29 @@ def fit_motion(
     Raises
     ------
     ValueError
-        If names are unknown or repeated, arrays do not fit together, sigma is out of range, there
-        are not more data than unknowns, no film tells them apart, or no motion in the search
-        reaches the last time.
+        If names are unknown or repeated, arrays have different lengths, sigma is out of range,
+        there are not more data than unknowns, no film can determine the unknowns, or no motion in
+        the search reaches the last time.
     ImportError
         If SciPy is not installed.
 
     Notes
     -----
-    SciPy's nonlinear least squares [1]_ start from the scene itself and from straight lines and
+    SciPy's nonlinear least squares [1]_ starts from the scene itself and from straight lines and
     parabolas through the first frames, each with several coefficients, for longer and longer parts
-    of the film; then from points around the best solutions, since chi2 has many minima. Each
-    parameter is moved by three times its error, and then further, with the others refitted. If the
-    change divided by the square root of the rise in chi2 is larger than the error, this quotient
-    replaces the error; this happens beyond a friction threshold, or where another scene fits
+    of the film. It then starts from points around the best solutions, because chi2 has many minima.
+    Each parameter is moved by three times its error, and then further, with the others refitted. If
+    the change divided by the square root of the rise in chi2 is larger than the error, this
+    quotient replaces the error; this happens beyond a friction threshold, or if another scene fits
     equally well. A parameter that the film does not determine keeps its guess.
 
-    The residuals r of neighbouring frames are compared: if they are noise, the sum of r r' over the
-    sum of (r^2 + r'^2)/2, times the root of the number of pairs, is normally distributed. Above 3.5
-    in a track of eight pairs or more, or if chi2 for given deviations is five deviations above its
-    mean, the scene does not fit the film. Then errors grow by sqrt((1 + c)/(1 - c)), c the largest
-    of those ratios of sums, which is only an estimate, and the conventions of other trackers are
-    tried. A film whose free fall is not that of the scene is not fitted if other units fit.
+    The residuals r, r' of neighbouring frames are compared. If they are noise, the sum of r r'
+    divided by the sum of (r^2 + r'^2)/2, times the square root of the number of pairs, is normally
+    distributed. The scene does not fit the film if this number exceeds 3.5 in a track of eight
+    pairs or more, or if chi2 for given deviations is five standard deviations above its mean. Then
+    the errors are multiplied by sqrt((1 + c)/(1 - c)), where c is the largest of these ratios of
+    sums; this is only an estimate. Then also the conventions of other trackers are tried. A film
+    whose free fall disagrees with the scene is not fitted if other units fit.
 
     References
     ----------
@@ -210,8 +212,8 @@ def fit_motion(
     film = film_of(array("t", t), {"x": x, "z": z, "theta": theta}, clock="clock" in names)
     count = int(film.known.sum())
     if count <= len(names):
-        raise ValueError(f"free must be fewer names than data, got {len(names)}, {count}")
-    require_told(require_scene(scene), names, film)
+        raise ValueError(f"free must have fewer names than data, got {len(names)} and {count}")
+    require_determined(require_scene(scene), names, film)
     unknowns = Unknowns(scene, names, film, unit_of(film, scene) if "scale" in names else 1.0)
     given = sigma_of(sigma, scene)
     lengths = unknowns.lens(unknowns.own)[0]
@@ -229,7 +231,7 @@ def fit_motion(
 
 
 def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit:
-    """Return a minimum of chi2 with its errors and the verdict of its residuals."""
+    """Return a minimum of chi2 with its errors and the verdict from its residuals."""
     unknowns, film = search.unknowns, search.film
     rivals = [search.solve(one.x, within=one.within) for one in minima]
     for _ in range(_ROUNDS):
@@ -244,7 +246,7 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
     wider = widened(verdict) * unknowns.sizes
     lost = ", ".join(itertools.compress(unknowns.names, np.isinf(errors)))
     sentences = [counted(search, best, given)]
-    sentences += [f"the film cannot tell {lost}"] if lost else []
+    sentences += [f"the film cannot determine {lost}"] if lost else []
     sentences += verdict.words
     tries = readings(film, unknowns.names) if verdict.doubtful else []
     if words := fitting(tries, unknowns, given, search.loss):
@@ -256,11 +258,11 @@ def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit
 def _not_fitted(
     film: Film, unknowns: Unknowns, sigma: FloatArray, fall: float | None, words: str
 ) -> Fit:
-    """Return the scene unchanged, with a sentence on the units of the film."""
+    """Return the unchanged scene as a fit whose message describes the units of the film."""
     infinite = np.full(len(unknowns.names), math.inf)
     why = "the frames are too far apart"
     if fall is not None:
-        why = f"the body falls with {fall:.3g} of gravity, as if t or z had other units"
+        why = f"the body falls at {fall:.3g} times gravity, as if t or z had other units"
     sentences = [f"{film.known.sum()} data, not fitted", why, "the scene does not fit the film"]
     sentences += [f"it fits with {words}"] if words else []
     return _answer(film, unknowns, unknowns.own, sigma, infinite, np.diag(infinite), sentences)
@@ -270,10 +272,10 @@ def _answer(
     film: Film, unknowns: Unknowns, u: FloatArray, sigma: FloatArray,
     errors: FloatArray, covariance: FloatArray, sentences: list[str],
 ) -> Fit:  # fmt: skip
-    """Return unknowns as a fit, with the motion that they give."""
+    """Return the fit for values of the unknowns, with its motion."""
     motion = unknowns.motion(u, film.t)
     if motion is None:
-        raise ValueError(f"t must be in seconds, at which the scene moves, got {film.t[-1]:g}")
+        raise ValueError(f"t must be times [s] that the motion reaches, got {film.t[-1]:g}")
     values, off = unknowns.named(u), film.off(motion, *unknowns.lens(u))
     values |= {name: late - film.first for name, late in values.items() if name == "clock"}
     return Fit(

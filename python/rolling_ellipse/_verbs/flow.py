@@ -36,18 +36,18 @@ def flow(
     """Return the exact state of rolling at any time, without checking that rolling is valid.
 
     All arguments broadcast by NumPy's rules. The cost of one time does not depend on its distance
-    from the start. The period, computed by the trapezoidal rule in a coordinate in which the
-    integrand has no peaks, is subtracted as a double-double; the energy integral is inverted by
-    Gauss-Legendre quadrature and Newton's method, without steps.
+    from the start. Multiples of the period are subtracted in double-double arithmetic; the period
+    is computed with the trapezoidal rule in a coordinate in which the integrand has no peaks. The
+    energy integral is inverted with Gauss-Legendre quadrature and Newton's method, without steps.
 
     Parameters
     ----------
     t : float or array_like
-        Time since the start [s], any sign; more than 1e15 half turns or swings are rejected.
+        Time since the start [s], of any sign; more than 1e15 half turns or swings are rejected.
     a, b : float or array_like
         Semi-axes [m].
     theta, omega : float or array_like
-        Angle [rad] and angular velocity [rad/s] at the start; a magnitude below 1e-100 rad/s counts
+        Angle [rad] and angular velocity [rad/s] at the start; ``|omega|`` below 1e-100 rad/s counts
         as rest.
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
@@ -55,29 +55,30 @@ def flow(
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
         (a^2 + b^2)/4.
     slope : float or array_like
-        Angle of the ground [rad], descending towards +x, within ±1.5. On a slope, power series
-        follow a swing; a run downhill or a climb is a quadrature of the energy integral over one
-        half turn. Adjacent times of one motion share this work.
+        Angle of the ground [rad], descending towards +x, within ±1.5. On a slope, a swing is
+        computed with power series, and a run downhill or a climb by quadrature of the energy
+        integral over one half turn. Adjacent times of one motion share this work.
     workers : int or executor
-        Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
-        or an executor, as for `simulate_many`, for many millions of elements. The results are the
-        same bit for bit.
+        Number of threads, up to 1024 (fewer are used if no more can be started), or -1 for all
+        cores; or an executor, as for `simulate_many`, for many millions of elements. The results
+        are the same bit for bit.
 
     Returns
     -------
     theta, omega, x : float or ndarray
         Angle [rad], angular velocity [rad/s], displacement of the centre [m]; floats if all
-        arguments are scalars, else arrays of the broadcast shape. A body in equilibrium (omega = 0
-        and ``|h'|`` within 8 ulp of h) stays. The last bits may depend on the number of times: many
-        times of one motion are evaluated by Taylor series about points on it. In this case x has a
-        rounding error of 2e-16 max(a, b), even where the body has returned to its start and x is
-        small. Many motions at one time each are computed side by side in the processor's vector
-        registers (SSE2, AVX2 or AVX-512), with the same bits as each alone.
+        arguments are scalars, otherwise arrays of the broadcast shape. A body in equilibrium
+        (omega = 0 and ``|h'|`` at most 8 ulp of h) does not move. The last bits may depend on the
+        number of times, because many times of one motion are evaluated with Taylor series about
+        points of the motion. In this case x has a rounding error of 2e-16 max(a, b), even where the
+        body has returned to its start and x is small. Many motions at one time each are computed
+        side by side in the processor's vector registers (SSE2, AVX2 or AVX-512), with the same bits
+        as each alone.
 
     Raises
     ------
     ValueError
-        If a number is out of its range (in an array it is named with its index in the common shape,
+        If a number is out of its range (the message gives its index in the common shape of arrays,
         ``a[3]``) or shapes do not broadcast.
 
     Examples
@@ -91,12 +92,12 @@ def flow(
     >>> np.degrees(bodies).round(2)
     array([-24.48, -27.82,  25.68])
     """
-    threads_of(workers)  # rejects what is neither a number nor an executor
+    threads_of(workers)  # rejects an argument that is neither a number nor an executor
     on_slope = {} if type(slope) is float and slope == 0 else {"slope": slope}
     one = (a, b, theta, omega, gravity)
     known = all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType)
     if known and not on_slope:
-        with suppress(TypeError):  # an int beyond doubles is rejected by name below
+        with suppress(TypeError):  # an int too large for a double is rejected by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2, 0.0)  # type: ignore[arg-type]
             times, of_one = array("t", t), partial(_times, (*one, gyration2))
@@ -122,28 +123,29 @@ def arguments_of(scene: Scene) -> dict[str, Any]:
 
 
 def period(scene: Scene) -> float:
-    """Return the duration of a full swing, or of one full turn, of the rolling motion [s].
+    """Return the duration [s] of a full swing, or of one full turn, of the rolling motion.
 
-    It is infinite for a body at rest. On level ground it is the energy integral by the trapezoidal
-    rule, as in `flow`, with an error of a few units in the last place. On a slope, where only a
-    swing repeats itself, it follows from power series in time and the turning points.
+    The period of a body at rest is infinite. On level ground the period is the energy integral,
+    computed with the trapezoidal rule as in `flow`, with an error of a few ulp. On a slope, where
+    only a swing is periodic, it follows from power series in time and the turning points.
 
     Parameters
     ----------
     scene : Scene
-        Must start rolling (after its impulse); on a slope, between two turning points.
+        The body must roll at the start (after the impulse), and on a slope it must rock between two
+        turning points.
 
     Raises
     ------
     ValueError
-        If it does not, as for any scene with rolling resistance.
+        If the body does not roll like that, or the scene has rolling resistance.
 
     Examples
     --------
-    >>> print(f"{rl.period(rl.scenes.rocking):.4f} s for a swing")
-    2.4435 s for a swing
-    >>> print(f"{rl.period(rl.scenes.rolling):.4f} s for a turn")
-    4.3781 s for a turn
+    >>> print(f"{rl.period(rl.scenes.rocking):.4f} s per swing")
+    2.4435 s per swing
+    >>> print(f"{rl.period(rl.scenes.rolling):.4f} s per turn")
+    4.3781 s per turn
     """
     return _core.period(require_scene(scene).core)
 
@@ -152,20 +154,20 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], FloatArray]:
     """Return the right-hand side of the equation of rolling without slip, for any integrator.
 
     ``solve_ivp(rolling_equation(scene), (0.0, 6.0), [start.theta, start.omega])`` is the motion
-    from ``start = scene.initial_state``. Whether the ground can hold it is not checked.
+    from ``start = scene.initial_state``. It is not checked whether the contact can be maintained.
 
     Parameters
     ----------
     scene : Scene
-        Its body, gravity and slope.
+        Only its body, gravity and slope are used.
 
     Returns
     -------
     callable
-        ``rhs(t, y)``: the rates of y = (theta, omega) [rad, rad/s], or of (theta, omega, x) with
-        the centre x [m], as an array in the shape of y, (2,) or (3,); columns of shape (2, n) or
-        (3, n) are n states. omega' is physics (18), x' = h omega is (9). It raises ValueError for
-        any other shape of y.
+        ``rhs(t, y)`` returns the rates of y = (theta, omega) [rad, rad/s], or of (theta, omega, x)
+        with the position x of the centre [m]. y has the shape (2,) or (3,), or (2, n) or (3, n) for
+        n states in columns, and the result has the same shape; any other shape raises ValueError.
+        omega' is physics (18), and x' = h omega is (9).
 
     Examples
     --------

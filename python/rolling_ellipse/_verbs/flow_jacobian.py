@@ -29,17 +29,16 @@ def flow_jacobian(
 ) -> FloatArray:
     """Return the derivatives of `flow` with respect to some of its arguments.
 
-    They are differences of sixth order; each element takes the best of twelve steps, as in
-    `Trajectory.sensitivity`. Steps shrink with time, since changes grow with it. All arguments
-    broadcast.
+    The derivatives are differences of sixth order. Each element uses the best of twelve steps, as
+    in `Trajectory.sensitivity`. The steps are smaller for later times, because changes grow with
+    time. All arguments broadcast.
 
     Parameters
     ----------
     t, a, b, theta, omega, gravity, gyration2, slope, workers
-        As for `flow`. Without `gyration2` the body stays a uniform disc as `a` and `b` change.
+        As for `flow`. Without `gyration2` the body remains a uniform disc as `a` and `b` change.
     wrt : str or iterable of str
-        Names of arguments, k of them: "t", "a", "b", "theta", "omega", "gravity", "slope",
-        "gyration2".
+        Names of k arguments among "t", "a", "b", "theta", "omega", "gravity", "slope", "gyration2".
 
     Returns
     -------
@@ -49,8 +48,8 @@ def flow_jacobian(
     Raises
     ------
     ValueError
-        As for `flow`; or if a name is unknown or repeated, or no steps agree to a thousandth, as
-        when a body has almost stopped on its tip.
+        As for `flow`; or if a name is unknown or repeated; or if the results of different steps do
+        not agree to 1e-3, for example when a body has almost stopped on its tip.
 
     Examples
     --------
@@ -89,7 +88,7 @@ def flow_jacobian(
             place = [int(k) for k in np.unravel_index(int(np.argmax(error)), shape)]
             raise ValueError(
                 f"wrt must be inputs with a derivative, got {name!r} at {place}, where steps agree "
-                f"to {error.max():.1g} only"
+                f"only to {error.max():.1g}"
             )
         columns.append(best.value * units)
     return np.moveaxis(np.array(columns), (0, 1), (-1, -2))

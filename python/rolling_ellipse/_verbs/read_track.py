@@ -1,4 +1,4 @@
-"""Tracks of a body from tables written by trackers."""
+"""Tracks of a body from tables written by tracking software."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .._ask.check import FloatArray, choice, flag, positive, readable, require, 
 from .._motion.inputs import distinct
 from .._motion.samples import vector
 
-_MISSING = ("", "-", "na", "n/a", "none", "null")  # what trackers write instead of a number
+_MISSING = ("", "-", "na", "n/a", "none", "null")  # cells that trackers write for a missing number
 _MARKS = ("\t", ";", "|", ",", " ")
 
 
@@ -28,42 +28,45 @@ def read_track(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
     """Return times, positions and angles from a tracker's table, as arguments for `fit_motion`.
 
-    Names are those in the last line above the numbers; where a name occurs again, ".1", ".2", ...
-    follow it, and without such a line names are "0", "1", .... Empty cells are NaN.
+    The column names are read from the last line above the numbers. Repeated names get the suffixes
+    ".1", ".2", .... Without such a line the names are "0", "1", .... Empty cells become NaN.
 
     Parameters
     ----------
     path : path, mapping or DataFrame
         A text file (UTF-8), or columns by name, each of shape (n,).
     t, x, z, theta : str, optional
-        Columns of the times [s], of the centre (to the right and up) and of the angle of the
-        semi-axis a. Without `t`, rows are the frames of a film with `fps`.
+        Names of the columns of the time [s], of the position of the centre (to the right and up)
+        and of the angle of the semi-axis a. Without `t`, the rows are consecutive frames of a film
+        with `fps` frames per second.
     points : four of str, optional
-        Instead of `x`, `z` and `theta`: columns of x and z of one point and of another, both on the
-        long axis and as far from the centre. The line to the second point gives the angle.
+        Names of columns that replace `x`, `z` and `theta`: x and z of a first point, then x and z
+        of a second point. Both points are on the long axis at equal distances from the centre. The
+        line from the first to the second point gives the angle.
     fps : float, optional
-        Units of `t` per second, as for numbers of frames, or 1000 for milliseconds.
+        Units of `t` per second: the frame rate if `t` is a frame number, 1000 for milliseconds.
     delimiter, decimal : str, optional
-        Characters between columns and before decimals. By default the first of tab, semicolon, bar,
-        comma and space that occurs in the last line, and comma or point.
+        Column delimiter and decimal separator. The default delimiter is the first of tab,
+        semicolon, bar, comma and space that occurs in the last line. The default decimal separator
+        is a point if the delimiter is a comma; otherwise commas and points are both accepted.
     y_up : bool
-        False if the column `z` counts downwards, as in pixels of an image.
+        False if the column `z` increases downwards, as in pixels of an image.
     clockwise, degrees : bool
         Sense and unit of the column `theta`, as seen in the film.
     scale : float
-        Metres per unit of the file's lengths.
+        Metres per unit of length in the file.
 
     Returns
     -------
     t, x, z, theta : ndarray, shape (n,)
-        Times [s], centre [m] and angle [rad], clockwise, without jumps by half turns (of points, by
-        full turns). NaN for quantities that are not in the table.
+        Times [s], centre [m] and clockwise angle [rad]. Jumps of the angle by half turns are
+        removed; for `points`, jumps by full turns. Quantities that are not in the table are NaN.
 
     Raises
     ------
     ValueError
-        If a column is missing or of another length, times do not increase, no position and no angle
-        is a number, both points coincide, or `fps` or `scale` is not positive.
+        If a column is missing or has the wrong length, times do not increase, no position and no
+        angle is a number, the two points coincide, or `fps` or `scale` is not positive.
     TypeError
         If a column contains text; the message shows it.
     OSError
@@ -100,11 +103,11 @@ def read_track(
         place, (along, up) = unit * (ends[:2] + ends[2:]) / 2, unit * (ends[2:] - ends[:2])
         require("points", "apart at all times t", times, (along != 0) | (up != 0))
         angle = -np.arctan2(up, along)
-    found = np.stack([times, *place, angle])
-    require("t, x, z and theta", "finite or missing", found, ~np.isinf(found))
+    tracks = np.stack([times, *place, angle])
+    require("t, x, z and theta", "finite or missing", tracks, ~np.isinf(tracks))
     seen = np.isfinite(angle)
     if not seen.any() and not np.isfinite(place).any():
-        raise ValueError(f"x, z or theta must be a column with numbers, got {size} rows without")
+        raise ValueError(f"x, z or theta must have numbers, got none in {size} rows")
     angle[seen] = np.unwrap(angle[seen], period=np.pi if points is None else 2 * np.pi)
     return times, place[0], place[1], angle
 
@@ -120,11 +123,11 @@ def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -
     cells = csv.reader(lines, delimiter=choice("delimiter", mark, _MARKS), skipinitialspace=True)
     try:
         if "\0" in text:
-            raise csv.Error("it has bytes 0, as UTF-16 does")
+            raise csv.Error("it contains null bytes, as UTF-16 does")
         rows = [[_cell(cell, point) for cell in row] for row in cells]
     except csv.Error as error:
         raise ValueError(f"{name} must name a text table, got {str(path)!r}: {error}") from None
-    # a head has text and no numbers; NaN is an empty cell
+    # a header line has text and no numbers; NaN is an empty cell
     *_, first = 0, *(k for k, r in enumerate(rows, 1) if {type(c) for c in r if c == c} == {str})
     heads = [*map(str, rows[first - 1] if first else range(len(rows[0])))]
     names = [f"{n}.{heads[:k].count(n)}" if n in heads[:k] else n for k, n in enumerate(heads)]
@@ -132,7 +135,7 @@ def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -
 
 
 def _cell(text: str, point: str) -> float | str:
-    """Return a cell's number, NaN if it is empty, or else its text."""
+    """Return the number in a cell, NaN for an empty cell, or the text of any other cell."""
     with suppress(ValueError):
         return np.nan if text.strip().lower() in _MISSING else float(text.replace(point, "."))
     return text.strip()

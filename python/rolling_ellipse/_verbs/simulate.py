@@ -44,108 +44,113 @@ def simulate(
     count: int = DEFAULTS.count,
     raise_on_failure: bool = True,
 ) -> Trajectory:
-    """Return the motion of a scene from t = 0 on, sampled at times.
+    """Return the motion of a scene from t = 0 on, sampled at the given times.
 
     Parameters
     ----------
     scene : Scene
-        Its state is that at t = 0, before an impulse acts.
+        Its state is that at t = 0, before its impulse acts.
     t : float or array_like, shape (n,)
-        End time (then 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s]. A
-        tuple (0, end), a time span in other programs, is rejected: it would mean two samples, as
-        the list [0, end] does. Rolling for more than 1e15 half turns or swings is rejected: a
-        double cannot resolve its phase.
+        End time (for 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s]. A
+        tuple (0, end), which is a time span in other programs, is rejected because it would mean
+        two samples, as the list [0, end] does. Rolling for more than 1e15 half turns or swings is
+        rejected because a double cannot resolve its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
-        "rolling" is rolling without slip; the certificate (see `certify`) states how long it is
-        valid. "contact" is the whole motion: the body rolls, slides, flies, hits the ground and
-        comes to rest, on segments joined by ``events``. No segment is integrated by steps: slides
-        are power series in time [9]_ that end at proved first roots, and so is rolling with
-        resistance, which no other model has. "auto" is "rolling" if the certificate proves it, else
-        "contact"; if a method is given it is "rolling", and with ``blows`` it is "contact".
-        "multipliers" is rolling in the report's five coordinates with four constraints and their
-        Lagrange multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau"
-        with the stabilization "ggl".
+        "rolling" is rolling without slip; `certify` states how long it is valid. "contact" is the
+        complete motion, in which the body may roll, slide, fly, hit the ground and come to rest;
+        ``events`` separate its segments. No segment is integrated in steps: slides are power series
+        in time [9]_ that end at proved first roots, and so is rolling with resistance, which only
+        this model supports. "multipliers" is rolling in the report's five coordinates with four
+        constraints and their Lagrange multipliers, for study; its methods are "dop853" (also its
+        "auto"), "dopri5", "rk4", and "radau" with the stabilization "ggl". "auto" chooses "contact"
+        if ``blows`` or ``stop`` are given. Otherwise it chooses "rolling" if a method is given or
+        the certificate proves that rolling is valid, and "contact" if not.
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time, without steps; neither tolerances nor the
-        span matter. On a slope power series in time follow one swing, which repeats itself; a run
-        downhill or a climb is a quadrature of the energy integral over one half turn, and many half
-        turns are one sum, a difference of Hurwitz zeta functions [8]_. The other methods
-        integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of
-        order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
-        Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
-        error does not grow, with rounding errors that only walk at random [2]_ [3]_; "radau" is
-        Radau IIA of order 5 [4]_. "auto" is "exact".
+        span matter. On a slope, a swing is periodic and is computed with power series in time. A
+        run downhill or a climb is computed by quadrature of the energy integral over one half turn;
+        the sum over many half turns is a difference of Hurwitz zeta functions [8]_. The other
+        methods integrate the equation of motion. "dop853" and "dopri5" are explicit Runge-Kutta
+        pairs of order 8 and 5 with error control [1]_. "rk4" is the classical method. "gauss" is
+        Gauss-Legendre collocation of order ``2 * stages``, which is symmetric and symplectic; its
+        energy error does not grow, and its rounding errors only grow like a random walk [2]_ [3]_.
+        "radau" is Radau IIA of order 5 [4]_. "auto" is "exact".
     rtol, atol : float
-        Allowed local error of the pairs in each component of the state (theta and omega, or the
-        five coordinates and their rates): atol + rtol times its magnitude. They have no effect if
-        ``motion.method`` is "exact": its errors are roundings.
+        The pairs keep the local error of each component of the state (theta and omega, or the five
+        coordinates and their rates) below atol + rtol times its magnitude. The tolerances have no
+        effect if ``motion.method`` is "exact", whose errors are at the level of rounding.
     step : float, optional
-        Step size [s]: required by "rk4", "gauss" and "radau"; if given, "dop853" and "dopri5" take
-        fixed steps without error control. The last step may be shorter.
+        Step size [s]. It is required by "rk4", "gauss" and "radau". If it is given, "dop853" and
+        "dopri5" take fixed steps without error control. The last step may be shorter.
     stages : {4, 3, 2}, optional
         Number of stages of "gauss".
     stabilization : {"projection", "none", "baumgarte", "projection+energy", "ggl"}
-        Treatment of the constraints of "multipliers": "none" is the index-1 system, whose
-        constraints drift; "baumgarte" feeds the drift back [5]_; "projection" moves each state,
-        including those between steps, to the nearest one, in the kinetic metric, that meets the
-        constraints [6]_, and "projection+energy" to one with the energy of the start; "ggl" is the
-        index-2 system of Gear, Gupta and Leimkuhler [7]_.
+        Treatment of the constraints of "multipliers". "none" is the index-1 system, whose
+        constraints drift. "baumgarte" adds feedback from the drift [5]_. "projection" moves each
+        state, including those between steps, to the state that is nearest in the kinetic metric and
+        satisfies the constraints [6]_; "projection+energy" also restores the energy of the start.
+        "ggl" is the index-2 system of Gear, Gupta and Leimkuhler [7]_.
     baumgarte : (float, float)
-        Gains (alpha, beta) [1/s] in ``f'' + 2 alpha f' + beta**2 f = 0``, for the velocity
-        constraint f1 in ``f1' + 2 alpha f1 = 0``.
+        Gains (alpha, beta) [1/s] in ``f'' + 2 alpha f' + beta**2 f = 0``, or in
+        ``f1' + 2 alpha f1 = 0`` for the velocity constraint f1.
     max_steps : int
         Largest number of steps, after which the integration ends with the status MAX_STEPS.
     max_events : int
-        Largest number of events of "contact", after which it ends with the status MAX_EVENTS.
+        Largest number of events of "contact", after which the motion ends with the status
+        MAX_EVENTS.
     rest_speed : float, optional
-        Rebound speed [m/s] below which "contact" sums the infinitely many bounces that are left.
-        The relative error is of the order of the square of its ratio to sqrt(g min(a, b)), which
-        is a millionth by default and a hundredth at most. Bounces that last too long for that are
-        not summed: if the body is hardly pressed to its ground, or restitution is near 1.
+        Rebound speed [m/s] below which "contact" sums the infinitely many remaining bounces. The
+        default is 1e-6 sqrt(g min(a, b)), the largest allowed value 1e-2 sqrt(g min(a, b)). The
+        relative error of the sum is of the order of the square of this factor. Bounces that would
+        last too long for this accuracy are not summed, which happens if the body is hardly pressed
+        to the ground or restitution is near 1.
     blows : iterable of (float, Impulse)
-        Blows during the motion of "contact", at times [s] that do not fall, from 0 to the last of
-        ``t``: an event of the kind BLOW each, after any other event at its time, by the law of the
-        blow of a scene in the state then reached. One at t = 0 follows the scene's own.
+        Blows during the motion of "contact", at nondecreasing times [s] from 0 to the last of
+        ``t``. Each is an event of the kind BLOW, after all other events at the same time, and acts
+        on the current state like the blow of a scene. A blow at t = 0 follows that of the scene.
     stop : EventKind, str, or iterable of them, optional
         Kinds of events at which the motion stops, such as "impact" or ("stick", "rest"), after all
-        events of that instant; ``t`` may then be infinite. Or "decided": it stops once nothing but
-        the same can follow: at REST, in rolling or sliding without friction on level ground or in
-        a well that is proved to last for ever (not in a run down a slope, nor, with rolling
-        resistance, before it rests). Samples end at the stop. "auto" is then "contact".
+        events of that instant. With "decided" the motion stops when its future holds no further
+        change: at REST, or in rolling or frictionless sliding that is proved to last forever, on
+        level ground or in a well. This excludes a run down a slope and, with rolling resistance,
+        any motion before rest. With a stop ``t`` may be infinite, samples end at the stop, and the
+        model "auto" is "contact".
     count : int
-        Number of such events after which the motion stops, counted together.
+        Number of events of the kinds in ``stop``, counted together, after which the motion stops.
     raise_on_failure : bool
-        Whether an integration that stops before the last time raises; if not, the motion up to then
-        is returned.
+        Whether an integration that stops before the last time raises an error. If False, the motion
+        up to that time is returned.
 
     Returns
     -------
     Trajectory
-        Its ``status`` is COMPLETED; or VALIDITY_LOST, if the span of "rolling" or "multipliers"
-        goes beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
-        ValidityWarning is issued; or JAMMED, if a slide reaches a state from which no rigid-body
-        motion continues, or starts in one from which two continue (Painleve): the arrays end there.
-        Infinite friction is not the limit of large coefficients here: a slip that would jam is
-        removed by an impulse at t = 0 (see `Scene`). A start without slip that may roll or fly (on
-        a slope, turning too fast for its weight, wedged by friction) keeps rolling. ``reason``
-        states both. A sample at an event has the state after it. Samples between steps have the
-        accuracy of the method. A StabilityWarning is issued for an integrated motion that has lost,
-        at steps or between them: a hundredth of its energy (or ten times rtol, if that is more),
-        relative to the largest kinetic plus ``|potential|`` energy, with x from the start; a
-        thousandth of the long semi-axis in its constraints; or a tenth of it in the constraints of
-        a single step, whose projection then moves the body elsewhere. It is also issued for
-        Baumgarte gains that are unstable at the given step.
+        Its ``status`` is COMPLETED, VALIDITY_LOST or JAMMED if no error is raised. VALIDITY_LOST
+        means that the span of "rolling" or "multipliers" exceeds ``valid_until``; the arrays are
+        complete and obey the rolling equation, and a ValidityWarning is issued. JAMMED means that a
+        slide reaches a state from which no rigid-body motion continues, or starts in one from which
+        two continue (Painleve); the arrays end there.
+
+        Two starts are special, and ``reason`` reports them. With infinite friction, a slip that
+        would jam is removed by an impulse at t = 0 (see `Scene`), which differs from the limit of
+        large coefficients. A start without slip from which the body could either roll or fly (on a
+        slope, turning too fast for its weight, but wedged by friction) continues to roll.
+
+        A sample at an event is the state after it. Samples between steps have the accuracy of the
+        method. A StabilityWarning is issued for an integrated motion if, at steps or between them,
+        its energy changes by 1e-2 (or 10 rtol, if larger) of the largest kinetic plus
+        ``|potential|`` energy, with x measured from the start; or its constraints are violated by
+        1e-3 of the long semi-axis, or within a single step, before projection, by 0.1 of it. It is
+        also issued for Baumgarte gains that are unstable for the given step.
 
     Raises
     ------
     ValueError
-        If times are negative, not increasing or not finite, a name is unknown, an argument is out
-        of range or has no effect on the method, or the scene of the model "rolling" or
-        "multipliers" does not start rolling, or a blow misses the body, or would be too strong,
-        when its time comes.
+        If times are negative, not increasing or not finite; a name is unknown; an argument is out
+        of range or has no effect on the method; the scene does not start rolling, for the models
+        "rolling" and "multipliers"; or a blow misses the body, or would be too strong, at its time.
     IntegrationError
-        If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
-        STEP_TOO_LARGE); its ``trajectory`` is the motion up to then.
+        If the motion stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL,
+        STEP_TOO_LARGE or NEVER); its ``trajectory`` is the motion up to that time.
 
     References
     ----------
@@ -191,7 +196,7 @@ def simulate(
 
 
 def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
-    """Warn if validity was lost; raise, if requested, for an integration that stopped early."""
+    """Warn if validity was lost; if requested, raise an error for a motion that stopped early."""
     if trajectory.status is Status.VALIDITY_LOST:
         warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
     elif not trajectory.success and raise_on_failure:
@@ -201,7 +206,7 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 def sample_times(t: Any, stop: tuple[str, ...] = ()) -> FloatArray:
     """Return the argument `t` as sample times; an end time gives 1001 evenly spaced ones.
 
-    A motion that stops has them up to the stop: an end time, which may be infinite, is 0-d then.
+    For a motion with a stop, an end time, which may be infinite, is returned as a 0-d array.
     """
     if (known := _core.sample_times(t)) is not None:
         return known

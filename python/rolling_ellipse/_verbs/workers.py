@@ -1,9 +1,9 @@
 """Workers: threads of the core, or an executor, possibly on other machines.
 
-An executor has `submit`, like those of concurrent.futures, dask's Client and mpi4py.futures, or is
-a pool with `map`. A task is a function of this package or its core with arguments; the number of
-threads, 1, is added as the last one. It is sent as bytes, which every transport to other processes
-supports.
+An executor has a method `submit`, like those of concurrent.futures, dask's Client and
+mpi4py.futures, or is a pool with `map`. A task is a function of this package or its core with its
+arguments, to which the number of threads, 1, is appended. Tasks are sent as bytes, which every
+transport to other processes supports.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ Task = tuple[Any, ...]  # a function and its arguments, without the number of th
 _Key = TypeVar("_Key")
 
 _IN_FLIGHT = 128  # largest number of tasks submitted and not yet yielded
-_HELD = 96 * 2**20  # limit on bytes of results waiting for earlier ones, unless one is larger
+_HELD = 96 * 2**20  # limit on bytes of results that wait for earlier ones, if one is not larger
 _ELEMENTS = 2**16  # elements per task: a multiple of the core's parts, so that all bits agree
 
 
 @dataclass(frozen=True)
 class Lost:
-    """The result of a task that failed; `refused` if the executor did not accept the task."""
+    """The result of a failed task; `refused` is True if the executor did not accept the task."""
 
     error: Exception
     refused: bool = False
 
 
 def threads_of(workers: Any) -> int | None:
-    """Return a number of threads in its range, or None for an executor; TypeError for neither."""
-    # a pool has `map`, as some sequences do, and it can be closed
+    """Return the number of threads, or None for an executor; raise TypeError for anything else."""
+    # a pool has `map`, like some sequences, but it can also be closed
     is_pool = _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
     if not isinstance(workers, type) and (_can(workers, "submit") or is_pool):
         return None
@@ -52,11 +52,11 @@ def threads_of(workers: Any) -> int | None:
 def in_order(
     executor: Any, tasks: Iterable[tuple[_Key, Task]], size: Callable[[], int] = lambda: 0
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield each task's key and result, in order; `Lost` if its worker died or was missing.
+    """Yield the key and the result of each task in order; `Lost` if its worker died or is missing.
 
-    Tasks are taken as results are requested; at `size()` bytes each, their pending results stay
-    within `_HELD` bytes. An interrupt cancels tasks that have not started; finished results are
-    yielded before it is raised again.
+    Tasks are submitted as results are requested, so that pending results of `size()` bytes each
+    stay within `_HELD` bytes. An interrupt cancels tasks that have not started; finished results
+    are yielded before the interrupt is raised again.
     """
     sent = ((key, pickle.dumps(task)) for key, task in tasks)
     if not _can(executor, "submit"):
@@ -85,17 +85,17 @@ def in_order(
 
 
 def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
-    """Return `function` as a function of (number of elements, columns) that workers compute.
+    """Return a function of (number of elements, columns) that evaluates `function` with workers.
 
-    `function` also takes a number of threads. Results are the same, bit for bit, for any workers;
-    an exception in a task is raised again.
+    `function` also takes a number of threads. Results are the same bit for bit for any workers; an
+    exception in a task is raised again.
     """
     threads = threads_of(workers)
     if threads is not None:
         return lambda n, columns: function(n, columns, threads)
 
     def compute(n: int, columns: Columns) -> Any:
-        begins = range(0, max(1, n - _ELEMENTS + 1), _ELEMENTS)  # the last task is the longest
+        begins = range(0, max(1, n - _ELEMENTS + 1), _ELEMENTS)  # the last task takes the remainder
         tasks = (
             (begin, (function, end - begin, _rows(columns, begin, end)))
             for begin, end in pairwise([*begins, n])
@@ -119,7 +119,7 @@ def _can(executor: Any, what: str) -> bool:
 def _next(
     sent: Iterator[tuple[_Key, bytes]], waiting: int, size: Callable[[], int]
 ) -> tuple[_Key, bytes] | None:
-    """Return the next key and task; None if there is none, or too many are waiting."""
+    """Return the next key and task, or None if there is none or too many results are pending."""
     most = min(_IN_FLIGHT, _HELD // max(1, size()))
     return None if waiting and waiting >= most else next(sent, None)
 
@@ -127,7 +127,7 @@ def _next(
 def _mapped(
     pool: Any, sent: Iterator[tuple[_Key, bytes]], size: Callable[[], int]
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield each task's key and result from a pool's `map`; one failure fails the whole `map`."""
+    """Yield keys and results from a pool's `map`; one failed task fails the whole call of `map`."""
     while True:
         part: list[tuple[_Key, bytes]] = []
         while taken := _next(sent, len(part), size):
@@ -175,5 +175,5 @@ def _evaluate(task: bytes) -> Any:
     function, *arguments = pickle.loads(task)
     try:
         return function(*arguments, 1)
-    except ValueError as error:  # a wrong argument; executors would log it as a failure
+    except ValueError as error:  # a wrong argument, which executors would log as a failure
         return Lost(error)

@@ -1,13 +1,14 @@
 """The report's equations as printed, its errata in numbers, and its simulation.
 
-Arrays hold the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, rad], in the
-order of its section 2; its constraint matrix has (x, r, psi, theta, z) and its state space
-(x, z, r, theta, psi); both are reordered here. Functions for printed equations are named by number,
-functions for correct ones by words. SI units, theta positive clockwise.
+Arrays have the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, m, rad, rad,
+m], in the order of its section 2. Its constraint matrix, with columns (x, r, psi, theta, z), and
+its state space, (x, z, r, theta, psi), are reordered accordingly. Functions for printed equations
+are named by their numbers, those for correct equations by words. Quantities are in SI units, and
+theta is positive clockwise.
 
-Common arguments: ``q``, ``q_dot``, ``q_ddot`` array_like of shape (..., 5), whose leading axes
-broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. All functions raise
-ValueError, naming the argument, for a wrong shape or a number out of range.
+Common arguments are ``q``, ``q_dot``, ``q_ddot``, array_like of shape (..., 5) whose leading axes
+broadcast; the semi-axes ``a``, ``b`` [m]; ``mass`` [kg]; and ``gravity`` [m/s^2]. All functions
+raise ValueError, naming the argument, for a wrong shape or a number out of range.
 
 Examples
 --------

@@ -1,7 +1,7 @@
-"""The report's equations as printed, named by number, and correct ones, named by words.
+"""The report's equations as printed, named by number, and correct equations, named by words.
 
-Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
-residual minus the correct one is the effect of the misprint.
+Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. The
+difference between a printed residual and the correct one is the effect of the misprint.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """Return theta, psi, r, sin(psi - theta), cos(psi - theta) of q; other arguments must fit q."""
+    """Return theta, psi, r, sin(psi - theta), cos(psi - theta); `others` must broadcast with q."""
     place = coordinates("q", q)
     require_together(q=place, **others)
     theta, psi, r = place[..., 2], place[..., 3], place[..., 4]
@@ -51,19 +51,19 @@ def _last(*columns: Any) -> FloatArray:
 
 
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return psi [rad] as eq 5 prints it, an arctan; `contact_angle` is right and continuous."""
+    """Return psi [rad] as eq 5 prints it, an arctan; `contact_angle` is correct and continuous."""
     body = Scene(a, b)
     return np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
 
 
 def case_sign(theta: Any) -> FloatArray:
-    """Return the report's sign before r sin(psi - theta): -1 in the second quadrant, else 1."""
+    """Return the report's sign of r sin(psi - theta): -1 in the second quadrant, otherwise 1."""
     turned = np.mod(finite("theta", theta), 2 * np.pi)
     return np.where((turned >= np.pi / 2) & (turned <= np.pi), -1.0, 1.0)
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return x_C - x_G [m] as eqs 5 to 7 and cases 1, 2 print it; `support_slope` is right."""
+    """Return x_C - x_G [m] as eqs 5 to 7 and cases 1, 2 print it; `support_slope` is correct."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
     r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
@@ -73,8 +73,8 @@ def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
 def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     """Return f1 of eq 10 [m/s], the velocity of the geometric contact point along the ground.
 
-    ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" the sign of `case_sign`.
-    The right f1 is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of
+    ``case`` "1" uses the lower signs, "2" the upper ones, and "as_it_is" the sign of `case_sign`.
+    The correct f1 is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of
     `constraints`.
     """
     theta, _, r, sine, cosine = state(q, q_dot=q_dot)
@@ -85,20 +85,20 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
 
 
 def f2(q: Any) -> FloatArray:
-    """Return f2 = z - r cos(psi - theta) of eq 10 [m], printed correctly for a continuous psi."""
+    """Return f2 = z - r cos(psi - theta) of eq 10 [m], which is correct for a continuous psi."""
     _, _, r, _, cosine = state(q)
     return coordinates("q", q)[..., 1] - r * cosine
 
 
 def f3(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return f3 of eq 10 [m], the error of r at the angle psi, which is printed correctly."""
+    """Return f3 of eq 10 [m], the error of r at the angle psi; it is printed correctly."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
     return r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
 
 
 def f4(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return f4 of eq 10 [rad]; its printed arctan is off by multiples of pi in some quadrants."""
+    """Return f4 of eq 10 [rad]; its arctan is wrong by multiples of pi in some quadrants."""
     theta, psi, _, _, _ = state(q)
     return psi - eq_5(theta, a=a, b=b)
 
@@ -135,14 +135,14 @@ def equations_of_motion(
     ddot = coordinates("q_ddot", q_ddot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
-    forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces: + in eqs 36, 37
+    forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces, + in eqs 36, 37
     return masses(body) * ddot + weight + forces * pull(matrix, _multipliers(multipliers))
 
 
 def _multipliers(values: Any) -> FloatArray:
     four = finite("multipliers", values)
     if four.ndim == 0 or four.shape[-1] != 4:
-        raise ValueError(f"multipliers must have 4 entries last, got shape {four.shape}")
+        raise ValueError(f"multipliers must have a last axis of size 4, got shape {four.shape}")
     return four
 
 
@@ -160,7 +160,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 
 
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return the right values of f1 and the rates of f2 to f4, in the scaling of eq 38."""
+    """Return the correct values of f1 and the rates of f2 to f4, in the scaling of eq 38."""
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
@@ -173,7 +173,7 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
     """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4).
 
-    lambda3 is infinite where eq 39 divides by zero: at every quarter turn, and for a circle.
+    lambda3 is infinite where eq 39 divides by zero, at every quarter turn and for a circle.
     """
     body, (_, psi, _, _, _), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     third = _squeezed(eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity), psi, body)
@@ -185,7 +185,7 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def lambda4_numerator(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the numerator of lambda4 in eq 39; eqs 32 and 35 give it the divisor 4 a^2."""
+    """Return the numerator of lambda4 in eq 39; by eqs 32 and 35 its divisor is 4 a^2."""
     body, (theta, _, r, sine, cosine), (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
@@ -195,10 +195,10 @@ def lambda4_numerator(
 def multipliers(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the right lambda1 ... lambda4, the multipliers of the corrected rows, (..., 4).
+    """Return the correct lambda1 ... lambda4, the multipliers of the corrected rows, (..., 4).
 
-    lambda3 follows from the equation of r without a division by sin(2 psi). lambda4 vanishes on the
-    ground, since r cos(psi - theta) has its largest value over psi there.
+    lambda3 follows from the equation of r without division by sin(2 psi). lambda4 vanishes for a
+    body on the ground, where r cos(psi - theta) is at its maximum over psi.
 
     Examples
     --------
@@ -221,12 +221,12 @@ def multipliers(
 
 
 def divisor(psi: Any, a: float, b: float) -> Any:
-    """Return 4 a^3 b^3 sin(2 psi) (a^2 - b^2), by which eqs 39 and 41 divide [m^8]."""
+    """Return the divisor 4 a^3 b^3 sin(2 psi) (a^2 - b^2) of eqs 39 and 41 [m^8]."""
     return 4 * (a * b) ** 3 * np.sin(2 * psi) * (a**2 - b**2)
 
 
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
-    """Return values over the `divisor`; 0/0 is inf."""
+    """Return values divided by the `divisor`, with inf for 0/0."""
     squeeze = divisor(psi, body.a, body.b)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         return np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
@@ -235,7 +235,7 @@ def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
     """Return F, in lambda3 of eq 39, term by term as eq 40 prints it [N m^5].
 
-    `complete_f` has the terms that it lost; with right equations F is 4 a^2 b^2 h' N.
+    `complete_f` includes the terms that eq 40 omits; with correct equations F is 4 a^2 b^2 h' N.
     """
     body, (theta, psi, r, sine, cosine), (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
@@ -256,10 +256,10 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def complete_f(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return F of eq 40 with every term, as eq 37 gives it with lambda1, lambda2 and lambda4.
+    """Return F of eq 40 with all terms, as it follows from eq 37, lambda1, lambda2 and lambda4.
 
-    The multipliers have the signs of eq 39, so that the difference from `eq_40` is the lost terms.
-    The result is not the correct F.
+    The multipliers have the signs of eq 39, so that the difference from `eq_40` consists of the
+    missing terms. The result is not the correct F.
     """
     body, (theta, _, r, sine, cosine), (x, z, _, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
@@ -273,8 +273,8 @@ def eq_41(
 ) -> FloatArray:
     """Return the residual of eq 41, with F1 of `eq_42` or, if `complete`, 2 (...)^(3/2) F.
 
-    If complete, it is eq 36 times -1 with the multipliers inserted. It divides by zero where eq 39
-    does, and is infinite there.
+    If complete, it is eq 36 times -1 with the multipliers inserted. It is infinite where eq 39
+    divides by zero.
     """
     body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
     psi, arguments = place[1], {"a": a, "b": b, "mass": mass, "gravity": gravity}
@@ -288,8 +288,8 @@ def eq_41(
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
     """Return F1 of eq 42: the first terms of eq 41, minus a factor times the terms of F.
 
-    The opening bracket before b^6 is missing in print; the brackets are taken to enclose all terms
-    of F, which are complete in eq 42 (`complete_f`). The factor has lost its power 3/2 and the
+    The opening bracket before b^6 is missing in print; it is assumed that the brackets enclose all
+    terms of F, which are complete in eq 42 (`complete_f`). The factor lacks its power 3/2 and the
     square of sin psi.
     """
     body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
@@ -309,20 +309,20 @@ def _head(body: Scene, place: tuple[FloatArray, ...], ddot: FloatArray) -> Float
 
 
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
-    """Return theta_dot just after the blow [rad/s] as eq 48 prints it; `struck_speed` is right."""
+    """Return theta_dot after the blow [rad/s] as eq 48 prints it; `struck_speed` is correct."""
     body = Scene(a, b, mass=mass)
     impulse, d = _blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
 
 
 def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
-    """Return theta_dot [rad/s] after a press on the flat body at rest whose contact sticks."""
+    """Return theta_dot [rad/s] after a press on a flat body at rest, if its contact sticks."""
     impulse, d = _blow(impulse, d)
     return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
 
 
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
-    """Return the numbers of a blow, if the core accepts them."""
+    """Return impulse and distance of a blow as floats; raise ValueError if out of range."""
     blow = number("impulse", impulse), number("d", d)
     let_the_core_refuse("jz", np.asarray(blow[0]), "impulse")
     let_the_core_refuse("dx", np.asarray(blow[1]), "d")
@@ -330,7 +330,7 @@ def _blow(impulse: Any, d: Any) -> tuple[float, float]:
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return r [m] as appendix B prints it in its r_x; `geometry.contact_distance` is right."""
+    """Return r [m] as appendix B prints it in r_x; `geometry.contact_distance` is correct."""
     body = Scene(a, b)
     t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 has psi here
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
@@ -338,7 +338,7 @@ def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
 
 
 def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return r_x, the x of the contact [m], as appendix B prints it; `contact_x` is right."""
+    """Return r_x, the position of the contact [m], as appendix B prints it; use `contact_x`."""
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)

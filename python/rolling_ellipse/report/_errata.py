@@ -1,4 +1,4 @@
-"""The errata of the report, row by row, each with two numbers on an exact motion."""
+"""The errata of the report, each demonstrated by two numbers on an exact motion."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _BODY = _AXES | {"mass": 10.0, "gravity": 9.81}
 
 
 class Comparison(NamedTuple):
-    """The two numbers of an erratum: its quantity as printed, and the right one."""
+    """The two numbers of an erratum: a quantity as printed, and its correct value."""
 
     printed: float
     right: float
 
     @property
     def gap(self) -> float:
-        """The effect of the misprint: printed minus right."""
+        """The effect of the misprint: printed minus correct value."""
         return self.printed - self.right
 
 
@@ -49,9 +49,9 @@ class Erratum:
     where, printed, finding : str
         The location, the printed text, and its error.
     quantity : str
-        The compared quantity, with its unit.
+        The quantity that is compared, with its unit.
     evaluate : callable
-        Returns a Comparison: the printed and the right quantity, on an exact motion.
+        Returns a Comparison: the printed and the correct value of the quantity, on an exact motion.
     """
 
     where: str
@@ -65,13 +65,13 @@ class Erratum:
 
 
 def _rolling(theta: float, **other: float) -> dict[str, Any]:
-    """Return the arguments of all equations where a rolling body passes the angle theta."""
+    """Return the arguments of all equations at the angle theta of a rolling motion."""
     body = _BODY | other
-    motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # through all quadrants
+    motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # passes all quadrants
     passing = motion.at(motion.when(theta=theta)[0])
-    there = simulate(Scene(**body, theta=theta, omega=passing.omega, x=passing.x), 0.0)
-    columns = there.x_ddot, there.z_ddot, there.omega_dot, there.psi_ddot, there.r_ddot
-    state = {"q": there.q[0], "q_dot": there.q_dot[0], "q_ddot": np.stack(columns, axis=-1)[0]}
+    at = simulate(Scene(**body, theta=theta, omega=passing.omega, x=passing.x), 0.0)
+    columns = at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot
+    state = {"q": at.q[0], "q_dot": at.q_dot[0], "q_ddot": np.stack(columns, axis=-1)[0]}
     return {"theta": theta, "impulse": 48.0, "d": 1.5, **body, **state}
 
 
@@ -79,9 +79,9 @@ def _compared(
     printed: Callable[..., Any], right: Callable[..., Any], entry: Any = (), theta: float = 0.7,
     **other: float,
 ) -> Comparison:  # fmt: skip
-    """Compare an entry of the results of two functions, called with the arguments that they take.
+    """Compare an entry of the results of two functions, called with the arguments that they need.
 
-    A function that takes any arguments gets all arguments of the equations of motion.
+    A function with arbitrary keyword arguments receives those of the equations of motion.
     """
     known = _rolling(theta, **other)
     values = []
@@ -115,13 +115,13 @@ def _pull(equation: Callable[..., Any], **state: Any) -> Any:
 
 
 def _f(**state: Any) -> Any:
-    """Return the F that makes lambda3 = F/(4 a^3 b^3 sin(2 psi) (a^2 - b^2)) [N m^5]."""
+    """Return the F for which lambda3 = F/(4 a^3 b^3 sin(2 psi) (a^2 - b^2)) is correct [N m^5]."""
     third = equations.multipliers(**state)[2]
     return third * equations.divisor(state["q"][3], state["a"], state["b"])
 
 
 def _f1(**state: Any) -> Any:
-    """Return the F1 that makes eq 41 right, 2 (...)^(3/2) F [N m^8]."""
+    """Return the F1 for which eq 41 is correct, 2 (...)^(3/2) F [N m^8]."""
     return 2 * polar(state["q"][3], state["a"], state["b"]) ** 1.5 * _f(**state)
 
 
@@ -134,7 +134,7 @@ def _right_35(**state: Any) -> Any:
 
 
 def _eq_37(**state: Any) -> Any:
-    """Return eq 37 with the multipliers of eq 39, the divisor of lambda4 and all terms of F."""
+    """Return eq 37 with the multipliers of eq 39, but the divisor 4 a^2 and all terms of F."""
     q, a, b = (state[name] for name in ("q", "a", "b"))
     first, second, _, _ = equations.eq_39(**state)
     third = equations.complete_f(**state) / equations.divisor(q[3], a, b)
@@ -143,7 +143,7 @@ def _eq_37(**state: Any) -> Any:
 
 
 def _first_terms(**state: Any) -> Any:
-    """Return the part of eq 41 to which the first terms of eq 42 correspond [N/m^8]."""
+    """Return the part of eq 41 that corresponds to the first terms of eq 42 [N/m^8]."""
     q, a, b = (state[name] for name in ("q", "a", "b"))
     one, two, _, _ = equations.eq_39(**state)
     lean = q[3] - q[2]
@@ -151,7 +151,7 @@ def _first_terms(**state: Any) -> Any:
 
 
 def _reach(q: Any, a: float, b: float) -> Any:
-    """Return |r_OC| [m]: both C and O are on the ground."""
+    """Return |r_OC| [m], for C and O on the ground."""
     return abs(equations.contact_x(q, a=a, b=b))
 
 
@@ -168,7 +168,7 @@ def _no_part(q: Any) -> float:
 
 
 def _even_turning() -> Comparison:
-    """Compare f2 and f3 with their rates by the matrix as printed, for theta = t."""
+    """Compare f2 and f3 with their rates from the matrix as printed, for theta = t."""
     q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **_AXES)
     held = np.stack([equations.f2(q), equations.f3(q, **_AXES)])
     rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **_AXES), q_dot)
@@ -176,7 +176,7 @@ def _even_turning() -> Comparison:
 
 
 def _back_substitution() -> Comparison:
-    """Compare residuals of the code's equations with the gap, after 0.25 s of their motion."""
+    """Compare the residuals of the code's equations with the gap after 0.25 s of their motion."""
     q, _ = kinematics(0.2, 2.0, **_AXES)
     how: dict[str, Any] = {"equations": "printed", "rtol": 1e-12, "atol": 1e-14}
     motion: Any = follow(q, consistent_rates(q, 2.0, **_AXES), [0.25], **_BODY, **how)
@@ -227,7 +227,7 @@ _ERRATA = tuple(
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return the errors of the report in its own order; `evaluate()` gives the two numbers of each.
+    """Return the errors of the report in its order; `evaluate()` gives the two numbers of each.
 
     Examples
     --------
@@ -242,7 +242,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def errata_table() -> str:
-    """Return the errata with freshly computed numbers, as a table in Markdown."""
+    """Return the errata as a table in Markdown, with newly computed numbers."""
     lines = [
         "| where | printed | finding | compared | printed | right |",
         "|---|---|---|---|---:|---:|",

@@ -1,4 +1,4 @@
-"""The report's equations integrated with any of their rows as printed (index 1, no stabilisation).
+"""Integration of the report's equations with any rows as printed (index 1, no stabilisation).
 
 M q_ddot = Q + A^T lambda,   A q_ddot = -A_dot q_dot          (report eqs 27 to 31 and 32)
 
@@ -23,8 +23,8 @@ from ._rows import Names, Pair, along, masses, pull, rows
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
-_STEP = 1e-30  # complex step: no truncation error in doubles, and nothing cancels
-_TINY = 1e-300  # smallest allowed error, for a zero component if atol = 0
+_STEP = 1e-30  # complex step, without truncation error in doubles and without cancellation
+_TINY = 1e-300  # smallest tolerance, for a component that is zero if atol = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +34,11 @@ class Start:
     Attributes
     ----------
     q, q_dot : ndarray, shape (5,)
-        x, z, theta, psi, r [m, rad] and their rates.
+        x, z, theta, psi, r [m, m, rad, rad, m] and their rates.
     q_change, q_dot_change : ndarray, shape (5,)
         Difference from the given state; 0 unless it was projected.
     violations : tuple of str
-        Constraints that the given state violates, each with its violation.
+        Constraints that the given state violates, with their residuals.
     """
 
     q: FloatArray
@@ -50,28 +50,28 @@ class Start:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PrintedMotion:
-    """A motion by the report's equations, sampled at n times; time is the first axis.
+    """A solution of the report's equations, sampled at n times; time is the first axis.
 
     Attributes
     ----------
     t : ndarray, shape (n,)
         The times reached [s].
     q, q_dot, q_ddot : ndarray, shape (n, 5)
-        x, z, theta, psi, r [m, rad], their rates and accelerations.
+        x, z, theta, psi, r [m, m, rad, rad, m], their rates and accelerations.
     multipliers : ndarray, shape (n, 4)
         Multipliers of the rows in use, in the report's scaling.
     gap : ndarray, shape (n,)
         Height of the lowest point of the body above the ground [m].
     energy : ndarray, shape (n,)
-        Kinetic and potential energy [J].
+        Sum of kinetic and potential energy [J].
     body : Scene
         Semi-axes, mass and gravity.
     printed : tuple of str
-        The rows that are as printed.
+        Names of the parts that are as printed.
     start : Start
         The initial state, and its difference from the given one.
     message : str
-        The reason why the motion stopped before the last time; empty if it did not.
+        The reason if the motion stopped before the last time, otherwise empty.
     """
 
     t: FloatArray
@@ -96,15 +96,15 @@ class PrintedMotion:
         return kinetic + body.mass * body.gravity * self.q[:, 1]
 
     def constraint_residuals(self) -> ConstraintResiduals:
-        """Return the residuals of the right constraints at each sample (see `constraints`)."""
+        """Return the residuals of the correct constraints at each sample (see `constraints`)."""
         return constraints(self.q, self.q_dot, a=self.body.a, b=self.body.b)
 
     def back_substitution(self) -> FloatArray:
-        """Return the residuals of the equations that were solved, printed rows included, (n, 9).
+        """Return the residuals of the equations that were solved, including printed rows, (n, 9).
 
-        Residuals of the five equations of motion [N, N m] and of the four constraints on the rates
-        are the report's own test (Figure 11). Small values show that the equations were solved, not
-        that they are right.
+        The residuals of the five equations of motion [N, N m] and of the four constraints on the
+        rates are the report's test of its solution (Figure 11). Small values show that the
+        equations were solved, but not that they are correct.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         motion = masses(body) * self.q_ddot - _weight(body) - pull(matrix, self.multipliers)
@@ -125,7 +125,7 @@ def _weight(body: Scene) -> FloatArray:
 
 
 def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
-    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
+    """Return q_ddot (..., 5) and the multipliers (..., 4), NaN where the system is singular."""
     # The rate of the matrix is the imaginary part after a complex step along q_dot, exact to
     # within rounding (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
     stepped = rows(q + 1j * _STEP * q_dot, body.a, body.b, printed)
@@ -140,9 +140,9 @@ def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # some sample is singular: each is solved separately
-            found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
-            return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
+        if q.ndim > 1:  # the system of some sample is singular: solve each of them separately
+            solved = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
+            return np.stack([each[0] for each in solved]), np.stack([each[1] for each in solved])
         solution = np.full_like(right, np.nan)
     return solution[..., :COORDINATES], solution[..., COORDINATES:]
 
@@ -150,13 +150,13 @@ def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names)
 def follow(
     start: Start, t: FloatArray, body: Scene, printed: Names, how: Settings
 ) -> PrintedMotion:
-    """Integrate the equations with the `printed` rows from t = 0, and sample at the times t."""
+    """Integrate the equations with the `printed` rows from t = 0; sample them at the times t."""
 
     def slope(y: FloatArray) -> FloatArray:
         q, q_dot = y[:COORDINATES], y[COORDINATES:]
         return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
 
-    # no warnings: a motion whose numbers become infinite or NaN ends there, with a message
+    # no warnings are needed: a motion that becomes infinite or NaN ends with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         y = np.concatenate([start.q, start.q_dot])
         samples, message = _integrated(slope, y, t, how)
@@ -167,7 +167,7 @@ def follow(
     end = int(np.argmin(np.append(held, False)))
     if end < len(q):
         message = f"the equations have no finite solution at {t[end]:.6g} s"
-    return PrintedMotion(  # a copy of the times: the caller may change the array t
+    return PrintedMotion(  # the times are copied, because the caller may change the array t
         t[:end].copy(), q[:end], q_dot[:end], q_ddot[:end], multipliers[:end], body, printed, start,
         message,
     )  # fmt: skip
@@ -179,10 +179,10 @@ def follow(
 def _integrated(
     slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, how: Settings
 ) -> tuple[FloatArray, str]:
-    """Return the solution of y' = slope(y) at the times reached, and why it ended there.
+    """Return the solution of y' = slope(y) at the times reached, and why it ended early.
 
-    Steps are of one size if `how` has a `step`; else their size follows from the local error
-    (HNW II.4). The coefficients are the core's.
+    The step size is fixed if `how` has a `step`; otherwise it is controlled by the local error (HNW
+    II.4). The coefficients are those of the core.
     """
     tableau = _TABLEAUS[how.method]
     stages, order = tableau["stages"], tableau["order"]
@@ -193,14 +193,14 @@ def _integrated(
     def sizes(values: FloatArray, scale: FloatArray) -> FloatArray:
         return values / (how.atol + how.rtol * np.abs(scale) + _TINY)
 
-    # the first step: 1/100 of the time in which y changes by its own magnitude
+    # the first step is 1/100 of the time in which y changes by its magnitude
     size, speed = (float(np.linalg.norm(sizes(values, y))) for values in (y, slopes[0]))
     h = how.step or (min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end)
     for _ in range(how.max_steps):
         if len(samples) == t.size:
             break
         left = end - now
-        h = left if h > left - 10 * math.ulp(end) else h  # a step must exceed the rounding of `now`
+        h = left if h > left - 10 * math.ulp(end) else h  # avoids a last step at rounding level
         if not h >= 10 * math.ulp(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
         for i in range(1, stages + 1):
@@ -218,7 +218,7 @@ def _integrated(
         if not np.all(np.isfinite(after)):
             return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
         last = end if h == left else now + h
-        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # dense output beyond a cubic
+        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # quartic term of dense output
         first, change = h * slopes[0], after - y
         bend = 2 * change - first - h * slopes[-1]
         while len(samples) < t.size and t[len(samples)] <= last:

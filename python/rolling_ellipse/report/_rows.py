@@ -1,4 +1,4 @@
-"""The report's constraint matrix, each row as printed or corrected."""
+"""The report's constraint matrix, with each row as printed or corrected."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .._ask.scene import Scene
 Names = tuple[str, ...]  # names of rows as printed
 Pair = tuple[FloatArray, FloatArray]
 
-#: Parts of the matrix that may be as printed: rows of f1, f2, f3 (eq 32), the sign of a44 (appendix
-#: C), and tan(theta) in row 4. A corrected row 4, times cos^2(theta), stays finite.
+#: Parts of the matrix that can be used as printed: the rows of f1, f2, f3 (eq 32), the sign of a44
+#: (appendix C), and tan(theta) in row 4. The corrected row 4, times cos^2(theta), is always finite.
 MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
 EQ_32 = ("f1", "df2", "df3", "tan")
 MATRIX = ("f1", "df2", "tan")
@@ -22,28 +22,28 @@ CODE = ("f1", "df2", "a44", "tan")
 
 
 def masses(body: Scene) -> FloatArray:
-    """Return the diagonal mass matrix: mass [kg] of x, z, inertia [kg m^2] of theta, 0, 0."""
+    """Return the diagonal of the mass matrix: mass [kg] twice, inertia [kg m^2], 0, 0."""
     return np.array([1, 1, body.gyration2, 0, 0]) * body.mass
 
 
 def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
-    """Return (a b/r)^2 [m^2], r the radius of the ellipse at the angle psi, real or complex."""
+    """Return (a b/r)^2 [m^2] for the radius r of the ellipse at a real or complex angle psi."""
     return np.square(b * np.sin(psi)) + np.square(a * np.cos(psi))
 
 
 def polar_cube(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
-    """Return (a b/r)^3 [m^3], like `polar`; the power 3/2 of scalars and arrays may differ."""
+    """Return (a b/r)^3 [m^3] as in `polar`, since powers 3/2 of scalars and arrays may differ."""
     square = polar(psi, a, b)
     return square * np.sqrt(square)
 
 
 def along(matrix: npt.NDArray[Any], q_dot: FloatArray) -> npt.NDArray[Any]:
-    """Return matrix times q_dot, (..., 4): terms are added in order, for one and many states."""
+    """Return matrix times q_dot, (..., 4), with the same order of summation for any shape."""
     return np.sum(matrix * q_dot[..., None, :], axis=-1)
 
 
 def pull(matrix: npt.NDArray[Any], multipliers: FloatArray) -> npt.NDArray[Any]:
-    """Return the transposed matrix times the multipliers, (..., 5), like `along`."""
+    """Return the transposed matrix times the multipliers, (..., 5), summed as in `along`."""
     return np.sum(matrix * multipliers[..., :, None], axis=-2)
 
 
@@ -74,7 +74,7 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: Names) -> npt.NDArray
 
 
 def direction(q: FloatArray, a: float, b: float, printed: Names) -> FloatArray:
-    """Return the q_dot with theta_dot = 1 that the constraint rows allow, (..., 5)."""
+    """Return the q_dot with theta_dot = 1 that satisfies the constraint rows, (..., 5)."""
     matrix = rows(q, a, b, printed)
     rates: FloatArray = np.zeros(q.shape)
     rates[..., 2] = 1
@@ -102,13 +102,14 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
     a, b : float
         Semi-axes [m].
     printed : sequence of {"f1", "df2", "df3", "a44", "tan"}
-        Rows as printed; () gives the corrected matrix, with row 4 times cos^2(theta). Three
-        printings have names: `EQ_32`, `MATRIX` (below it) and `CODE` (appendix C).
+        Parts that are as printed; () gives the corrected matrix, with row 4 times cos^2(theta).
+        The printed versions have names: `EQ_32`, `MATRIX` (printed below eq 32) and `CODE`
+        (appendix C).
 
     Returns
     -------
     ndarray, shape (..., 4, 5)
-        Rows of f1 ... f4, in the report's scaling.
+        Rows of f1 ... f4, in the scaling of the report.
 
     Raises
     ------
@@ -130,7 +131,7 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
 
 
 def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
-    """Return the q_dot with theta_dot = omega that the constraint rows allow, printed or not.
+    """Return the q_dot with theta_dot = omega that satisfies the printed or corrected rows.
 
     Parameters
     ----------
@@ -152,5 +153,5 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
-    with np.errstate(over="ignore"):  # rates beyond the largest double are infinite
+    with np.errstate(over="ignore"):  # rates beyond the largest double become infinite
         return allowed * speed

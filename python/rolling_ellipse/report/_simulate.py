@@ -1,6 +1,6 @@
-"""The simulation of section 4 of the report, with the correct equations or the printed ones.
+"""The simulation of section 4 of the report, with the corrected or the printed equations.
 
-Its start may violate constraints; on request the nearest consistent state replaces it.
+The start may violate the constraints; on request it is replaced by the nearest consistent state.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ Consistent = Literal["refuse", "project", "as_given"]
 
 _EXPLICIT: tuple[Method, ...] = ("dopri5", "rk4")
 _EPS = float(np.finfo(float).eps)
-_ULPS = 16.0  # allowed error of a coordinate or rate [ulp]: that of `kinematics`
-_NAMES = (  # name and unit of a constraint, and the row that may be as printed
+_ULPS = 16.0  # allowed error of a coordinate or rate [ulp], which covers that of `kinematics`
+_NAMES = (  # name and unit of each constraint, and the name of its row as printed
     ("f2", "m", ""), ("f3", "m", ""), ("f4", "rad", ""), ("f1", "m/s", "f1"),
     ("rate of f2", "m/s", "df2"), ("rate of f3", "m/s", "df3"), ("rate of f4", "rad/s", "a44"),
 )  # fmt: skip
 
 
 class InconsistentStartWarning(UserWarning):
-    """Warning: a simulation runs from a state that violates its constraints."""
+    """A simulation starts from a state that violates its constraints."""
 
 
 def simulate(
@@ -60,37 +60,38 @@ def simulate(
     step: float | None = None,
     max_steps: int = 100_000,
 ) -> Trajectory | PrintedMotion:
-    """Return the motion of a uniform disc from the report's coordinates, as in its section 4.
+    """Return the motion of a uniform disc in the report's coordinates, as in its section 4.
 
-    Three things lift the report's ellipse off the ground: wrong equations (``printed``), a start
-    that violates the constraints (``consistent="as_given"``), and the drift of accelerations
-    integrated without stabilisation (large steps). Each has its own argument.
+    Three errors lift the report's ellipse off the ground: wrong equations (``printed``), a start
+    that violates the constraints (``consistent="as_given"``), and the drift of accelerations that
+    are integrated without stabilisation (large steps). Each can be reproduced separately.
 
     Parameters
     ----------
     q, q_dot : array_like, shape (5,)
-        x, z, theta, psi, r [m, rad] and their rates at t = 0.
+        x, z, theta, psi, r [m, m, rad, rad, m] and their rates at t = 0.
     t : float or array_like, shape (n,)
-        End time (then 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s].
+        End time (for 1001 evenly spaced samples), or strictly increasing sample times >= 0 [s].
     a, b : float
         Semi-axes [m].
     mass, gravity : float
         Mass [kg], acceleration of gravity [m/s^2].
     equations : {"corrected", "printed"}
-        The corrected ones are the model "multipliers"; the printed ones are integrated in index-1
-        form, without stabilisation.
+        The corrected equations are those of the model "multipliers". The printed ones are
+        integrated in index-1 form, without stabilisation.
     consistent : {"refuse", "project", "as_given"}
-        Treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations the
-        rows in use must allow the rates. "project" takes the nearest consistent state in the
-        metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given" keeps
-        the start after an InconsistentStartWarning, and no time of its motion is valid.
+        Treatment of a start that violates f2, f3, f4 or a constraint on the rates; with "printed"
+        equations the latter are the rows in use. "refuse" raises an error. "project" uses the
+        nearest consistent state in the metric of the kinetic energy (theta and z change, x does
+        not, psi and r follow). "as_given" uses the start after an InconsistentStartWarning, and its
+        motion is not valid at any time.
     printed : sequence of str, optional
-        For the printed equations only: the rows as printed, see `constraint_matrix`; default is
-        the report's code, `CODE`. With () all rows are right.
+        For the printed equations only: the parts that are as printed, see `constraint_matrix`. The
+        default is the report's code, `CODE`. With () all rows are correct.
     method : str, optional
-        "dopri5" (default) or "rk4" for the printed equations; for the corrected ones the methods of
-        `rolling_ellipse.simulate` for its model "multipliers", default "dop853" ("radau" with the
-        stabilization "ggl").
+        "dopri5" (default) or "rk4" for the printed equations. For the corrected ones, a method of
+        `rolling_ellipse.simulate` for its model "multipliers", by default "dop853" ("radau" with
+        the stabilization "ggl").
     stabilization, baumgarte : str, optional; (float, float)
         For the corrected equations only, as in `rolling_ellipse.simulate`.
     rtol, atol, step, max_steps
@@ -104,8 +105,8 @@ def simulate(
     Raises
     ------
     ValueError
-        If an inconsistent start is refused (naming each violated constraint and its size), or an
-        argument is out of range or has no effect.
+        If an inconsistent start is refused (the message gives each violated constraint and its
+        residual), or an argument is out of range or has no effect.
     IntegrationError
         If the integration of the corrected equations stops before the last time.
 
@@ -117,8 +118,8 @@ def simulate(
     True
     >>> how = {"equations": "printed", "consistent": "project"}
     >>> printed = rl.report.simulate(q, q_dot, 3.0, a=2.0, b=1.0, **how)
-    >>> print(f"by the printed equations it floats up to {printed.gap.max():.3f} m")
-    by the printed equations it floats up to 0.687 m
+    >>> print(f"with the printed equations it floats up to {printed.gap.max():.3f} m")
+    with the printed equations it floats up to 0.687 m
     """
     equations = choice("equations", equations, get_args(Equations))
     consistent = choice("consistent", consistent, get_args(Consistent))
@@ -136,7 +137,7 @@ def simulate(
         method = choice("method", method, _EXPLICIT)
     settings = replace(
         DEFAULTS, model="multipliers", method=method, rtol=rtol, atol=atol, step=step,
-        max_steps=max_steps, max_events=1,  # the least allowed: "multipliers" has no events
+        max_steps=max_steps, max_events=1,  # the least value, since "multipliers" has no events
         **{name: value for name, value in how.items() if value is not None},
     )  # fmt: skip
     _core.validate_settings(settings.core, float(times[-1]))
@@ -146,10 +147,10 @@ def simulate(
         return follow(start, times, body, names, settings)
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
-    off = bool(start.violations) and consistent == "as_given"  # any other start is the scene's
+    off = bool(start.violations) and consistent == "as_given"  # otherwise it is the scene's start
     given = (start.q, start.q_dot) if off else None
     trajectory = Trajectory.computed(scene, settings, times, given)
-    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the start's warning has stated it
+    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the first warning covers this
         report_status(trajectory, raise_on_failure=True, stacklevel=3)
     return trajectory
 
@@ -180,10 +181,10 @@ def _vector(name: str, value: Any) -> FloatArray:
 
 
 def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> tuple[str, ...]:
-    """Return which of f2, f3, f4, f1 and the rates of f2 to f4 are violated: name, size, unit.
+    """Return which of f2, f3, f4, f1 and the rates of f2 to f4 are violated: name, residual, unit.
 
-    A residual may be as large as 16 ulp of each coordinate make it, plus 16 ulp of its terms: the
-    errors of `kinematics` and of the evaluation.
+    A residual may have the size that results from errors of 16 ulp in each coordinate, which covers
+    `kinematics`, plus 16 ulp of its terms for the evaluation.
     """
     state = np.concatenate([q, q_dot])
     off = _ULPS * np.spacing(np.abs(state))
@@ -199,7 +200,7 @@ def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -
 
 
 def _residuals(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> Pair:
-    """Return the residuals of `_NAMES`, and for each the sum of its terms' magnitudes, (n, 7)."""
+    """Return the residuals of `_NAMES`, and the sums of their terms' magnitudes, (n, 7) each."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     _, z, theta, psi, r = np.abs(q).T
     matrix = rows(q, body.a, body.b, printed)
@@ -213,21 +214,23 @@ def _project(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> P
     """Return the nearest consistent state in the metric of the kinetic energy.
 
     psi and r have no mass and follow from theta; x is free. The position minimises m dz^2 +
-    I dtheta^2 on z = h(theta). The rates are the nearest in the only direction that the rows allow.
+    I dtheta^2 on z = h(theta). The rates are the nearest ones in the only direction that satisfies
+    the rows.
     """
     theta = _nearest_angle(float(q[1]), float(q[2]), body)
-    there, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
-    there[0] = q[0]
-    allowed = direction(there, body.a, body.b, printed)
+    nearest, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
+    nearest[0] = q[0]
+    allowed = direction(nearest, body.a, body.b, printed)
     momentum = masses(body) * allowed
     omega = momentum @ q_dot / (momentum @ allowed)
-    return there, omega * allowed
+    return nearest, omega * allowed
 
 
 def _nearest_angle(z: float, theta: float, body: Scene) -> float:
-    """Return the angle of least (z - h)^2 + k^2 (angle - theta)^2: best of a grid, then Newton.
+    """Return the angle that minimises (z - h)^2 + k^2 (angle - theta)^2.
 
-    h has the period pi, so this angle is within a quarter turn of theta.
+    Newton's method starts from the best point of a grid. h has the period pi, so that the minimum
+    is within a quarter turn of theta.
     """
     shape, k2 = {"a": body.a, "b": body.b}, body.gyration2
     grid = theta + np.linspace(-np.pi / 2, np.pi / 2, 2001)

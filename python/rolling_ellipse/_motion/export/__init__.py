@@ -1,4 +1,4 @@
-"""Export of motions: files and tables."""
+"""Export of motions to files and tables."""
 
 from __future__ import annotations
 

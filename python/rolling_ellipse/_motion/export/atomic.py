@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Files that are written completely or not at all."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ UNFINISHED = ".rolling_ellipse_"  # prefix of the names of unfinished files
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield the path of a new empty file in the same folder, which replaces `path` on success.
 
-    Until then the old file stays, and `path` never names an unfinished file, even if the process is
-    killed. Any exception removes the new file. Its name has the suffix of `path`, by which writers
-    choose a format, and is otherwise plain, so that other programs accept it. A link stays a link,
-    and an old file keeps its permissions. Devices and pipes cannot be replaced: for them `path`
-    itself is yielded. An OSError names `path`, as one raised by `open` would.
+    Until then the old file stays in place, and `path` never names an unfinished file, even if the
+    process is killed. Any exception removes the new file. The new name has the suffix of `path`,
+    from which writers choose a format, and contains only plain characters, so that other programs
+    accept it. A link stays a link, and a replaced file keeps its permissions. Devices and pipes
+    cannot be replaced; for them `path` itself is yielded. An OSError names `path`, like an error
+    from `open`.
     """
     name = os.fspath(path)
     try:
@@ -40,7 +41,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         with _locked(new):
             yield new
-            with open(new, "r+b") as written:  # only what is on the disk may replace an old file
+            with open(new, "r+b") as written:  # flush to disk before replacing the old file
                 os.fsync(written.fileno())
             if old is not None:
                 with suppress(PermissionError):  # only root can change the owner of a file
@@ -53,7 +54,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove the unfinished files of killed processes; files still being written are locked."""
+    """Remove the unfinished files of killed processes; those still being written are locked."""
     for path in folder.glob(f"{UNFINISHED}*"):
         with suppress(OSError), _locked(path) as is_free:
             if is_free:
@@ -61,16 +62,16 @@ def remove_unfinished(folder: Path) -> None:
 
 
 def write(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a whole file by `replacing`."""
+    """Write a file completely or not at all, with `replacing`."""
     with replacing(path) as new:
         new.write_bytes(content)
 
 
 @contextmanager
 def _locked(path: Path) -> Iterator[bool]:
-    """Hold a file's lock, until the process ends at the latest; yield whether it was free.
+    """Lock a file, and yield whether it was free; the lock ends with the process at the latest.
 
-    Windows needs no lock: open files cannot be removed there.
+    Windows needs no lock, because it does not remove open files.
     """
     if sys.platform == "win32":
         yield True
@@ -80,7 +81,7 @@ def _locked(path: Path) -> Iterator[bool]:
         is_free = True
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:  # another process has the lock, or this file system has no locks
+        except OSError:  # another process holds the lock, or the file system has no locks
             is_free = False
         yield is_free
     finally:
@@ -88,9 +89,9 @@ def _locked(path: Path) -> Iterator[bool]:
 
 
 def _target(name: str) -> tuple[Path, os.stat_result | None]:
-    """Return the file behind all links, and its status (None if it does not exist).
+    """Return the path with all links resolved, and the file's status (None if it does not exist).
 
-    An error is raised if the file cannot be opened for writing; the check does not empty it.
+    An OSError is raised if the file cannot be opened for writing; this check does not truncate it.
     """
     folder, last = os.path.split(name)
     if last in ("", os.curdir, os.pardir):
@@ -106,7 +107,7 @@ def _target(name: str) -> tuple[Path, os.stat_result | None]:
 
 
 def _beside(target: Path) -> Path:
-    """Create an empty file in the folder of `target`: renaming works only within a file system."""
+    """Create an empty file next to `target`, because renaming works only within a file system."""
     plain = re.fullmatch(r"\.[A-Za-z0-9_]{1,16}", target.suffix)
     new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))

@@ -1,4 +1,4 @@
-"""Trajectories as .npz files: arrays, and everything else as JSON."""
+"""Trajectories as .npz files, which contain the arrays, and everything else as JSON."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .atomic import replacing
 _Made = TypeVar("_Made", bound=Trajectory)
 
 _SCHEMA = 6
-_WITHOUT_BLOWS = 5  # schema whose settings have no blows, and whose events no effects
+_WITHOUT_BLOWS = 5  # schema whose settings have no blows, and whose events have no effects
 _WITHOUT_RESISTANCE = 4  # schema whose scenes have no rolling resistance
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
@@ -41,15 +41,15 @@ _ABOUT = ("schema", "scene", "settings", "status", "events", *_FACTS)
 
 
 def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+    """Write the trajectory to an .npz file without pickles; `load` restores it bit for bit.
 
-    Its name must end with .npz or have no suffix. The file appears whole or not at all: if anything
-    goes wrong, an old file is kept.
+    The name of the file must end with .npz or have no suffix. The file is written completely or not
+    at all; if writing fails, an existing file is left unchanged.
 
     Raises
     ------
     ValueError
-        If the name has another ending, or the trajectory was changed in a way that `load` would
+        If the name has another suffix, or the trajectory was changed in a way that `load` would
         reject.
     OSError
         If the file cannot be written.
@@ -64,8 +64,8 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     name = file_name("path", path)
     if (ending := os.path.splitext(name)[1]) not in ("", ".npz"):
         raise ValueError(
-            f"path must end with .npz or without a suffix, got {ending!r}: to_dataframe() and "
-            "to_xarray() make tables, which write other files"
+            f"path must end with .npz or have no suffix, got {ending!r}: to_dataframe() and "
+            "to_xarray() return tables, which can write other formats"
         )
     text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
     _restored(type(trajectory), strict.parsed("about", text), arrays)
@@ -79,8 +79,8 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     Raises
     ------
     ValueError
-        If the file is damaged, foreign or of another schema version; the message names the file
-        and the problem.
+        If the file is damaged, was written by another program or has an unsupported schema; the
+        message names the file and the problem.
     OSError
         If the file is missing or cannot be read.
 
@@ -122,9 +122,9 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) -> _Made:
-    """Return the trajectory of a file's JSON values and arrays, if `save` would write the same.
+    """Return the trajectory for a file's JSON values and arrays, if `save` would write the same.
 
-    Thus nothing is converted, filled in or left out, even where the classes would accept that.
+    Hence no value is converted, filled in or ignored, even if the classes would accept it.
     """
     if about["schema"] == _WITHOUT_RESISTANCE:
         about |= {"schema": _WITHOUT_BLOWS, "scene": strict.with_resistance(about["scene"])}
@@ -158,7 +158,7 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
 
 
 def _with_blows(about: dict[str, Any]) -> dict[str, Any]:
-    """Return the values that an older file, of a motion without blows, lacks."""
+    """Return the values that are missing from a file of the schema without blows."""
     events, body = about["events"], strict.scene_of(about["scene"]).core.body
     rows = [event_row([*each, [0.0] * len(_EFFECTS)])[: -len(_EFFECTS)] for each in events]
     known = with_effects(np.reshape(rows, (-1, len(_core.COLUMNS["events"]) - len(_EFFECTS))), body)
@@ -179,21 +179,21 @@ def event_values(event: Event) -> list[Any]:
 
 
 def event_row(values: Any) -> list[float]:
-    """Return an event written by `event_values` as a row of numbers for `events`."""
+    """Return the values written by `event_values` as a row of numbers for `events`."""
     t, kind, (*before, mode_before), (*after, mode_after), effects = values
     for value in (t, *before, *after, *effects):
         if not (isinstance(value, float) and math.isfinite(value)):
-            raise ValueError(f"events must hold finite numbers, got {value!r}")
+            raise ValueError(f"events must contain finite numbers, got {value!r}")
     if not len(before) == len(after) == len(STATE_UNITS):
-        raise ValueError(f"events must hold states of {len(STATE_UNITS)} numbers, got {values!r}")
+        raise ValueError(f"events must have states of {len(STATE_UNITS)} numbers, got {values!r}")
     if len(effects) != len(_EFFECTS):
-        raise ValueError(f"events must hold {len(_EFFECTS)} effects, got {effects!r}")
+        raise ValueError(f"events must contain {len(_EFFECTS)} effects, got {effects!r}")
     code = EventKind[choice("kind", kind, tuple(EventKind.__members__))].value
     return [t, code, *before, Mode(mode_before), *after, Mode(mode_after), *effects]
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
-    """Raise ValueError if a trajectory contradicts itself, or its scene cannot be solved."""
+    """Raise ValueError if a trajectory is inconsistent, or its scene cannot be solved."""
     settings, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     for name in ("model", "method"):
         wanted, value = getattr(settings, name), getattr(trajectory, name)
@@ -206,13 +206,13 @@ def _require_consistent(trajectory: Trajectory) -> None:
     times = [event.t for event in trajectory.events]
     _require_within("times of events", times, 0.0, t_end)
     if times != sorted(times):
-        raise ValueError(f"times of events must not fall, got {times}")
+        raise ValueError(f"times of events must be nondecreasing, got {times}")
     blows = [t for t, _ in trajectory.blows if t < t_end or trajectory.status is Status.COMPLETED]
     struck = [event.t for event in trajectory.events if event.kind is EventKind.BLOW]
     if struck[: len(blows)] != blows:
-        raise ValueError(f"times of BLOW events must be those of blows, {blows}, got {struck}")
+        raise ValueError(f"times of BLOW events must equal those of blows, {blows}, got {struck}")
     _core.validate_settings(settings.core, span)
-    # The core rejects what it cannot solve.
+    # The core rejects a scene that it cannot solve.
     unstruck = replace(settings, blows=())
     _core.simulate(trajectory.scene.core, unstruck.core, np.zeros(1), trajectory.start)
 

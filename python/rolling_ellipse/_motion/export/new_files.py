@@ -1,4 +1,4 @@
-"""Files for a user's folder: they overwrite nothing and follow no link."""
+"""Files written into a user's folder, without overwriting files or following links."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
     Raises
     ------
     ValueError
-        If a different file, or a link, already has one of the paths; nothing is written then.
+        If a different file or a link exists at one of the paths. No file is written then.
     OSError
-        If a file cannot be written. Each file appears whole or not at all.
+        If a file cannot be written. Each file is written completely or not at all.
     """
     kept = {name for name, content in files.items() if _is_there(folder / name, content)}
     if others := [name for name in sorted(files) if name not in kept and _is_taken(folder, name)]:
-        raise ValueError(f"folder must not have another {', '.join(others)}, got {str(folder)!r}")
+        raise ValueError(f"folder must contain no other {', '.join(others)}, got {str(folder)!r}")
     missing = [folder / name for name in sorted(files) if name not in kept]
     for path in missing:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -33,7 +33,7 @@ def _is_there(path: Path, content: bytes) -> bool:
 
 
 def _is_taken(folder: Path, name: str) -> bool:
-    """Return whether the path of a new file is taken, or passes through a link or a file."""
+    """Return whether the path of a new file exists, or passes through a link or a file."""
     path = folder / name
     between = [part for part in path.parents if part != folder and part.is_relative_to(folder)]
     blocked = [part.is_symlink() or (part.exists() and not part.is_dir()) for part in between]

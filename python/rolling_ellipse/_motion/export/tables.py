@@ -17,15 +17,16 @@ if TYPE_CHECKING:
 
 
 def to_dataframe(trajectory: Trajectory) -> DataFrame:
-    """Return a pandas DataFrame indexed by t, its columns named like the attributes.
+    """Return a pandas DataFrame indexed by t, whose columns are named like the attributes.
 
-    The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
-    has the units by column (``"units"``), the numbers of the scene, model, method and status.
+    The multipliers are ``lambda1`` to ``lambda4``, and ``mode`` contains names of `Mode`. ``attrs``
+    has the units of the columns (``"units"``), the numbers of the scene, and the model, method,
+    status, message, reason and valid_until.
 
     Raises
     ------
     ImportError
-        If pandas is missing: it comes with ``rolling_ellipse[data]``.
+        If pandas is missing; the extra ``rolling_ellipse[data]`` installs it.
 
     Examples
     --------
@@ -52,16 +53,16 @@ def to_dataframe(trajectory: Trajectory) -> DataFrame:
 
 
 def to_xarray(trajectory: Trajectory) -> Dataset:
-    """Return an xarray Dataset over t, its variables named like the attributes.
+    """Return an xarray Dataset over t, whose variables are named like the attributes.
 
-    ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
-    Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
-    model, method and status, all of which a netCDF file can hold.
+    ``multipliers`` has a second dimension, ``constraint``, and ``mode`` contains codes of `Mode`.
+    Every variable has ``units`` and ``long_name``. ``attrs`` has the numbers of the scene, and the
+    model, method, status, message, reason and valid_until. All of this can be saved as netCDF.
 
     Raises
     ------
     ImportError
-        If xarray is missing: it comes with ``rolling_ellipse[data]``.
+        If xarray is missing; the extra ``rolling_ellipse[data]`` installs it.
 
     Examples
     --------
@@ -90,9 +91,9 @@ def attributes(quantity: Quantity) -> dict[str, Any]:
 
 
 def _facts(trajectory: Trajectory) -> dict[str, Any]:
-    """Return facts of scene and solution as numbers and strings, which every format can hold.
+    """Return facts about scene and solution as numbers and strings, which every format supports.
 
-    A field of the scene that is None, its default, has no entry.
+    A field of the scene that is None has no entry.
     """
     facts: dict[str, Any] = asdict(trajectory.scene)
     impulse = facts.pop("impulse") or {}

@@ -1,4 +1,4 @@
-"""Many motions: scenes in tables, computed in chunks by any workers, kept in memory or a folder."""
+"""Many motions: scenes in tables, computed chunk by chunk by workers, in memory or in a folder."""
 
 from .answers import MotionArrays as MotionArrays
 from .ends import Ends as Ends

@@ -1,7 +1,7 @@
 """Results of many scenes: tables of numbers, from the core or from files, and their contents.
 
 Tables from files, which may be damaged, are checked before they are split into answers or arrays.
-An answer is a trajectory, or the exception of its scene. Arrays have the axes of the scenes.
+An answer is a trajectory, or the exception for its scene. Arrays have the axes of the scenes.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ TABLES = ("codes", "numbers", "text", "events", "rolling", "contact", "mode", "q
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-EVENTS = "events"  # what can be returned instead of quantities
+EVENTS = "events"  # can be returned instead of quantities
 DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
 _STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers": DIRECT}
-_TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap for rolling, too
+_TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap to compute for rolling as well
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
 _LOST = max(STATUSES) + 1  # ending code of a scene whose worker was lost
@@ -86,12 +86,12 @@ def solve(
     function: Callable[..., Tables], table: FloatArray, settings: Settings, times: FloatArray,
     threads: int,
 ) -> Tables:  # fmt: skip
-    """Call a core function; the core's settings are made here, since tasks cannot carry them."""
+    """Call a core function with settings of the core, which cannot be pickled with a task."""
     return function(table, settings.core, times, threads)
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
-    """Return the columns of the table `name`, by column name."""
+    """Return the columns of the table `name` by their names."""
     return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
 
 
@@ -105,35 +105,35 @@ def answers(
 ) -> list[Answer]:  # fmt: skip
     """Return a trajectory or an exception for each scene, given as a Scene or as a row of a table.
 
-    With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
+    With `keep_events` a trajectory stores the events of the tables. Otherwise it solves its scene
     again when its events are first accessed, as after pickling.
     """
     part = _Part(request, scenes, tables, keep_events)
     endings = columns("codes", tables)["ending"].tolist()
-    found: list[Answer] = [
+    result: list[Answer] = [
         trusted(Trajectory, {UNREAD: partial(part.facts, place)}) for place in range(len(endings))
     ]
     fine = HELD if request.raise_on_failure else STATUSES
     for place, ending in enumerate(endings):
         if ending == REFUSED:
-            found[place] = ValueError(part.places[place][0])
+            result[place] = ValueError(part.places[place][0])
         elif ending not in fine:
-            found[place] = IntegrationError(cast(Trajectory, found[place]))
-    return found
+            result[place] = IntegrationError(cast(Trajectory, result[place]))
+    return result
 
 
 class _Part:
-    """The motions in tables; each motion is read when it is first used."""
+    """The motions in tables, each of which is read when it is first used."""
 
     def __init__(self, request: Request, scenes: Any, tables: Tables, keep_events: bool) -> None:
         self._request, self._scenes, self._tables = request, scenes, tables
         self._times, self._keep_events = frozen(np.array(request.times)), keep_events
         self._text = tables["text"].tobytes()
-        self._text.decode()  # rejects damage in a file at once
+        self._text.decode()  # detects a damaged file at once
 
     @cached_property
     def places(self) -> list[tuple[str, slice, slice]]:
-        """Message of each motion, and where its samples and its events are in their tables."""
+        """Message of each motion, and the slices of its samples and its events in their tables."""
         code, text = columns("codes", self._tables), BytesIO(self._text)
         taken = dict.fromkeys((*MODELS, "events"), 0)
 
@@ -180,13 +180,13 @@ def _samples(model: str, tables: Tables, here: slice, times: FloatArray) -> dict
 
 
 def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> None:
-    """Raise an exception unless the tables hold n scenes, sampled at most `times` times each."""
+    """Raise an exception unless the tables have n scenes with at most `times` samples each."""
     require_array("scenes", scenes, np.float64, (n, _WIDTH["scenes"]), finite=False)
     require_array("codes", tables["codes"], np.int64, (n, _WIDTH["codes"]))
     code, event = columns("codes", tables), columns("events", tables)
     counts = tables["codes"][:, _FIRST_COUNT:]
     if counts.min(initial=0) < 0 or code["samples"].max(initial=0) > times:
-        raise ValueError(f"codes must hold counts, of samples at most {times}")
+        raise ValueError(f"codes must contain counts, with at most {times} samples")
     samples = {name: int(code["samples"][_of_model(name, code)].sum()) for name in _STORED}
     shapes = {
         "text": (int(code["letters"].sum()),),
@@ -214,25 +214,26 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
         ("kinds of events", event["kind"], [kind.value for kind in _core.EventKind]),
     ):
         if not np.isin(values, known).all():
-            raise ValueError(f"{name} must be of {known}")
+            raise ValueError(f"{name} must be among {known}")
 
 
 class MotionArrays(dict[str, FloatArray]):
-    """Quantities of many motions by name: arrays over the scenes' shape, then the times.
+    """Quantities of many motions by name, as arrays with the axes of the scenes and of the times.
 
-    They are NaN where a scene has no motion, and after an early end.
+    Entries are NaN for a scene without a motion, and after an early end.
 
     Attributes
     ----------
     t : ndarray, shape (n,)
         Times [s].
     axes : tuple of str
-        Names of the scenes' axes: the argument, if only one varies along the axis (``omega0`` for
-        the initial omega, and so on), else ``scene``, or ``scene_0``, ``scene_1``.
+        Names of the axes of the scenes: that of the argument if only one varies along the axis
+        (``omega0`` for the initial omega, and so on), otherwise ``scene``, or ``scene_0``,
+        ``scene_1``.
     status : ndarray of str
-        Names of `Status`, or REFUSED, or LOST (with a worker), in the scenes' shape.
+        Names of `Status`, or REFUSED, or LOST (with a worker), in the shape of the scenes.
     errors : dict
-        The exceptions that the list of `simulate_many` holds, by the scene's index, a tuple.
+        The exceptions in the list of `simulate_many`, by the index of the scene, a tuple.
 
     Examples
     --------
@@ -264,12 +265,12 @@ class MotionArrays(dict[str, FloatArray]):
     def to_xarray(self) -> Dataset:
         """Return an xarray Dataset over the axes of the scenes and t, with ``status``.
 
-        Scene arguments that vary are coordinates, the others are in ``attrs``.
+        Scene arguments that vary are coordinates; the others are in ``attrs``.
 
         Raises
         ------
         ImportError
-            If xarray is missing: it comes with ``rolling_ellipse[data]``.
+            If xarray is missing; the extra ``rolling_ellipse[data]`` installs it.
 
         Examples
         --------
@@ -280,11 +281,11 @@ class MotionArrays(dict[str, FloatArray]):
         >>> print(f"{float(data.theta.sel(omega0=2.0, t=1.0)):.4f} rad")
         0.5652 rad
         """
-        found = dataset_of(self, (*self.axes, "t"), self, self._scenes)
-        return found.assign_coords({"t": ("t", self.t, attributes(TIME))})
+        data = dataset_of(self, (*self.axes, "t"), self, self._scenes)
+        return data.assign_coords({"t": ("t", self.t, attributes(TIME))})
 
     def to_dataframe(self) -> DataFrame:
-        """Return `to_xarray` as a pandas DataFrame: a row for each scene and time.
+        """Return `to_xarray` as a pandas DataFrame with a row for each scene and time.
 
         Examples
         --------
@@ -297,9 +298,9 @@ class MotionArrays(dict[str, FloatArray]):
         2.0    1.0  COMPLETED  0.565
                2.0  COMPLETED -0.639
         """
-        found = self.to_xarray()
-        frame: DataFrame = found.to_dataframe()
-        frame.attrs = dict(found.attrs)
+        data = self.to_xarray()
+        frame: DataFrame = data.to_dataframe()
+        frame.attrs = dict(data.attrs)
         return frame
 
 
@@ -310,14 +311,14 @@ def counts_of(status: npt.NDArray[np.str_]) -> str:
 def endings_of(
     codes: npt.NDArray[Any], failed: Mapping[int, Exception], shape: tuple[int, ...]
 ) -> dict[str, Any]:
-    """Return status and errors of motions in a shape, from all codes and the exceptions."""
+    """Return status and errors of motions in a shape, given all codes and the exceptions."""
     return {"status": ENDINGS[codes - REFUSED].reshape(shape), "errors": errors_of(failed, shape)}
 
 
 def errors_of(
     failed: Mapping[int, Exception], shape: tuple[int, ...]
 ) -> dict[tuple[int, ...], Exception]:
-    """Return exceptions by their indices in a shape, from those by their places in C order."""
+    """Convert flat indices of exceptions in C order to tuples of indices in a shape."""
     return {tuple(map(int, np.unravel_index(k, shape))): each for k, each in failed.items()}
 
 
@@ -326,7 +327,7 @@ def dataset_of(
 ) -> Dataset:
     """Return the status and quantities of motions as a Dataset, with the scenes as coordinates.
 
-    Columns of further arguments are treated like those of the scenes.
+    Columns in `more` are treated like the arguments of the scenes.
     """
     dataset: Dataset = required("xarray", "to_xarray").Dataset({"status": (of.axes, of.status)})
     for name, array in values.items():
@@ -357,7 +358,7 @@ def _varies(grid: FloatArray, axis: int) -> bool:
 
 
 def names_in(returns: Any) -> tuple[str, ...]:
-    """Return the names of quantities in an argument ``returns``."""
+    """Return the names of quantities in the argument ``returns``."""
     if not isinstance(returns, Iterable):
         raise TypeError(f"returns must be names of quantities, got {shown(returns)}")
     given = (returns,) if isinstance(returns, str) else returns
@@ -371,9 +372,9 @@ def gathered(
     names: tuple[str, ...], request: Request, parts: Iterable[tuple[FloatArray, Any]],
     axes: tuple[str, ...], shape: tuple[int, ...] | None,
 ) -> MotionArrays:  # fmt: skip
-    """Return quantities from tables of scenes, each with its answers or with `Lost`.
+    """Return quantities of motions, for pairs of a table of scenes and its results.
 
-    A shape of None stands for that of a list.
+    The results are tables, or an exception for a lost worker. A shape of None stands for a list.
     """
     rows, endings = [np.empty((0, WIDTH))], [np.empty(0, int)]
     blocks = [np.empty((len(names), 0, request.times.size))]
@@ -406,7 +407,7 @@ def gathered(
 def _fill(
     values: dict[str, FloatArray], request: Request, table: FloatArray, tables: Tables
 ) -> Iterator[tuple[int, Exception]]:
-    """Fill in the samples of each scene, and yield the exceptions with their indices."""
+    """Fill in the samples of each scene, and yield the index and exception of each failure."""
     code = columns("codes", tables)
     reached = np.arange(request.times.size) < code["samples"][:, None]
     q, q_dot = tables["q"], tables["q_dot"]
@@ -432,12 +433,12 @@ def _fill(
 
 
 def _fill_rolling(values: dict[str, FloatArray], table: FloatArray, tables: Tables) -> None:
-    """Fill in what `Trajectory` derives at the contact of bodies that only roll."""
+    """Fill in the contact quantities that `Trajectory` derives, for bodies that only roll."""
     code, (theta, omega, _) = columns("codes", tables), tables["rolling"]
     samples = np.where(_of_model("rolling", code), code["samples"], 0)
     places, begin = np.flatnonzero(samples), 0
     for place, scene in zip(places, scenes_of(table[places]), strict=True):
         part = slice(begin, begin := begin + samples[place])
-        found = _core.rolling_contact(scene.core, theta[part], omega[part])
+        contact = _core.rolling_contact(scene.core, theta[part], omega[part])
         for name, filled in values.items():
-            filled[place, : samples[place]] = found[name]
+            filled[place, : samples[place]] = contact[name]

@@ -1,11 +1,11 @@
 """The scenes of `simulate_many` in chunks: from an iterable, or from arrays that broadcast.
 
-Scenes are the rows of a table, for workers and files: the values of a Scene in the core's order,
-then those of its impulse. NaN stands for values that were not given.
+For workers and files, scenes are the rows of a table: the values of a Scene in the core's order,
+followed by those of its impulse. NaN stands for None.
 
-The size of a chunk depends only on the number of scenes before it and of samples per scene. The
-first chunks are small, so that a few slow scenes occupy many workers. Since sizes do not depend on
-the workers, other workers can finish a folder.
+The size of a chunk depends only on the number of preceding scenes and on the number of samples per
+scene. The first chunks are small, so that a few slow scenes are shared among many workers. Because
+the sizes do not depend on the workers, other workers can complete a folder.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene
 
 @dataclass(frozen=True)
 class Chunk:
-    """Scenes that are computed together: those from index `begin` up to `end`."""
+    """Scenes that are computed together, with indices from `begin` up to `end`."""
 
     index: int
     begin: int
@@ -53,12 +53,12 @@ class Chunk:
 
     @property
     def scenes(self) -> list[Scene] | FloatArray:
-        """The scenes as they were given, or the table."""
+        """The Scene objects if there are any, otherwise the table."""
         return self.table if self.given is None else self.given
 
 
 def sizes(samples: int) -> Iterator[tuple[int, int]]:
-    """Yield, chunk by chunk, the index of its first scene and its largest number of scenes."""
+    """Yield for each chunk the index of its first scene and its largest number of scenes."""
     most = max(1, min(_MOST, _SAMPLES // samples))
     begin = 0
     while True:
@@ -68,7 +68,7 @@ def sizes(samples: int) -> Iterator[tuple[int, int]]:
 
 
 class SceneList:
-    """Scenes of an iterable, taken as needed."""
+    """The scenes of an iterable, which is consumed as needed."""
 
     def __init__(self, scenes: Iterable[Any]) -> None:
         self._each = iter(scenes)
@@ -87,17 +87,17 @@ class SceneList:
 
 
 class SceneGrid:
-    """Scenes from the arguments in a mapping, numbers and arrays that broadcast, in C order.
+    """Scenes from a mapping of arguments to numbers and arrays that broadcast, in C order.
 
-    All scenes are checked at once; an error names the argument and its index. `beside` holds other
-    arrays that broadcast with them.
+    All scenes are checked at the start; an error names the argument and its index. `beside` has
+    other arrays that broadcast with the arguments.
     """
 
     def __init__(self, arguments: Mapping[Any, Any], **beside: FloatArray) -> None:
         for name in arguments:
             if name not in _DEFAULTS:
                 hint, names = meant(str(name), _DEFAULTS), ", ".join(_DEFAULTS)
-                raise TypeError(f"scenes must have names of {names}, got {name!r}{hint}")
+                raise TypeError(f"scenes must have names among {names}, got {name!r}{hint}")
         for name in ("a", "b"):
             if name not in arguments:
                 raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")
@@ -127,7 +127,7 @@ class SceneGrid:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the axes: the argument that varies along this axis only, or "scene"."""
+        """Names of the axes: that of the only argument that varies along an axis, or "scene"."""
         many = len(self.shape) > 1
         owners: list[list[str]] = [[] for _ in self.shape]
         for name, values in (self._arrays | self._beside).items():
@@ -151,7 +151,7 @@ class SceneGrid:
         return values if values.size == 1 else np.broadcast_to(values, self.shape)
 
     def table(self, begin: int = 0, size: int | None = None) -> FloatArray:
-        """Return the scenes from an index on as a table with one row of numbers each."""
+        """Return the scenes from an index on as a table with one row of numbers per scene."""
         end = self.total if size is None else min(begin + size, self.total)
         table = np.empty((end - begin, WIDTH))
         for column, values in enumerate(self._columns):
@@ -159,13 +159,13 @@ class SceneGrid:
         return table
 
     def _require_arguments(self) -> None:
-        """Reject wrong arguments if there are no scenes: each alone, and the body's together."""
+        """Reject invalid arguments if there are no scenes: each alone, and the body's together."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))
         body = {name: given[name] for name in NAMES if name in given and name not in STATE_UNITS}
         scaled = {"a", "b"} <= {*body} and ("mass" in body or "mass" not in self._arrays)
-        if "inertia" in body and not scaled:  # its range is unknown
+        if "inertia" in body and not scaled:  # its valid range is unknown
             inertia = body.pop("inertia")
             require(_entry("inertia"), "positive", inertia, inertia > 0)
         size = next((body[name] for name in ("a", "b") if name in body), 1.0)
@@ -199,21 +199,21 @@ def asked(scenes: Any, **beside: FloatArray) -> SceneList | SceneGrid:
     """Return the argument `scenes` as a SceneList or a SceneGrid, or raise TypeError."""
     if isinstance(scenes, Mapping):
         return SceneGrid(scenes, **beside)
-    with suppress(TypeError):  # an array without axes has `__iter__`, but cannot be iterated
+    with suppress(TypeError):  # a 0-d array has `__iter__`, but cannot be iterated
         return SceneList(scenes)
     raise TypeError(
-        "scenes must be Scenes, as an iterable, or a mapping of the arguments of Scene to numbers "
-        f"and arrays, got {shown(scenes)}"
+        "scenes must be an iterable of Scenes, or a mapping from arguments of Scene to numbers and "
+        f"arrays, got {shown(scenes)}"
     )
 
 
 def name_of(argument: str) -> str:
-    """Return an argument's name for use beside quantities of motions: initial values get a 0."""
+    """Return the name of an argument beside quantities of motions: initial values get a 0."""
     return f"{argument}0" if argument in STATE_UNITS else argument
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
-    """Return scenes as a table with one row of numbers each."""
+    """Return scenes as a table with one row of numbers per scene."""
     rows = [
         (*_numbers(each), *(_NO_BLOW if each.impulse is None else _blow(each.impulse)))
         for each in scenes
@@ -227,7 +227,7 @@ def scenes_of(table: FloatArray) -> list[Scene]:
 
 
 def scene_of(given: Scene | FloatArray) -> Scene:
-    """Return a scene that is given as a Scene or as a row of a validated table."""
+    """Return the scene for a Scene or for a row of a validated table."""
     return given if isinstance(given, Scene) else _scene(given.tolist())
 
 

@@ -1,4 +1,4 @@
-"""The ends of many motions, without their samples."""
+"""The final states of many motions, without their samples."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     from ..._pictures.ends import EndsChart
 
 Codes = npt.NDArray[np.int32]
-# Arrays of Ends by name
+# Names of the arrays of Ends
 RESULTS = (*STATE_UNITS, "mode", "events", "first", "impacts", "largest_impulse")
-_ENDLESS = "finite [s] without stop, since most motions go on for ever and have no last state"
+_ENDLESS = "finite [s] without stop, since most motions last forever and have no last state"
 _NUMBERS, _CODES = (
     (*STATE_UNITS, "t", "largest_impulse"),
     ("mode", "events", "first", "ending", "impacts"),
@@ -65,29 +65,31 @@ class Ends(FieldsOnly):
     Attributes
     ----------
     theta, omega, x, z, x_dot, z_dot : ndarray
-        States at the times ``t`` [rad, rad/s, m, m, m/s, m/s]; NaN where a motion ended early, but
-        not if it stopped as asked, or never would, or had too many events.
+        States at the times ``t`` [rad, rad/s, m, m, m/s, m/s]; NaN if a motion ended early, except
+        after a requested stop, with the status NEVER, or after too many events.
     t : ndarray
-        Times of these states [s]: those asked for, or when a motion stopped or ended early; after
-        ``max_events`` events, the time of the last one.
+        Times of these states [s]: the requested time, or the time at which a motion stopped or
+        ended early; after ``max_events`` events, the time of the last event.
     mode, first : ndarray of int8
-        Codes of `Mode` at the end, and of the `EventKind` of the first event; -1: none.
+        Codes of the `Mode` at the end and of the `EventKind` of the first event; -1 if there is
+        none.
     impacts : ndarray of int32
-        Numbers of impacts among the events.
+        Number of impacts among the events.
     largest_impulse : ndarray
-        Largest normal impulse of the ground in an impact [N s]; 0 without one.
+        Largest normal impulse of the ground in an impact [N s]; 0 if there are no impacts.
     events : ndarray of int32
-        Numbers of events, ``len(motion.events)`` of `simulate`; 0 for motion proved to roll. For a
-        body that settles in ever smaller bounces these are the impacts down to the first rebound
-        slower than `rest_speed`, and one event at the end of the infinitely many bounces left: a
-        smaller `rest_speed` counts more of them.
+        Number of events, ``len(motion.events)`` of `simulate`; 0 for a motion that is proved to
+        roll. For a body that settles in ever smaller bounces, the impacts are counted down to the
+        first rebound slower than `rest_speed`, and the end of the infinitely many remaining bounces
+        is one event. A smaller `rest_speed` therefore gives a larger number.
     status : ndarray of str
         Names of `Status`, or REFUSED.
     errors : dict
-        The exceptions that `simulate` would raise, by the scene's index, a tuple; none for NEVER.
+        The exceptions that `simulate` would raise, by the index of the scene, a tuple; a motion
+        with the status NEVER has none.
     axes : tuple of str
-        Names of the axes, as in `MotionArrays`: "omega0" for a given omega, since omega is also a
-        result; "t" where only the times vary.
+        Names of the axes, as in `MotionArrays`: "omega0" for an initial omega, because omega is
+        also a result; "t" if only the times vary.
 
     Examples
     --------
@@ -119,14 +121,14 @@ class Ends(FieldsOnly):
     _request: _Request
 
     def to_xarray(self) -> Dataset:
-        """Return an xarray Dataset of the arrays, whose quantities have a method ``plot()``.
+        """Return an xarray Dataset of the arrays, whose variables have a method ``plot()``.
 
-        Scene arguments and times that vary are coordinates, the others are in ``attrs``.
+        Scene arguments and times that vary are coordinates; the others are in ``attrs``.
 
         Raises
         ------
         ImportError
-            Without xarray: it comes with ``rolling_ellipse[data]``.
+            If xarray is missing; the extra ``rolling_ellipse[data]`` installs it.
 
         Examples
         --------
@@ -139,7 +141,7 @@ class Ends(FieldsOnly):
         return dataset_of(self, self.axes, values, self._table(), t=self._asked)
 
     def to_dataframe(self) -> DataFrame:
-        """Return `to_xarray` as a pandas DataFrame: one row per scene.
+        """Return `to_xarray` as a pandas DataFrame with one row per scene.
 
         Examples
         --------
@@ -150,23 +152,24 @@ class Ends(FieldsOnly):
         1.0    -0.011 -0.011       0
         4.0     4.714  7.269       0
         """
-        found = self.to_xarray()
-        return found.to_dataframe() if self.axes else found.expand_dims("scene").to_dataframe()
+        data = self.to_xarray()
+        return data.to_dataframe() if self.axes else data.expand_dims("scene").to_dataframe()
 
     def plot(
         self, quantity: str = "theta", path: Any = None, *, ax: Any = None, figsize: Any = None
     ) -> EndsChart:
         """Draw one quantity over the one or two axes of the scenes, and return the artists.
 
-        Over one axis it is a line with dots, over two a map of colours, with the last axis
-        horizontal. Where a motion ended before its time, nothing is drawn.
+        The chart is a line with dots for one axis, and a colour map for two axes, with the last
+        axis horizontal. Motions that ended early are not drawn.
 
         Parameters
         ----------
         quantity : str
             "theta", "omega", "x", "z", "x_dot", "z_dot", "mode", "events" or "first".
         path, ax, figsize
-            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_energy`, with their errors.
+            As in `rolling_ellipse.plot` and `rolling_ellipse.plot_energy`, including the errors
+            raised.
 
         Examples
         --------
@@ -183,20 +186,20 @@ class Ends(FieldsOnly):
     def go_on(
         self, t: npt.ArrayLike, *, stop: Stop = None, count: int = 1, workers: int = 1
     ) -> Ends:
-        """Return the ends of the same motions at later times, from their states and modes on.
+        """Continue the motions from their states and modes, and return their ends at later times.
 
-        Counts are those from the first start on. States differ from those of a single run by
-        roundings, which the motion may magnify. Events are the same, except for the bounces before
-        the sum of infinitely many: how many of them count depends on `rest_speed`. A motion that
-        jammed, or became too fast for doubles, stays as it is; one that had too many events may
-        have ``max_events`` more.
+        Numbers of events count from the first start. States differ from those of a single run by
+        rounding errors, which the motion may magnify. The events are the same, except that the
+        number of bounces before the sum of infinitely many depends on `rest_speed`. A motion that
+        jammed, or became too fast for doubles, does not change; one that had too many events may
+        have another ``max_events``.
 
         Parameters
         ----------
         t : float or array_like
-            Times of the ends on the clock of the first start [s], none earlier than its ``t``.
+            Times of the ends [s], counted from the first start and not earlier than ``self.t``.
         stop, count
-            As for `simulate`; ``t`` may then be infinite.
+            As for `simulate`; with a stop ``t`` may be infinite.
         workers : int
             Number of threads, as for `simulate_many`.
 
@@ -216,7 +219,7 @@ class Ends(FieldsOnly):
         how = replace(self._request.settings, **given)
         for blow, _ in self._request.settings.blows:
             if np.any(self.t < blow):
-                raise ValueError(f"blows must be over at the times t, got one at {blow!r} s")
+                raise ValueError(f"blows must not follow the times t, got one at {blow!r} s")
         begun = self.t
         times = _end_times(t, how)
         if times.ndim and times.shape != begun.shape:
@@ -244,7 +247,7 @@ class Ends(FieldsOnly):
         return replace(self, **whole, errors=errors, _request=_Request(how, asked.ravel()))
 
     def _reached(self) -> FloatArray:
-        """Return the scenes that continue in the modes reached, one per row."""
+        """Return the scenes that continue from the states and modes reached, one per row."""
         table = self._table().copy()
         table[:, len(NAMES) :] = math.nan
         for name in STATE_UNITS:
@@ -262,7 +265,7 @@ class Ends(FieldsOnly):
         return self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
 
     def _coordinates(self) -> list[tuple[str, FloatArray]]:
-        """Return a label and the values of the argument of each axis; a list is numbered."""
+        """Return the label of each axis and the values of its argument, or else the indices."""
         known = {
             name: (name if unit == "1" else f"{name} [{unit}]", values)
             for name, along, values, unit in coordinates_of(self, self._table(), t=self._asked)
@@ -277,7 +280,7 @@ class Ends(FieldsOnly):
 
 @dataclass(frozen=True)
 class _Request:
-    """Settings, and one time for all scenes or one for each."""
+    """Settings, and one time for all scenes or one time for each scene."""
 
     settings: Settings
     times: FloatArray
@@ -304,16 +307,16 @@ def ends(
 ) -> Ends:
     """Return the last states and event counts of many motions, bit for bit those of `simulate`.
 
-    The states can be used as starts: in a mapping of scenes, as theta, omega, x, z, x_dot and
-    z_dot, they continue the motions.
+    The states can be used as starts: as theta, omega, x, z, x_dot and z_dot in a mapping of scenes
+    they continue the motions.
 
     Parameters
     ----------
     scenes : iterable of Scene, or mapping
         As for `simulate_many`.
     t : float or array_like
-        Times of the ends [s]: one for each scene of an iterable, or an array that broadcasts with
-        those of a mapping.
+        Times of the ends [s]: one for all scenes, one for each scene of an iterable, or an array
+        that broadcasts with those of a mapping.
     workers, progress
         As for `simulate_many`.
     max_events : int
@@ -323,13 +326,17 @@ def ends(
     blows : iterable of (float, Impulse)
         As for `simulate`, for all scenes.
     stop, count
-        As for `simulate`; only with a stop may ``t`` be infinite.
+        As for `simulate`; ``t`` may be infinite only with a stop.
+
+    Returns
+    -------
+    Ends
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong. Times must be finite without ``stop``: most motions never end, and
-        have no last state.
+        If an argument is wrong. Times must be finite without ``stop``, because most motions never
+        end and have no last state.
     WorkerError
         If a worker was lost.
 
@@ -348,7 +355,7 @@ def ends(
     wanted = asked(scenes, t=times)
     shape = wanted.shape
     if shape is None and times.ndim and times.shape != (wanted.total,):
-        raise ValueError(f"t must be one time, or one for each of a list, got shape {times.shape}")
+        raise ValueError(f"t must be one time, or one for each scene, got shape {times.shape}")
     if shape is not None and times.ndim:
         times = np.broadcast_to(times, shape)
     request = _Request(how, times.ravel())
@@ -363,9 +370,9 @@ def ends(
             rows += [chunk.table] if shape is None else []
     states, codes = (np.concatenate([part[k] for part in tables], axis=1) for k in _NONE)
     whole = (codes.shape[1],) if shape is None else shape
-    found = {name: row.reshape(whole) for name, row in _fields(states, codes).items()}
+    results = {name: row.reshape(whole) for name, row in _fields(states, codes).items()}
     return Ends(
-        **found, **endings_of(codes[_ENDING], failed, whole), axes=wanted.axes,
+        **results, **endings_of(codes[_ENDING], failed, whole), axes=wanted.axes,
         _scenes=wanted if isinstance(wanted, SceneGrid) else np.concatenate(rows),
         _request=request,
     )  # fmt: skip
@@ -382,14 +389,14 @@ def _end_times(t: Any, how: Settings) -> FloatArray:
 
 
 def _fields(states: FloatArray, codes: Codes) -> dict[str, Any]:
-    """Return the arrays of Ends, in one dimension."""
-    found = dict(zip((*_NUMBERS, *_CODES), (*states, *codes), strict=True))
-    del found["ending"]
-    return found | {name: found[name].astype(np.int8) for name in ("mode", "first")}
+    """Return the arrays of Ends as 1-D arrays."""
+    arrays = dict(zip((*_NUMBERS, *_CODES), (*states, *codes), strict=True))
+    del arrays["ending"]
+    return arrays | {name: arrays[name].astype(np.int8) for name in ("mode", "first")}
 
 
 def _failed(codes: Codes, scenes: Any, request: _Request, begin: int) -> dict[int, Exception]:
-    """Return the exceptions for scenes by their endings, and by their places from `begin` on."""
+    """Return the exceptions of scenes that failed, by index; the first scene has index `begin`."""
     places = np.flatnonzero(~np.isin(codes, _FINE)).tolist()
     return {begin + k: _error(scene_of(scenes[k]), request, begin + k) for k in places}
 
@@ -399,7 +406,7 @@ def _error(scene: Scene, request: _Request, place: int) -> Exception:
     t = request.times[0 if request.times.size == 1 else place]
     try:
         motion = Trajectory.computed(scene, request.settings, np.array([t]))
-    except ValueError as error:  # a time beyond what a double resolves
+    except ValueError as error:  # a time that is too late for doubles to resolve the motion
         return error
-    # Without its arcs, as after pickling: those of thousands of motions would fill the memory
+    # The arcs are dropped, as after pickling: those of thousands of motions would fill the memory
     return IntegrationError(trusted(Trajectory, motion.__getstate__()))

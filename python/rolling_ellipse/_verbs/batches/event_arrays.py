@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 class EventArrays(EventTable):
-    """The events of many motions: the arrays of `EventTable`, one scene after the other.
+    """The events of many motions: the arrays of `EventTable`, scene by scene.
 
-    The first one, ``scene``, has the index of each event's scene, in C order of their shape.
+    The additional array ``scene`` has the index of each event's scene, in C order of their shape.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class EventArrays(EventTable):
     _scenes: FloatArray
 
     def to_xarray(self) -> Dataset:
-        """Return `EventTable.to_xarray` with status and arguments of the scenes over their axes.
+        """Return `EventTable.to_xarray` with the status and the arguments of the scenes added.
 
         Examples
         --------
@@ -70,32 +70,32 @@ def gathered_events(
     request: Request, parts: Iterable[tuple[FloatArray, Any]], axes: tuple[str, ...],
     shape: tuple[int, ...] | None,
 ) -> EventArrays:  # fmt: skip
-    """Return the events; the arguments are those of `gathered`."""
+    """Return the events of all scenes; the arguments are those of `gathered`."""
     found = [_events_in(0, np.empty((0, len(_core.COLUMNS["scenes"]))), _NONE)]
 
     def read() -> Iterator[tuple[FloatArray, Any]]:
         begin = 0
         for table, tables in parts:
-            if isinstance(tables, dict):  # they are not lost
+            if isinstance(tables, dict):  # not an exception for a lost worker
                 found.append(_events_in(begin, table, tables))
             begin += len(table)
             yield table, tables
 
     about = vars(gathered((), request, read(), axes, shape))
-    del about["t"]  # that of the samples
+    del about["t"]  # the times of the samples
     return EventArrays(
         {name: np.concatenate([each[name] for each in found]) for name in found[0]}, **about
     )
 
 
 def _events_in(begin: int, table: FloatArray, tables: Tables) -> dict[str, Any]:
-    """Return the columns of the events of scenes from the index `begin` on."""
+    """Return the columns of the events in tables whose first scene has the index `begin`."""
     place = begin + _places_of(tables)
     return {"scene": place} | columns_of(tables["events"], bodies_of(table, tables))
 
 
 def bodies_of(table: FloatArray, tables: Tables) -> FloatArray:
-    """Return the body of each event's scene as a column; the scenes are the rows of a table."""
+    """Return the body of each event's scene as a column; scenes are the rows of a table."""
     return _core.bodies(table)[_places_of(tables)].T.copy()
 
 

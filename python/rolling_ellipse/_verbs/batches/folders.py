@@ -1,8 +1,9 @@
 """A folder of motions: their common request, and a file for each chunk of scenes.
 
-``request.npz`` holds the settings, the times and the version. ``00000007-1f…-a3….npz`` is the
-chunk of index 7, named by the hashes of the request and of its scenes. ``end.json``, written last,
-has the number of scenes and the hash of the names of all chunks. Files appear whole or not at all.
+``request.npz`` contains the settings, the times and the version. ``00000007-1f…-a3….npz`` is the
+chunk with index 7; its name includes the hashes of the request and of its scenes. ``end.json``,
+which is written last, has the number of scenes and the hash of the names of all chunks. Each file
+is written completely or not at all.
 """
 
 from __future__ import annotations
@@ -38,14 +39,14 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _SCHEMA = 4
-_WITHOUT_BLOWS = 3  # schema whose settings have no blows, and whose events no effects
+_WITHOUT_BLOWS = 3  # schema whose settings have no blows, and whose events have no effects
 _WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _SAME, _SAME_SCENES = "a folder of the same request", "a folder of the same scenes"
 _REQUEST, _END = "request.npz", "end.json"
-_GRID = ("axes", "shape")  # of the scenes, in `end.json`; older folders lack them
+_GRID = ("axes", "shape")  # axes and shape of the scenes in `end.json`; older folders lack them
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-# Names of the files that a folder may hold; hidden files are allowed, too
+# Names of files that a folder may contain; hidden files are also allowed
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
 _Made = TypeVar("_Made")
@@ -53,9 +54,9 @@ _Names = dict[int, list[str]]  # file names of each chunk, by index, ascending
 
 
 class Folder:
-    """The files of one request: in a new folder, or in one left by an earlier call.
+    """The files of one request, in a new folder or in the folder of an earlier call.
 
-    Anything else in the folder is rejected by name.
+    If the folder contains any other file, an error names it.
     """
 
     def __init__(self, path: Any, request: results.Request) -> None:
@@ -72,7 +73,7 @@ class Folder:
         self._names = _chunks(self.path)
         for name in chain.from_iterable(self._names.values()):
             if name.split("-")[1] != self._request:
-                self._refuse(_SAME, f" with {name!r} of another one")
+                self._refuse(_SAME, f" with {name!r} of another request")
         if is_new:
             with _replacing(self.path / _REQUEST) as new:
                 np.savez(new, about=np.array(json.dumps(about)), t=request.times)
@@ -83,7 +84,7 @@ class Folder:
             self._scenes = end["scenes"]
 
     def missing(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
-        """Yield chunks without a complete file; a file of other scenes is rejected."""
+        """Yield the chunks without a complete file; a file for other scenes is rejected."""
         for chunk in chunks:
             self._chunks += 1
             if self._has(chunk):
@@ -96,7 +97,7 @@ class Folder:
         there = self._names.get(chunk.index, [])
         if others := [each for each in there if each != name]:
             which = f"scenes {chunk.begin} to {chunk.end - 1}"
-            self._refuse(_SAME_SCENES, f", whose {which} are others: {others[0]!r}")
+            self._refuse(_SAME_SCENES, f", whose {which} are different: {others[0]!r}")
         if chunk.begin >= self._scenes:
             self._refuse(_SAME_SCENES, f", which has {self._scenes}")
         if there:
@@ -113,7 +114,7 @@ class Folder:
         self.done += len(chunk.table)
 
     def end(self, axes: tuple[str, ...], shape: tuple[int, ...] | None) -> None:
-        """Write `end.json`, which makes the folder complete."""
+        """Write `end.json`, which completes the folder."""
         grid = {"axes": axes, "shape": (self.done,) if shape is None else shape}
         if max(self._names, default=-1) >= self._chunks:
             self._refuse(_SAME_SCENES, f", which has more than {self.done}")
@@ -122,7 +123,7 @@ class Folder:
             new.write_text(json.dumps({"scenes": self.done, "digest": digest, **grid}))
 
     def _require_new(self) -> None:
-        """Raise ValueError for a foreign file name in a folder without a request."""
+        """Raise ValueError if a folder without a request contains a foreign file."""
         for name in sorted(os.listdir(self.path)):
             if not _OURS.fullmatch(name):
                 self._refuse(
@@ -144,7 +145,7 @@ class Folder:
 class StoredMotions(Sequence[results.Answer]):
     """The motions in a folder of `simulate_many`, read one file at a time on access.
 
-    A scene without a motion has its exception, as in the list of `simulate_many`.
+    The item for a scene without a motion is an exception, as in the list of `simulate_many`.
     """
 
     def __init__(
@@ -188,7 +189,7 @@ class StoredMotions(Sequence[results.Answer]):
     @overload
     def arrays(self, returns: Any = results.DIRECT) -> results.MotionArrays: ...
     def arrays(self, returns: Any = results.DIRECT) -> Any:
-        """Return quantities or events of all motions, as `simulate_many` does for ``returns``."""
+        """Return quantities or events of all motions, like `simulate_many` with ``returns``."""
         each = map(self._tables, range(len(self._names)))
         parts = ((tables["scenes"], tables) for tables in each)
         names = results.names_in(returns)
@@ -206,7 +207,7 @@ class StoredMotions(Sequence[results.Answer]):
 
 
 def load_many(path: str | os.PathLike[str]) -> StoredMotions:
-    """Return the motions that `simulate_many` wrote to a folder, as a sequence, in order.
+    """Return the motions that `simulate_many` wrote to a folder, as a sequence in their order.
 
     Parameters
     ----------
@@ -216,18 +217,19 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     Returns
     -------
     sequence of Trajectory or exception
-        Bit for bit as computed, with the ``events`` of the machine that computed them. Only one
-        file, of at most 2048 scenes, is in memory at a time. ``arrays(("theta", "x"))``,
-        ``to_xarray(…)`` and ``to_dataframe(…)`` return the named quantities (default: theta, omega,
-        x) in the shape of the scenes, with the axes of `MotionArrays`; of "events", all events.
+        The motions are bit for bit as computed, and have the ``events`` of the machine that
+        computed them. Only one file, of at most 2048 scenes, is in memory at a time. The methods
+        ``arrays(("theta", "x"))``, ``to_xarray(…)`` and ``to_dataframe(…)`` return the named
+        quantities (default: theta, omega, x) in the shape of the scenes, with the axes of
+        `MotionArrays`; for "events" they return all events.
 
     Raises
     ------
     ValueError
-        If it is another kind of folder, has another schema version or is incomplete, or if its
-        files do not belong together; when a motion is read: if its file is damaged.
+        If the folder is of another kind, has an unsupported schema or is incomplete, or its files
+        do not belong together. When a motion is read: if its file is damaged.
     OSError
-        If it cannot be read.
+        If the folder cannot be read.
 
     Examples
     --------
@@ -246,7 +248,7 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
     about, request = _request_in(folder, "path")
     if not (folder / _END).exists():
         raise ValueError(
-            f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
+            f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to complete it"
         )
     names = _chunks(folder)
     end = _end_of(folder, _digest_of(about, request.times), names, request.samples)
@@ -255,20 +257,20 @@ def load_many(path: str | os.PathLike[str]) -> StoredMotions:
 
 def _end_of(folder: Path, request: str, names: _Names, samples: int) -> dict[str, Any]:
     """Return number, axes and shape of a folder's scenes, if its chunks match ``end.json``."""
-    cure = f": {_AGAIN} writes it anew"
+    cure = f": {_AGAIN} rewrites it"
     end = strict.restored(folder / _END, _of_end, strict.OBJECT, "simulate_many", cure)
     for index, (begin, _) in enumerate(sizes(samples)):
         if begin >= end["scenes"]:
             break
         if index not in names:
             raise ValueError(
-                f"path must have the file {index:08d}-….npz, got {str(folder)!r}: {_AGAIN} makes it"
+                f"path must have the file {index:08d}-….npz, got {str(folder)!r}: {_AGAIN} adds it"
             )
     grid = {name: end[name] for name in _GRID if name in end}
     if end["digest"] != _digest_of_all(request, end["scenes"], names, grid):
         raise ValueError(
-            f"path must have just the files of its {_END}, got others in {str(folder)!r}: {_AGAIN} "
-            "names one of other scenes, or completes the folder"
+            f"path must have exactly the files of its {_END}, got others in {str(folder)!r}: "
+            f"{_AGAIN} names a file of other scenes, or completes the folder"
         )
     return {"axes": ["scene"], "shape": [end["scenes"]]} | end
 
@@ -279,7 +281,7 @@ def _digest_of_all(request: str, scenes: int, names: _Names, grid: dict[str, Any
 
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> results.Tables:
-    """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
+    """Return the tables, including "scenes", of a file of n scenes, if they match its `name`."""
     tables = strict.npz_arrays(content, {"request", "scenes", *results.TABLES})
     scenes = stored = tables["scenes"]
     if scenes.ndim == 2 and scenes.shape[1] == len(_core.COLUMNS["scenes"]) - 1:
@@ -312,7 +314,7 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], results.Request]:
     t = arrays["t"]
     strict.require_array("t", t, np.float64, (t.size,))
     if not t.size or np.any(np.diff(t, prepend=0.0) < 0):
-        raise ValueError("t must hold times that do not fall")
+        raise ValueError("t must contain nondecreasing times")
     raises = flag("raise_on_failure", about["raise_on_failure"])
     return about, results.Request(strict.settings_of(settings), t, raises)
 
@@ -339,12 +341,12 @@ def _in_request(folder: Path, restore: Callable[[bytes], _Made]) -> _Made:
 
 def _chunk(folder: Path, name: str, n: int, samples: int) -> results.Tables:
     """Return the tables of the file with this name, which has n scenes."""
-    read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} computes it anew"
+    read, cure = partial(_tables, name=name, n=n, samples=samples), f": {_AGAIN} recomputes it"
     return strict.restored(folder / name, read, strict.ARCHIVE, "simulate_many", cure)
 
 
 def _replacing(path: Path) -> AbstractContextManager[Path]:
-    """Return `replacing(path)`; a link, which may lead out of the folder, is removed first."""
+    """Return `replacing(path)`, after removing a link, which may point out of the folder."""
     if path.is_symlink():
         path.unlink()
     return replacing(path)
@@ -362,7 +364,7 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
-    """Return the hash of everything, except its scene, that determines a motion bit for bit."""
+    """Return the hash of everything other than the scene that determines a motion bit for bit."""
     decisive = {name: about[name] for name in ("schema", "version", "settings")}
     return _digest(json.dumps(decisive, sort_keys=True).encode() + times.tobytes())
 

@@ -59,10 +59,10 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Return the motions of many scenes; with any workers each equals `simulate` bit for bit.
+    """Return the motions of many scenes; for any workers each equals `simulate` bit for bit.
 
-    A scene that cannot be simulated yields its exception in the list; the others continue. No
-    warnings are issued: see the status of a trajectory (VALIDITY_LOST).
+    The list contains an exception for a scene that cannot be simulated; the others continue. No
+    warnings are issued; lost validity is only shown by the status of a trajectory (VALIDITY_LOST).
 
     Parameters
     ----------
@@ -73,44 +73,45 @@ def simulate_many(
     t : float or array_like, shape (n,)
         End time or sample times of all scenes, as for `simulate` [s].
     workers : int or executor
-        Number of threads, up to 1024, -1 for all cores; or an object with `submit`, or a pool with
-        `map`: an executor of concurrent.futures or mpi4py.futures, dask.distributed's Client. A
-        task holds up to 2048 scenes, or fewer if they have many samples. Process executors share
-        the work in Python as well, threads only the core's work.
+        Number of threads, up to 1024, or -1 for all cores; or an object with `submit`, or a pool
+        with `map`, such as an executor of concurrent.futures or mpi4py.futures, or a Client of
+        dask.distributed. A task has up to 2048 scenes, or fewer if they have many samples. Process
+        executors also share the work done in Python; threads share only that of the core.
     progress : bool or callable
-        True: a bar, by tqdm if it is installed. A function is called after each chunk with the
-        numbers of scenes done and in total (None for an iterable without a length).
+        True shows a progress bar, with tqdm if it is installed. A function is called after each
+        chunk with the number of scenes done and the total (None for an iterable without a length).
     out : str or path-like, optional
-        Folder for the motions, one plain .npz file per chunk; nothing is kept in memory. It is
-        created if missing. Given the folder of an interrupted call, with any workers, it computes
-        only missing and damaged chunks. `load_many` reads it.
+        Folder for the motions, with one plain .npz file per chunk; no motions are kept in memory.
+        It is created if it does not exist. For the folder of an interrupted call only missing and
+        damaged chunks are computed, with any workers. `load_many` reads the folder.
     returns : str or iterable of str, optional
-        Names of quantities of a trajectory: they are returned as `MotionArrays`, over the scenes'
-        shape, then the times. "theta", "omega" and "x" need no Python objects. Or "events", alone:
-        all events up to the last time, as `EventArrays`.
+        Names of quantities of a trajectory, which are returned as `MotionArrays` with the axes of
+        the scenes and of the times. "theta", "omega" and "x" require no Python objects. "events",
+        without other names, returns all events up to the last time as `EventArrays`.
     raise_on_failure, **options
         As for `simulate`, from ``model`` to ``blows``, which strike all scenes.
 
     Returns
     -------
     list of Trajectory or exception, or str, or MotionArrays, or EventArrays
-        One for each scene, in order; with ``out`` the path of the folder; or what ``returns``
-        names. The arrays of a trajectory are made when it is first used; until then its chunk of
-        up to 2048 motions stays in memory. A scene that `simulate` would reject has a ValueError;
-        an integration that stops early has an IntegrationError with the trajectory (with
-        ``raise_on_failure=False`` the trajectory itself); a scene whose worker died or was missing
-        has a WorkerError, whose cause is the executor's exception.
+        One entry for each scene, in order; with ``out`` the path of the folder; with ``returns``
+        the requested arrays. The arrays of a trajectory are created when it is first used; until
+        then its chunk of up to 2048 motions stays in memory. A scene that `simulate` would reject
+        has a ValueError. An integration that stops early has an IntegrationError with the
+        trajectory, or the trajectory itself with ``raise_on_failure=False``. A scene whose worker
+        died or was missing has a WorkerError, whose cause is the executor's exception.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong. For a number in a mapping the error names it with its index before
-        anything is computed; for an object in an iterable that is not a Scene, its index. If
-        ``out`` holds anything but motions of the same scenes, times, settings and version.
+        If an argument is wrong. For an invalid number in a mapping the message gives its index,
+        before anything is computed; for an object in an iterable that is not a Scene it gives the
+        index of the object. Also if ``out`` contains anything other than motions of the same
+        scenes, times, settings and version.
     WorkerError
-        With ``out``: if workers were lost. Finished chunks are kept; the same call resumes.
+        If workers were lost, with ``out``. Finished chunks are kept; repeat the call to resume.
     OSError
-        If ``out`` cannot be written; finished chunks are kept.
+        If ``out`` cannot be written. Finished chunks are kept.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def simulate_many(
     [0, 3]
     """
     for name in filter(options.__contains__, ("stop", "count")):
-        raise ValueError(f"{name} must be left out: ends and simulate take it")
+        raise ValueError(f"{name} must be omitted: only ends and simulate accept it")
     how = Settings(**options)
     times = sample_times(t)
     _core.validate_settings(how.core, float(times[-1]))
@@ -136,7 +137,7 @@ def simulate_many(
     threads_of(workers)
     if names is not None and out is not None:
         raise ValueError(
-            f"out must be None with returns, got {shown(out)}: load_many(out) makes arrays, too"
+            f"out must be None with returns, got {shown(out)}: load_many(out) can return arrays"
         )
     wanted = asked(scenes)
     with reporting(progress, "scenes") as report:
@@ -155,7 +156,7 @@ def simulate_many(
         return listed
 
 
-# Help and completion show the options of `simulate`.
+# The signature in help and completion includes the options of `simulate`.
 _own, _options = ([*signature(each).parameters.values()] for each in (simulate_many, simulate))
 simulate_many.__signature__ = Signature([*_own[:-2], *_options[2:]])  # type: ignore[attr-defined]
 
@@ -163,7 +164,7 @@ simulate_many.__signature__ = Signature([*_own[:-2], *_options[2:]])  # type: ig
 def parts(
     request: Any, wanted: SceneList | SceneGrid, workers: Any, report: Report
 ) -> Iterator[tuple[Chunk, Any]]:
-    """Yield the chunks with their tables, or with the loss of their worker."""
+    """Yield each chunk with its tables, or with a WorkerError if its worker was lost."""
     for chunk, part in _solved(request, wanted.chunks(request.samples), workers):
         yield chunk, _worker_error(chunk, part) if isinstance(part, Lost) else part
         report(chunk.end, wanted.total)
@@ -177,8 +178,8 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
             function, *arguments = request.task(chunk)
             yield chunk, function(*arguments, threads)
         return
-    scenes = 0  # number in the last task
-    each: int = request.size  # largest size of results per scene so far; at first, of samples
+    scenes = 0  # number of scenes in the last task
+    each: int = request.size  # largest size of the results of a scene so far; initially of samples
 
     def tasks() -> Iterator[tuple[Chunk, Task]]:
         nonlocal scenes
@@ -209,13 +210,13 @@ def _to_folder(
         if part.refused:
             break
     if lost:
-        raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
+        raise WorkerError(f"{len(lost)} chunks are missing: repeat the call to resume") from lost[0]
     folder.end(wanted.axes, wanted.shape)
     return str(folder.path)
 
 
 def _worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
     which, why = f"{chunk.begin} to {chunk.end - 1}", f"{type(lost.error).__name__}: {lost.error}"
-    error = WorkerError(f"scenes {which} got lost with their worker, {why}")
+    error = WorkerError(f"scenes {which} were lost with their worker, {why}")
     error.__cause__ = lost.error
     return error

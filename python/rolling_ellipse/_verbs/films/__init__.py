@@ -1,1 +1,1 @@
-"""The parts of `fit_motion`: a film and its unknowns, starts, search, errors, judgement."""
+"""The parts of `fit_motion`: film and unknowns, starting points, search, errors and verdict."""

@@ -16,20 +16,19 @@ from ...geometry import support
 from .film import NORMAL, TRACKS, Film, Unknowns
 
 _SCALES = tuple(0.2 * 1.5**k for k in range(25))  # 0.2 to 5, and up to 4000 pixels per metre
-_LATE = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # times of the first frame in sqrt(L/g)
-_TOUCHING = 0.05, 0.5  # quantile of heights that is on the ground: of a body that flies, or rolls
-_FAR = 50.0  # motion of a body in its own lengths beyond which the film is not in metres
-_WINDOW, _SURE = 8, 10.0  # minimum frames in a free fall, and ratio of curvature to error
-_NOISE = NORMAL / math.sqrt(20)  # deviation per median third difference, for normal noise
+_LATE = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # times of the first frame in units of sqrt(L/g)
+_TOUCHING = 0.05, 0.5  # quantile of the heights that is on the ground, for a flying or rolling body
+_FAR = 50.0  # a film whose body moves by more than this many of its lengths is not in metres
+_WINDOW, _SURE = 8, 10.0  # least number of frames in a free fall, and least curvature over error
+_NOISE = NORMAL / math.sqrt(20)  # ratio of deviation to median third difference, for normal noise
 _SMOOTH = 1e-4  # smallest noise relative to the range of a track
 
 
-def require_told(scene: Scene, names: tuple[str, ...], film: Film) -> None:
-    """Raise ValueError if no film with such tracks determines the unknowns of the camera.
+def require_determined(scene: Scene, names: tuple[str, ...], film: Film) -> None:
+    """Raise ValueError if a film with these tracks cannot determine the unknowns of the camera.
 
-    A later start is the same motion from another state, and a larger body under larger gravity the
-    same motion in a larger picture. Anything else that the film cannot determine shows up in the
-    normal matrix.
+    A later start from another state gives the same film, and so does a larger body under larger
+    gravity at a smaller scale. Any other ambiguity shows up in the normal matrix.
     """
     state = ("theta", "omega", "x") if scene.z is None else ("x", "z", "theta", "z_dot")
     pulled = ("x_dot",) if (scene.x_dot is not None if scene.z is None else scene.slope) else ()
@@ -39,24 +38,24 @@ def require_told(scene: Scene, names: tuple[str, ...], film: Film) -> None:
     for name, held in needed.items():
         some = slice(1 if name == "ground" else 0, 2)
         if name in names and not film.known[:, some].any():
-            raise ValueError(f"{' or '.join(TRACKS[some])} must have data to tell {name}, got none")
+            raise ValueError(f"{' or '.join(TRACKS[some])} must have data to fit {name}, got none")
         if name in names and held and {*names, *after}.issuperset(held):
-            raise ValueError(f"free must leave one of {held} known to tell {name}, got {names}")
+            raise ValueError(f"free must leave one of {held} known to fit {name}, got {names}")
 
 
 def unit_of(film: Film, scene: Scene) -> float:
-    """Return the order of magnitude of the film's lengths over the scene's."""
+    """Return the order of magnitude of the ratio of lengths in the film to those in the scene."""
     places = film.data[:, :2][:, film.known[:, :2].any(axis=0)]
     far = np.nanmedian(np.abs(places - np.nanmedian(places, axis=0))) / max(scene.a, scene.b)
     return float(far) if far > _FAR else 1.0
 
 
 def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], Film]]:
-    """Yield guesses of the camera, and the film that each converts to the scene's tracks."""
+    """Yield guesses of the camera, each with the film converted to the coordinates of the scene."""
     scene, own = unknowns.scene, unknowns.named(unknowns.own)
     grid: dict[str, set[float]] = {}
     if "scale" in own:
-        fall = free_fall(film, scene, least=0.5) or 0.0  # harmless for a rocking body
+        fall = free_fall(film, scene, least=0.5) or 0.0  # harmless if the body only rocks
         grid["scale"] = {own["scale"], *_SCALES, max(fall, own["scale"] / 2)}
     if "clock" in own:
         grid["clock"] = {own["clock"], *(size_of(scene, "t") * late for late in _LATE)}
@@ -74,10 +73,10 @@ def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], 
 
 
 def free_fall(film: Film, scene: Scene, least: float = 1.5) -> float | None:
-    """Return the ratio of the downward acceleration of a flight to that of the scene, or None.
+    """Return the downward acceleration of a flight over that in the scene, or None.
 
-    A flight is a parabola to within the noise, higher than `least` times the rise and fall of a
-    rolling body.
+    A flight is a parabola to within the noise. It must be higher than `least` times the rise of the
+    centre of a rolling body.
     """
     seen = film.known[:, 1]
     t, z = film.t[seen], film.data[seen, 1]
@@ -95,7 +94,7 @@ def free_fall(film: Film, scene: Scene, least: float = 1.5) -> float | None:
 
 
 def _parabola(t: FloatArray, z: FloatArray, noise: float, rise: float) -> float | None:
-    """Return the downward acceleration of heights on a parabola, or None if they are not on one."""
+    """Return the downward acceleration of heights that lie on a parabola, otherwise None."""
     centre, half = (t[0] + t[-1]) / 2, (t[-1] - t[0]) / 2
     powers = ((t - centre) / half)[:, None] ** np.arange(4)
     solution = np.linalg.lstsq(powers, z, rcond=None)[0]

@@ -1,4 +1,4 @@
-"""Readings of a film in the conventions of other trackers, and the one that fits its scene."""
+"""Readings of a film in other trackers' conventions, and the reading that fits the scene."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from .search import Search
 
 X, Z, THETA = range(3)
 _RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [1/s]; 1000: ms
-_SLOWED = (2, 3, 4, 5, 8, 10, 16)  # or sped up by these factors: a film timed by its player's clock
+_SLOWED = (2, 3, 4, 5, 8, 10, 16)  # factors of slow or fast motion, if times are those of playback
 _UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # of time [s]
 _LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
-_WRONG = 3.0  # from this ratio of free fall to gravity, or its inverse, a scale error is ruled out
+_WRONG = 3.0  # ratio of free fall to gravity, or inverse, beyond which the units must be wrong
 _NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
-_ALIASED = 10.0  # spacing of frames in sqrt(L/g) at which a rocking body has turned back
-_QUICK, _RUN = 6, 2  # starts per try, and number of tries run to the end
+_ALIASED = 10.0  # spacing of frames in sqrt(L/g) within which a rocking body turns back
+_QUICK, _RUN = 6, 2  # number of starts per reading, and number of readings that are fitted fully
 
 
 def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film]:
-    """Return readings in other units of time or length, or none if the film's own may be right.
+    """Return readings in other units of time or length, or none if those of the film may be right.
 
-    Without a flight, frames may be too far apart to decide.
+    Without a flight, other units of time are tried only if the frames seem too far apart.
     """
     scene = unknowns.scene
     if fall is None:
@@ -51,9 +51,8 @@ def other_units(film: Film, fall: float | None, unknowns: Unknowns) -> list[Film
 def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
     """Return readings of angles and positions in other conventions, with the same unit of time.
 
-    Readings that differ only by free unknowns of the camera are not tried.
-
-    If a film starts at a time later than its duration, only its clock is doubted.
+    Readings that differ only by free unknowns of the camera are omitted. If a film starts at a time
+    later than its duration, only another origin of time is tried.
     """
     x, z, theta = film.known.any(axis=0)
     clock = _read(film, "t = t - t[0]", t=film.t - film.t[0])
@@ -73,14 +72,14 @@ def readings(film: Film, names: tuple[str, ...]) -> list[Film]:
 
 
 def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str) -> str:
-    """Return the words for the reading that fits best, or "" if none fits.
+    """Return the description of the reading that fits best, or "" if none fits.
 
-    Tries are ranked by the likelihood of their residuals, each with its own deviations.
+    Readings are ranked by the likelihood of their residuals, each with its own deviations.
     """
     ranked, sizes, unknown = [], sizes_of(unknowns.scene), np.full(len(TRACKS), math.nan)
     for film in tries:
         search = Search(film, unknowns, TRACKER * sizes, loss)
-        with suppress(ValueError):  # no scene's motion reaches the last time
+        with suppress(ValueError):  # no motion in the search reaches the last time
             best = search.minima(_QUICK)[0]
             for _ in range(2):
                 search.sigma = estimated(search, best, unknown)
@@ -95,7 +94,7 @@ def fitting(tries: list[Film], unknowns: Unknowns, given: FloatArray, loss: str)
 
 
 def _origins(search: Search, best: Any) -> dict[str, float]:
-    """Return the offsets to add to tracks of unknown origin."""
+    """Return the offsets to be added to tracks of unknown origin."""
     motion = search.unknowns.motion(best.x, search.film.t)
     lens = search.unknowns.lens(best.x)
     off = replace(search.film, adrift=()).off(motion, *lens) if motion else search.film.data

@@ -1,4 +1,4 @@
-"""Standard errors of a fit, and unknowns that the film cannot determine."""
+"""Standard errors of a fit, and the unknowns that a film cannot determine."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from ..._ask.check import FloatArray
 from .search import LEAST, Search, decomposed
 
-_FAINT = 25.0  # a rival with a larger rise of chi2 does not count
-_APART = 9.0  # a distant rival with a larger rise of chi2 makes no parameter unknown
-_UNEVEN = 0.125  # share of a range over which residuals are nonlinear
-_FAR = 30.0  # a parameter that changes by more than this many natural sizes is unknown
+_FAINT = 25.0  # a rival minimum with a larger rise of chi2 does not count
+_APART = 9.0  # a distant rival with a larger rise of chi2 does not make a parameter undetermined
+_UNEVEN = 0.125  # an error beyond this share of its range requires nonlinear residuals
+_FAR = 30.0  # a parameter whose error exceeds this many natural sizes is undetermined
 _SAME = 0.1  # rise of the cost that no film can resolve
 _AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # fractions of the distance from the guess
 
@@ -22,11 +22,11 @@ _AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # fractions of the distan
 def standard_errors(
     search: Search, best: Any, rivals: list[Any]
 ) -> tuple[FloatArray, FloatArray, list[Any]]:
-    """Return standard errors and covariance of the unknowns, and all solutions found on the way.
+    """Return standard errors and covariance of the unknowns, and all solutions that were computed.
 
-    Each parameter is moved by three standard errors, and further, with all others refitted: its
-    error becomes the change divided by the root of the rise of chi2, if that is larger. Rivals are
-    other minima.
+    Each parameter is moved by three standard errors, and then further, with all others refitted. If
+    the change divided by the square root of the rise of chi2 is larger than the error, it replaces
+    the error. `rivals` are other minima.
     """
     unknowns, rivals = search.unknowns, list(rivals)
     _, singular, axes, known = decomposed(best)
@@ -59,9 +59,10 @@ def standard_errors(
 
 
 def _steps_down(search: Search, best: Any, k: int) -> float:
-    """Return twice the largest half, quarter, ... of the range that chi2 does not resolve.
+    """Halve the range of a parameter until chi2 does not resolve the change; return twice the last.
 
-    Linearised residuals do not resolve restitution near 0: a hop's height grows with its square.
+    Linearised residuals cannot resolve restitution near 0, because the height of a hop grows with
+    the square of restitution.
     """
     reach, rise = search.unknowns.high[k] - search.unknowns.low[k], math.inf
     while rise > 1 and reach > LEAST:
@@ -72,7 +73,7 @@ def _steps_down(search: Search, best: Any, k: int) -> float:
 
 
 def near_guess(search: Search, best: Any, errors: FloatArray) -> Any:
-    """Return a solution as good as the best, whose unknown parameters are near their guesses."""
+    """Return a solution as good as the best, with undetermined parameters near their guesses."""
     lost = np.isinf(errors)
     if not lost.any():
         return best

@@ -20,30 +20,30 @@ from ..._motion.trajectory import Trajectory
 from ..simulate import sample_times, simulate
 
 TRACKS = ("x", "z", "theta")
-NORMAL = 1.4826  # standard deviation per median magnitude, for normal noise
+NORMAL = 1.4826  # ratio of the standard deviation to the median magnitude of normal noise
 CAMERA = ("scale", "ground", "clock")  # x_film = scale x, z_film = ground + scale z, t_film + clock
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
 _POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
-_FINEST, _COARSEST = 1e-15, 1e15  # sigma over the size of the body: squares stay in range
+_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma over the size of the body, for finite squares
 
 
 @dataclass(frozen=True)
 class Film:
-    """Times of shape (n,) and measured x, z [m], theta [rad] of shape (n, 3), NaN where missing."""
+    """Times (n,) and measured x, z [m], theta [rad] as an array (n, 3) with NaN where missing."""
 
     t: FloatArray
     data: FloatArray
-    first: float = 0.0  # what was subtracted from the user's times, if the clock is unknown
+    first: float = 0.0  # offset subtracted from the user's times, if the clock is unknown
     adrift: tuple[int, ...] = ()  # tracks whose origin is unknown
-    reading: tuple[str, ...] = ()  # changes made, as arguments of `fit_motion`
+    reading: tuple[str, ...] = ()  # changes of the data, as arguments of `fit_motion`
 
     @cached_property
     def known(self) -> Any:
         return np.isfinite(self.data)
 
     def off(self, motion: Trajectory, factors: Any = 1.0, added: Any = 0.0) -> FloatArray:
-        """Return measured minus computed tracks: angles modulo pi, adrift tracks without mean."""
+        """Return measured minus computed tracks: angles modulo pi, adrift tracks centred."""
         off: FloatArray = self.data - (added + factors * columns(motion, TRACKS))
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         for k in self.adrift:
@@ -52,9 +52,9 @@ class Film:
 
 
 def film_of(t: FloatArray, tracks: dict[str, Any], *, clock: bool = False) -> Film:
-    """Return a user's tracks as a film; an error names the wrong one.
+    """Return a user's tracks as a film; an error names the wrong track.
 
-    If the clock is unknown, the film begins with its first datum, at 0.
+    If the clock is unknown, the film starts with its first datum, at time 0.
     """
     first = float(t.min(initial=math.inf)) if clock else 0.0
     t = sample_times(t - first)
@@ -68,13 +68,13 @@ def film_of(t: FloatArray, tracks: dict[str, Any], *, clock: bool = False) -> Fi
 
 
 def sizes_of(scene: Scene) -> FloatArray:
-    """Return the natural size of each track: the size of the body [m], and one radian."""
+    """Return the natural size of each track: the longer semi-axis [m], or one radian."""
     length = max(scene.a, scene.b)
     return np.array([length, length, 1.0])
 
 
 def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
-    """Return the given standard deviations of the tracks, NaN where one must be estimated."""
+    """Return the standard deviations of the tracks, with NaN for those to be estimated."""
     given = dict.fromkeys(TRACKS, math.nan)
     if isinstance(sigma, Mapping):
         distinct("sigma", sigma, TRACKS)
@@ -91,8 +91,8 @@ def sigma_of(sigma: Any, scene: Scene) -> FloatArray:
 class Unknowns:
     """Free parameters of a scene and its camera in units of their natural sizes, with bounds.
 
-    `unit` is the order of magnitude of the film's lengths over those of the scene. The value of the
-    clock is the scene's time of the first frame.
+    `unit` is the order of magnitude of the ratio of lengths in the film to those in the scene. The
+    value of the clock is the time of the first frame in the scene.
     """
 
     def __init__(self, scene: Scene, names: tuple[str, ...], film: Film, unit: float) -> None:
@@ -105,7 +105,7 @@ class Unknowns:
             own = [camera[n] if n in camera else value_of(scene, n) for n in names]
         except ValueError as error:  # the scene has no such number
             wrong = str(error).removeprefix("wrt")
-            raise ValueError(f"free{wrong}: scene must give its first guess") from None
+            raise ValueError(f"free{wrong}: scene must give an initial guess for it") from None
         self.sizes = np.array([sizes.get(n) or size_of(scene, n) for n in names])
         bounds = [_bounds(scene, *pair) for pair in zip(names, own, strict=True)]
         self.own, (self.low, self.high) = own / self.sizes, np.array(bounds).T / self.sizes
@@ -114,28 +114,28 @@ class Unknowns:
         return dict(zip(self.names, (u * self.sizes).tolist(), strict=True))
 
     def lens(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the factor of the camera, and its offset, for each track."""
+        """Return the factor and the offset of the camera for each track."""
         values = self.named(u)
         scale, ground = values.get("scale", 1.0), values.get("ground", 0.0)
         return np.array([scale, scale, 1.0]), np.array([0.0, ground, 0.0])
 
     def motion(self, u: FloatArray, t: FloatArray) -> Trajectory | None:
-        """Return the motion at times of the film, or None if it does not reach the last of them."""
+        """Return the motion at times of the film, or None if it does not reach the last time."""
         values = self.named(u)
         t = t + values.get("clock", 0.0)
         mine = {name: value for name, value in values.items() if name not in CAMERA}
-        with suppress(ValueError):  # some unknowns give no valid scene
+        with suppress(ValueError):  # the unknowns may not form a valid scene
             motion = simulate(changed(self.scene, mine), t, raise_on_failure=False)
             return motion if motion.t.size == t.size else None
         return None
 
     def with_values(self, values: Mapping[str, float]) -> FloatArray:
-        """Return the scene's unknowns with new values for the named ones."""
+        """Return the unknowns of the scene, with new values for the named ones."""
         pairs = zip(self.names, self.own * self.sizes, strict=True)
         return np.array([values.get(name, own) for name, own in pairs]) / self.sizes
 
     def turned(self, u: FloatArray) -> FloatArray:
-        """Return changes of the unknowns; the change of theta is reduced by half turns."""
+        """Return changes of the unknowns, with the change of theta reduced modulo half turns."""
         half = math.pi / self.sizes
         whole = np.where(np.array(self.names) == "theta", np.round(u / half), 0.0)
         return u - half * whole

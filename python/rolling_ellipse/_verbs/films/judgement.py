@@ -1,4 +1,4 @@
-"""Whether a scene fits a film: deviations of the tracks, and correlation of neighbour residuals."""
+"""Tests of whether a scene fits a film: size and correlation of neighbouring residuals."""
 
 from __future__ import annotations
 
@@ -12,29 +12,30 @@ from ..._ask.check import FloatArray
 from .film import NORMAL, TRACKS, sizes_of
 from .search import LEAST, Search, decomposed
 
-TRACKER = 0.02  # deviation of a poor tracker, relative to the size of the body or in rad
-_ALARM = 3.5  # none of 340 films of the right scene exceeded 2.99
-_FEWEST = 8  # fewer pairs of neighbours give no verdict
-_ROUNDING = 1e-8  # residuals with a smaller deviation over the size are rounding errors
-_GAP = 1.5  # largest time from a frame to its neighbour, over the median
-_WILD = 5.0  # residual over sigma that is not noise
-_MANY = 0.2  # outliers decide if they exceed this share of a track
-_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: beyond any tracker
+TRACKER = 0.02  # standard deviation of a poor tracker, relative to the size of the body or [rad]
+_ALARM = 3.5  # critical value of T; none of 340 films of the right scene exceeded 2.99
+_FEWEST = 8  # least number of pairs of neighbours for a verdict
+_ROUNDING = 1e-8  # residuals with a smaller relative deviation are rounding errors
+_GAP = 1.5  # largest time between neighbouring frames, relative to the median
+_WILD = 5.0  # residuals beyond this many sigma are outliers
+_MANY = 0.2  # the scene does not fit if outliers exceed this share of a track
+_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: no tracker is worse
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The verdict of the residuals on the scene.
+    """The verdict on a scene from the residuals of its fit.
 
     Attributes
     ----------
     fits : bool
         False if the residuals are not noise.
     doubtful : bool
-        True if they are not noise, or larger than any tracker's.
+        True if the residuals are not noise, or larger than those of any tracker.
     likeness : float
-        Largest mean product of neighbouring residuals, over their mean square.
+        Largest mean product of neighbouring residuals, divided by their mean square.
     words : tuple of str
+        Findings for the message of the fit.
     """
 
     fits: bool
@@ -44,10 +45,10 @@ class Verdict:
 
 
 def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
-    """Return standard deviations of the tracks: the given ones, others from the residuals.
+    """Return standard deviations of the tracks: as given, or estimated from the residuals.
 
-    The unknowns use up a share of each track's data, given by the trace of its projection. If there
-    are outliers, the median residual is used instead.
+    The unknowns reduce the degrees of freedom of each track by the trace of its part of the
+    projection. A robust loss uses the median residual instead of the mean square.
     """
     residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
     directions, _, _, known = decomposed(best)
@@ -61,7 +62,7 @@ def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
 
 
 def settled(search: Search, best: Any, given: FloatArray, rounds: int) -> Any:
-    """Return the best solution after rounds that fit sigma and the unknowns in turn."""
+    """Return the best solution after rounds that alternately fit sigma and the unknowns."""
     for _ in range(rounds):
         search.sigma = estimated(search, best, given)
         best = search.best([search.solve(best.x)])
@@ -78,7 +79,7 @@ def _spread(loss: str, residuals: FloatArray, taken: FloatArray) -> float:
 
 
 def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two arrays: residuals of a track that have a next sample, and the next residuals."""
+    """Return the residuals of a track in neighbouring frames: the earlier and the later ones."""
     steps = np.diff(t)
     near = steps < _GAP * np.median(steps) if steps.size else np.zeros(0, dtype=bool)
     pair = near & np.isfinite(off[:-1]) & np.isfinite(off[1:])
@@ -86,11 +87,11 @@ def neighbours(t: FloatArray, off: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
-    """Return whether the scene fits the film.
+    """Return the verdict on whether the scene fits the film.
 
     T = sqrt(P) sum r r' / sum (r^2 + r'^2)/2 over the P pairs of neighbouring residuals r, r' of a
-    track is normally distributed if residuals are noise. Their mean is not removed: a shifted
-    ground gives residuals of one sign. Residuals of outliers count as `search.loss` weighs them.
+    track is normally distributed if the residuals are noise. The mean is not removed, because a
+    shifted ground gives residuals of one sign. Outliers have the weights of `search.loss`.
     """
     film, off = search.film, np.full(search.film.data.shape, math.nan)
     off[film.known] = search.residuals(best.x)
@@ -103,7 +104,7 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
         sigma = search.sigma[k] / search.unknowns.lens(best.x)[0][k]
         if np.isnan(given[k]) and sigma > _COARSE[name] * unit:
             coarse = True
-            words.append(f"{name} is off by {_printed(name, sigma)}, beyond any tracker")
+            words.append(f"{name} is off by {_printed(name, sigma)}, more than with any tracker")
         wild = int(np.sum(np.abs(off[seen, k]) > _WILD))
         if search.loss != "linear" and wild > _MANY * seen.sum():
             words.append(f"{wild} of {seen.sum()} values of {name} are beyond {_WILD:g} sigma")
@@ -120,17 +121,17 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
     spread = _spread(search.loss, residuals, np.full(residuals.size, 1 - dof / residuals.size))
     bad = bad or (not np.isnan(given).any() and spread**2 > 1 + 5 * math.sqrt(2 / dof))
     words += ["the scene does not fit the film, or the track was smoothed"] if bad else []
-    words += [] if judges or bad else ["too few frames side by side to judge the fit"]
+    words += [] if judges or bad else ["too few neighbouring frames to judge the fit"]
     return Verdict(not bad, bad or coarse, likeness, tuple(words))
 
 
 def _weighed(loss: str, off: FloatArray) -> FloatArray:
-    """Return residuals over sigma; for a robust loss, they saturate at about 1."""
+    """Return residuals in units of sigma; for a robust loss they saturate at 1."""
     return off if loss == "linear" else off / np.sqrt(1 + off**2)
 
 
 def widened(verdict: Verdict) -> float:
-    """Return the factor by which correlated residuals widen errors; it is only an estimate."""
+    """Return an estimate of the factor by which correlated residuals increase the errors."""
     alike = min(verdict.likeness, 0.98)
     return 1.0 if verdict.fits else math.sqrt((1 + alike) / (1 - alike))
 
@@ -142,7 +143,7 @@ def _printed(name: str, sigma: float) -> str:
 
 
 def counted(search: Search, best: Any, given: FloatArray) -> str:
-    """Return the number of data in words, with chi2 for given deviations or the estimated ones."""
+    """Describe the number of data, with chi2 or, if they were estimated, the deviations."""
     film, residuals = search.film, search.residuals(best.x)
     chi2, sigma = float(np.sum(residuals**2)), search.sigma / search.unknowns.lens(best.x)[0]
     words = [f"{residuals.size} data"]
@@ -157,5 +158,5 @@ def counted(search: Search, best: Any, given: FloatArray) -> str:
     if wild and search.loss != "linear":
         words.append(f"{wild} of them beyond {_WILD:g} sigma")
         rest = float(np.sum(residuals[tame] ** 2)) / max(search.dof - wild, 1)
-        words += [] if names else [f"without which it is {rest:.3g}"]
+        words += [] if names else [f"without them it is {rest:.3g}"]
     return ", ".join(words)

@@ -1,4 +1,4 @@
-"""Least squares from many starts: the best of many minima."""
+"""Nonlinear least squares from many starting points, for the best of many minima."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from ..._motion.inputs import size_of
 from .film import Film, Unknowns
 from .starts import Box, cell, starts
 
-cost = attrgetter("cost")  # by which SciPy's solutions are compared
+cost = attrgetter("cost")  # sort key for SciPy's solutions
 LEAST = 1e-9  # smallest singular value, relative to the largest, that the data can resolve
-_SHARES = 0.3, 0.6, 1.0  # shares of the film's beginning, fitted one after another
-_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # duration in sqrt(L/g), and smallest share of the film
-_LONGER = 1.6  # factor by which the fitted part grows from there
+_SHARES = 0.3, 0.6, 1.0  # shares of the beginning of the film, fitted in this order
+_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # its duration in sqrt(L/g), and its least share of the film
+_LONGER = 1.6  # factor by which the fitted part grows after the beginning
 _TRIED = 30  # number of starts that are fitted
-_HOPS, _REACH = 20, 5.0  # starts around a minimum, and their distance in standard errors
+_HOPS, _REACH = 20, 5.0  # number of starts around a minimum, and their distance in standard errors
 _WORSE = 1.1, 50.0  # largest ratio and rise of the cost for which the search continues in a cell
-_AS_GOOD, _SAME = 1.01, 0.1  # largest ratio and rise of the cost of a solution that is as good
-_SOON = 1e-3  # distance in natural sizes of a start that is earlier by one
-_IMPOSSIBLE = 1e3  # residual of an impossible scene, relative to the largest of a body at rest
+_AS_GOOD, _SAME = 1.01, 0.1  # largest ratio and rise of the cost of an equally good solution
+_SOON = 1e-3  # weight of the clock, compared with other unknowns, in the choice among equal starts
+_IMPOSSIBLE = 1e3  # residual of an invalid scene, relative to the largest one of a body at rest
 _EXACT: dict[str, Any] = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-10)
 _EXACT |= {"max_nfev": 100, "jac": "3-point"}
 _ROUGH: dict[str, Any] = {"ftol": 1e-4, "max_nfev": 20, "jac": "2-point"}
 
 
 class Search:
-    """Fits of unknowns to a film, with residuals in units of sigma."""
+    """The fit of unknowns to a film, with residuals in units of sigma."""
 
     def __init__(self, film: Film, unknowns: Unknowns, sigma: FloatArray, loss: str) -> None:
         self.least_squares = required("scipy.optimize", "fit_motion", "fit").least_squares
@@ -44,7 +44,7 @@ class Search:
         self.impossible = _IMPOSSIBLE * float(np.nanmax(far / sigma))
 
     def residuals(self, u: FloatArray, some: Film | None = None) -> FloatArray:
-        """Return the residuals of the film, or of some part of it."""
+        """Return the residuals of the film, or of the film `some` if it is given."""
         film = some or self.film
         motion = self.unknowns.motion(u, film.t)
         if motion is None:
@@ -56,7 +56,7 @@ class Search:
         self, u: FloatArray, *, exact: bool = False, share: float = 1.0,
         held: tuple[int, ...] = (), within: Box | None = None,
     ) -> Any:  # fmt: skip
-        """Return SciPy's solution for a share of the film, with some unknowns held or in a box."""
+        """Return SciPy's solution for a share of the film, with unknowns fixed or in a box."""
         low, high = within or (self.unknowns.low, self.unknowns.high)
         low, high, k = low.copy(), high.copy(), list(held)
         u = np.clip(u, low + LEAST, high - LEAST)
@@ -67,16 +67,16 @@ class Search:
         return one
 
     def minima(self, tried: int = _TRIED) -> list[Any]:
-        """Return the best solution of each cell of friction, the best one first.
+        """Return the best solution in each cell of friction, in ascending order of cost.
 
-        Starts and cells are compared by the film's beginning: later, small errors have grown.
-        Solutions nearly as good as the best are fitted to more and more of the film.
+        Starts and cells are compared by the beginning of the film, before small errors have grown.
+        Solutions that are nearly as good as the best one are then fitted to longer parts.
         """
         share = self._beginning()
         beginning = self._part(share)
 
         def distance(u: FloatArray) -> float:
-            return float(np.log1p(self.residuals(u, beginning) ** 2).sum())  # spared by outliers
+            return float(np.log1p(self.residuals(u, beginning) ** 2).sum())  # robust to outliers
 
         nearest = sorted(starts(self.film, self.unknowns, distance), key=itemgetter(0))
         if self.unknowns.motion(nearest[0][1], beginning.t) is None:
@@ -96,7 +96,7 @@ class Search:
         return ones
 
     def _beginning(self) -> float:
-        """Return the share of frames in which a first event of the scene shows its effects."""
+        """Return the share of frames that includes the effects of the scene's first event."""
         unknowns, t = self.unknowns, self.film.t
         motion = unknowns.motion(unknowns.own, t)
         first = motion.events[0].t if motion and motion.events else 0.0
@@ -104,15 +104,15 @@ class Search:
         return max(float(np.mean(t <= t[0] + reach)), _LEAST_SHARE)
 
     def _part(self, share: float) -> Film:
-        """Return the first frames of the film: a share of those with data."""
+        """Return the first frames of the film, up to a share of the frames with data."""
         seen = np.flatnonzero(self.film.known.any(axis=1))
         count = int(seen[math.ceil(share * seen.size) - 1]) + 1
         return replace(self.film, t=self.film.t[:count], data=self.film.data[:count])
 
     def best(self, minima: list[Any]) -> Any:
-        """Return the best minimum around those given that are nearly as good as the first.
+        """Return the best minimum near those of `minima` that are nearly as good as the first.
 
-        chi2 has kinks where the order of events changes, and many minima between them.
+        chi2 has kinks where the order of events changes, and many minima between the kinks.
         """
         random, close = np.random.default_rng(0), _close(minima)
         best = self._nearest([self._hopped(one, random) for one in close])
@@ -120,7 +120,7 @@ class Search:
         return min(self.solve(best.x, exact=True), best, key=cost)
 
     def _hopped(self, start: Any, random: np.random.Generator) -> Any:
-        """Return the best solution from starts scattered around one, if its motion has events."""
+        """Return the best solution from points around `start`, if its motion has events."""
         motion = self.unknowns.motion(start.x, self.film.t)
         if motion is None or not motion.events:
             return start
@@ -133,10 +133,10 @@ class Search:
         return best
 
     def _nearest(self, ones: list[Any]) -> Any:
-        """Return the best solution; if the clock is unknown, the nearest to the guess of the best.
+        """Return the best solution; with a free clock, the equally good one nearest the guess.
 
-        A motion may pass a state again: a flight passes its height twice, a rocking body all of its
-        states. Of starts in the same state, the last one before the film is returned.
+        A motion may pass a state again: a flight passes its height twice, and a rocking body passes
+        all of its states. Of starts in the same state, the last one before the film is returned.
         """
         best, unknowns = min(ones, key=cost), self.unknowns
         clock = np.array(unknowns.names) == "clock"
@@ -149,16 +149,17 @@ class Search:
 
 
 def _close(ones: list[Any]) -> list[Any]:
-    """Return the solutions that are nearly as good as the first, which is the best."""
+    """Return the solutions that are nearly as good as the first one, which is the best."""
     limit = _WORSE[0] * ones[0].cost + _WORSE[1]
     return [one for one in ones if one.cost < limit]
 
 
 def decomposed(one: Any) -> tuple[FloatArray, FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Return the singular value decomposition of the residuals' Jacobian, and which values count.
+    """Return the singular value decomposition of the Jacobian of the residuals, and its rank mask.
 
-    The values are: vectors in the space of the data, as columns; singular values; vectors in the
-    space of the unknowns, as rows; and which singular values the data resolve.
+    The result has four parts: the vectors in the space of the data, as columns; the singular
+    values; the vectors in the space of the unknowns, as rows; and a mask of the singular values
+    that the data resolve.
     """
     data, singular, axes = np.linalg.svd(one.jac, full_matrices=False)
     return data, singular, axes, singular > LEAST * singular[0]

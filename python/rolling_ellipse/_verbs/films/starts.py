@@ -1,4 +1,4 @@
-"""Starting points of a fit: states from the first frames, coefficients from a grid."""
+"""Starting points of a fit: states from the first frames, and coefficients from a grid."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _GRID = {
     "friction": tuple(0.03 * 1.4**k for k in range(11)),
     "restitution": (0.2, 0.5, 0.8),
     "inertia": (0.5, 1.0, 2.0),  # relative to the first guess
-    "theta": (-1.2, -0.4, 0.4, 1.2),  # where no angle is measured
-    "rolling_resistance": (0.05, 0.5),  # in its natural size
+    "theta": (-1.2, -0.4, 0.4, 1.2),  # used if no angle is measured
+    "rolling_resistance": (0.05, 0.5),  # in units of its natural size
 }
-_CELL = 1.3  # ratio of a cell's ends to its friction on the grid; cells overlap
-_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames: of the first pre-fit, growth factor, maximum
-_EVERY, _KEPT = 3, 12  # pre-fits are skipped if cameras are many, and cameras that are kept
-_WEIGHINGS = 20  # rounds of reweighting, each of which lowers the weight of outliers
+_CELL = 1.3  # factor from the friction on the grid to the ends of its cell; cells overlap
+_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames: in the first pre-fit, growth factor, maximum
+_EVERY, _KEPT = 3, 12  # interval of pre-fits with several cameras, and number of cameras kept
+_WEIGHINGS = 20  # rounds of reweighting, each of which reduces the weight of outliers
 _SPINS = 4000  # largest number of angular velocities in a periodogram
 
 
@@ -34,9 +34,10 @@ def starts(
 ) -> Iterator[tuple[float, FloatArray, Box]]:
     """Yield the best start for each set of coefficients: distance, start, and box of its fit.
 
-    They are the scene's own values, and pre-fits of more and more frames, seen by cameras that make
-    the film most like the scene. Friction stays in a cell of its grid: where it is large enough for
-    the body to stick, no film can determine it, and a step that overshoots would not come back.
+    Candidates are the values of the scene, and pre-fits to more and more frames, with the cameras
+    for which the film resembles the scene most. Friction stays in one cell of its grid. If it is
+    large enough for the body to stick, no film can determine it, and a step that overshoots into
+    this region would not return.
     """
     counts = [_FEWEST]
     while counts[-1] < min(film.t.size, _MOST):
@@ -60,7 +61,7 @@ def starts(
 
 
 def cell(unknowns: Unknowns, u: FloatArray) -> Box:
-    """Return the bounds of the unknowns, with friction in a cell around its value."""
+    """Return the bounds of the unknowns, with friction limited to a cell around its value."""
     low, high = unknowns.low.copy(), unknowns.high.copy()
     if "friction" in unknowns.names:
         k = unknowns.names.index("friction")
@@ -73,7 +74,7 @@ def cell(unknowns: Unknowns, u: FloatArray) -> Box:
 
 
 def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
-    """Return other values to try, by index of the unknown."""
+    """Return the other values to try, by the index of the unknown."""
     grid = {}
     for k, name in enumerate(unknowns.names):
         if name in _GRID and not (name == "theta" and film.known[:, 2].any()):
@@ -84,9 +85,9 @@ def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
 
 
 def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
-    """Return positions and velocities at t = 0, as if there were no events in the first frames.
+    """Return positions and velocities at t = 0, assuming that the first frames have no events.
 
-    After a blow the velocities are not those of the scene.
+    Velocities are omitted if the scene has a blow, since those after it are not the scene's.
     """
     scene, t = unknowns.scene, film.t[:count]
     pulls = scene.gravity * math.sin(scene.slope), -scene.gravity * math.cos(scene.slope)
@@ -105,7 +106,7 @@ def flight(film: Film, unknowns: Unknowns, count: int) -> dict[str, float]:
 
 
 def _known(unknowns: Unknowns, *names: str) -> dict[str, float | None]:
-    """Return values of the scene, None for those to be determined."""
+    """Return values of the scene, or None for those to be determined."""
     scene = unknowns.scene
     kept = names if scene.impulse is None else PLACES
     known = {*kept} - {*unknowns.names}
@@ -117,7 +118,7 @@ def _line(
 ) -> dict[str, float]:
     """Return the unknown coefficients; `known` names all of them, in ascending powers of time.
 
-    The sum of absolute residuals is minimised, so that an outlier decides nothing.
+    The sum of absolute residuals is minimised, so that an outlier has little effect.
     """
     free = [name for name, value in known.items() if value is None]
     of_free = [k for k, value in enumerate(known.values()) if value is None]
@@ -138,13 +139,13 @@ def _line(
 def _spin(t: FloatArray, theta: FloatArray, unknowns: Unknowns) -> dict[str, float]:
     """Return the line through angles modulo half turns, from the peak of their periodogram.
 
-    A frame that is off by a quarter turn lowers the peak, of height n, by only 2.
+    A frame that is wrong by a quarter turn lowers the peak only by 2, from a height of n.
     """
     known = _known(unknowns, "theta", "omega")
     angle, omega = known.values()
     spins = np.array([omega or 0.0])
     if omega is None:
-        fastest = math.pi / 2 / np.median(np.diff(t))  # frames cannot resolve a faster one
+        fastest = math.pi / 2 / np.median(np.diff(t))  # frames cannot resolve a faster rotation
         count = 8 * math.ceil(np.ptp(t) * fastest / math.pi) + 1
         spins = np.linspace(-fastest, fastest, min(count, _SPINS))
     sums = np.exp(2j * (theta - spins[:, None] * t)).sum(axis=1)

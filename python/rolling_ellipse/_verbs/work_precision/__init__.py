@@ -1,4 +1,4 @@
-"""Speed versus accuracy: many methods for one motion, judged and timed side by side."""
+"""Speed versus accuracy: the errors and the times of many methods for one motion."""
 
 from .race import work_precision as work_precision
 from .results import WorkPrecision as WorkPrecision

@@ -1,6 +1,6 @@
-"""The race: every contender at every setting, judged once, then timed in turn.
+"""The race: every contender at every setting is judged once, and then timed in rounds.
 
-Contenders are the package's own methods, `flow`, and peers, behind one interface.
+Contenders are the package's own methods, `flow`, and peers, behind a common interface.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ TOLERANCES, STEPS = "tolerances", "steps"
 _RELATIVE = 100.0  # rtol over atol
 _TOLERANCES = [10.0**-k for k in range(2, 15)]
 _MOST = 1_000_000  # largest number of rounds or samples
-_JUDGING = 0.6  # share of max_seconds in which every run is made once
-_SHORTEST = 1e-3  # shortest timing [s]: shorter calls are repeated
-_POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 and more
+_JUDGING = 0.6  # share of max_seconds for the first call of every run, which is judged
+_SHORTEST = 1e-3  # shortest timing [s]; shorter calls are repeated
+_POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 or higher
 _HELD = ("ROLLING", "REST")
 _PAIRS = ("dop853", "dopri5", "auto")
 _OF_ROLLING = ("dop853", "dopri5", "rk4", "gauss", "radau")
@@ -54,10 +54,10 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer with the interface of peers; its call may have `advice` about its answer."""
+    """A method or peer with the interface of peers; its call may have `advice` on its answer."""
 
     run: Run  # name, model, method, stabilization and tags
-    ladder: str | None  # None: it has no setting
+    ladder: str | None  # None if the contender has no setting
     prepare: Callable[[Scene, float, float], Any]
 
 
@@ -88,7 +88,7 @@ class _Simulation:
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
     def sample(self, times: FloatArray) -> Trajectory:
-        """Do everything that `simulate` does except warn."""
+        """Do the same as `simulate`, but without warnings."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise IntegrationError(motion)
@@ -101,7 +101,7 @@ class _Simulation:
 
 
 def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
-    """Return the contenders named by `methods`, or by default those that suit the scene."""
+    """Return the contenders named by `methods`, or if it is None those that suit the scene."""
     if methods is None:
         methods = _suitable(scene, rolls)
     elif isinstance(methods, str):
@@ -115,13 +115,13 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
     if not (scene.slope or rolls):
-        return ("contact", "exact")  # "exact" shows that a model without slip gives no answer
+        return ("contact", "exact")  # "exact" demonstrates that a model without slip has no answer
     first = ("contact", "flow") if scene.slope else ("flow",)
     return (*first, "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
 
 
 def _own(spec: Any) -> Contender:
-    """Return the contender for "flow", a method, "model/method/stabilization", or a mapping."""
+    """Return the contender for "flow", a method, "model/method/stabilization" or a mapping."""
     if isinstance(spec, str) and (name := spec.casefold()) == "flow":
         run = Run(name, "rolling", "exact", "", tags=("own", "exact"))
         return Contender(run, None, _prepared_flow)
@@ -171,7 +171,7 @@ def of_peer(peer: Any) -> Contender:
 
 
 def default_steps(scene: Scene, t_end: float) -> list[float]:
-    """Return steps from a quarter to a 2048th of a half turn or half swing, up to `t_end` [s]."""
+    """Return steps from 1/4 to 1/2048 of a half turn or half swing, up to `t_end` [s]."""
     try:
         half = period(scene) / 2
     except ValueError:  # on a slope, or if the body does not roll
@@ -187,37 +187,37 @@ def work_precision(
     samples: int = 64, rounds: int = 20, max_seconds: float = 60.0, peers: Sequence[Any] = (),
     reference: Truth | None = None, progress: bool | Callable[[int, int | None], Any] = False,
 ) -> WorkPrecision:  # fmt: skip
-    """Return a race of many methods for one motion: the errors reached and the times taken.
+    """Return a race of many methods for one motion: their errors and their times.
 
-    Every method runs at every setting of its ladder. Each run is judged once, against the exact
-    motion. Then all are timed in turn, in rounds, so that other load on the machine affects all
-    alike; the least time of each counts. A run that is refused, stops early or is not made for lack
-    of time stays among the runs, with its reason.
+    Every method runs at every setting of its ladder. Each run is judged once against the exact
+    motion. Then all runs are timed in rounds, so that other load on the machine affects all of them
+    alike; the least time of each run counts. Runs that are refused, stop early or are omitted for
+    lack of time are listed with the reason.
 
     Parameters
     ----------
     scene : Scene
     t_end : float or sequence of float
-        End of the motion [s]; several ends give runs for each.
+        End of the motion [s]; for several ends every method runs up to each of them.
     methods : sequence, optional
-        Methods of the package: "flow" (the function, exact); names of methods of the model
+        Methods of the package: "flow" (the function, which is exact); names of methods of the model
         "rolling" ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like;
-        or mappings of arguments of `simulate` (and "name"), as {"method": "gauss", "stages": 2}.
-        Default: all that suit the scene. With an empty sequence only peers race.
+        or mappings of arguments of `simulate` (and "name"), such as {"method": "gauss", "stages":
+        2}. Default: all methods that suit the scene. With an empty sequence only peers race.
     tolerances : sequence of float, optional
-        rtol of methods that control their error; atol is a hundredth of it; default 1e-2 … 1e-14.
+        rtol for methods with error control; atol is rtol/100. Default: 1e-2 … 1e-14.
     steps : sequence of float, optional
-        Steps of the other methods [s]; default: a quarter to a 2048th of a half turn or swing.
+        Steps of the other methods [s]. Default: from 1/4 to 1/2048 of a half turn or half swing.
     samples : int
-        Number of irregular times at which the errors "l2" and "linf" are taken. The larger of
-        "linf" and the error at the end counts.
+        Number of irregular times at which the errors "l2" and "linf" are evaluated. The "largest"
+        error is the larger of "linf" and the error at the end.
     rounds : int
-        Number of timings of each run; a slow run has fewer, within `max_seconds`.
+        Number of timings of each run. Slow runs have fewer, within `max_seconds`.
     max_seconds : float
         Time for all runs [s], in equal shares; unused time is left to the others. Each method runs
-        at its coarsest setting, and at finer ones as long as its share lasts. A running call is not
-        interrupted, and takes nothing from the others' shares. The reference is not counted, nor is
-        set-up: `prepare`, and the extra time of a first call (compiling, loading).
+        at its coarsest setting, and at finer ones while its share lasts. A running call is not
+        interrupted, and does not reduce the shares of the others. The time for the reference is not
+        counted, nor is set-up: `prepare`, and the extra time of a first call (compiling, loading).
     peers : sequence
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
         returns a function without arguments that returns theta, omega, x at the end. They may have
@@ -226,10 +226,14 @@ def work_precision(
         judged), and ``counts``, a mapping with "steps", "rejected", "evaluations". A ValueError is
         a refusal, any other exception a failure.
     reference : callable, optional
-        Function of increasing times that returns theta, omega, x, in any arithmetic. Default:
-        exact rolling, or the contact motion; errors below its own error cannot be resolved.
+        Function of increasing times that returns theta, omega, x, in any arithmetic. Default: exact
+        rolling, or the contact motion. Errors below that of the reference cannot be resolved.
     progress : bool or callable
-        As for `simulate_many`; counts runs.
+        As for `simulate_many`; the counts are numbers of runs.
+
+    Returns
+    -------
+    WorkPrecision
 
     Raises
     ------
@@ -246,13 +250,13 @@ def work_precision(
     >>> ways = {"methods": ["flow", "dop853"], "tolerances": [1e-6, 1e-10], "rounds": 1}
     >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
     >>> race
-    <WorkPrecision: ways 2, runs 3, answers 3, to t = 2 s>
+    <WorkPrecision: methods 2, runs 3, answers 3, to t = 2 s>
     >>> race.best(at=1e-11).name
     'flow'
     >>> [f"{run.name} {run.errors.largest:.0e}" for run in race.runs[1:]]
     ['dop853 9e-07', 'dop853 2e-10']
     """
-    resistless = "it compares ways to roll without it"
+    resistless = "it compares methods for rolling without it"
     _core.require_no_resistance(require_scene(scene).core, "work_precision", resistless)
     ends = _numbers("t_end", t_end, "a time or increasing times [s]")
     if any(after <= before for before, after in pairwise(ends)):
@@ -271,7 +275,7 @@ def work_precision(
     names = [contender.run.name for contender in contenders]
     if not names or len(set(names)) < len(names):
         twice = next((f"{name!r} twice" for name in names if names.count(name) > 1), "none")
-        raise ValueError(f"methods and peers must be some, with names of their own, got {twice}")
+        raise ValueError(f"methods and peers must not be empty or share names, got {twice}")
     judges = [Judge(scene, end, samples, reference) for end in ends]
     ladders = []
     for judge in judges:
@@ -283,7 +287,7 @@ def work_precision(
     attempts = [attempt for ladder in ladders for attempt in ladder]
     with reporting(progress, "runs", "race") as report:
         spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
-    # if judging exceeded its share, the rest is still left for timing
+    # even if judging exceeded its share, the share for timing remains
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,
@@ -310,7 +314,7 @@ def _numbers(name: str, values: Any, what: str = "a sequence of positive numbers
 
 
 class _Attempt:
-    """A contender at one setting: judged once, and timed if it has an answer."""
+    """A contender at one setting, which is judged once and timed if it has an answer."""
 
     def __init__(self, contender: Contender, judge: Judge, setting: float) -> None:
         self.contender, self.judge = contender, judge
@@ -323,7 +327,7 @@ class _Attempt:
         self.run = replace(self.run, status=status, reason=reason, **figures)
 
     def judge_once(self) -> None:
-        """Set up, run and judge the contender; a failure is kept as its status."""
+        """Set up, run and judge the contender; a failure is recorded as its status."""
         start = time.perf_counter()
         try:
             self._judge()
@@ -355,7 +359,7 @@ class _Attempt:
         self.call, self.repeats = call, 1 + int(_SHORTEST / self.once)  # calls in one timing
 
     def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
-        """Return the time of a second call and its answer; a longer first call includes set-up."""
+        """Return the time of a second call and its answer; the excess of the first is set-up."""
         start = time.perf_counter()
         call()
         middle = time.perf_counter()
@@ -365,7 +369,7 @@ class _Attempt:
         return second, answer
 
     def expected(self, setting: float) -> float:
-        """Return the estimated time of judging a finer setting, without set-up [s]."""
+        """Return the estimated time of judging a finer setting, excluding set-up [s]."""
         power = 1.0 if self.contender.ladder == STEPS else _POWER_OF_TOLERANCES
         return self.spent * math.pow(self.run.setting / setting, power)
 
@@ -389,8 +393,8 @@ def _judge_all(
     """Judge the attempts that `seconds` allow, and return the time spent on them [s].
 
     The coarsest settings of all ladders come first, then the second ones, and so on. Only the
-    coarsest attempts are always made. Any other is made if its ladder stays within an equal share
-    of `seconds`, or if it fits into the time that is left; if not, the ladder ends there.
+    coarsest attempts are always made. Any other attempt is made if its ladder stays within an equal
+    share of `seconds`, or if it fits into the remaining time; otherwise the ladder ends.
     """
     share, spent, done = seconds / len(ladders), 0.0, 0
     for rung in range(max(map(len, ladders))):
@@ -401,7 +405,7 @@ def _judge_all(
             expected = before[-1].expected(attempt.run.setting) if before else 0.0
             used = sum(each.spent for each in before)
             if before and used + expected > share and expected >= seconds - spent:
-                why = f"max_seconds: a run that may take {expected:.2g} s is more than its share"
+                why = f"max_seconds: a run that may take {expected:.2g} s exceeds its share"
                 for each in ladder[rung:]:
                     each.note(NOT_RUN, why)
                 done += len(ladder) - rung
@@ -416,13 +420,13 @@ def _time_in_turns(attempts: Sequence[_Attempt], rounds: int, seconds: float) ->
     """Time all attempts that have an answer once, and again in later rounds within `seconds`.
 
     A later timing is made if it costs at most an equal share of the time left for all remaining
-    timings, the cheapest ones first.
+    timings. The cheapest attempts come first.
     """
     able = [attempt for attempt in attempts if attempt.call is not None]
     able.sort(key=lambda attempt: attempt.repeats * attempt.once)
     deadline = time.perf_counter() + seconds
     was_enabled = gc.isenabled()
-    gc.disable()  # no garbage collection, as in timeit
+    gc.disable()  # as in timeit
     try:
         for i in range(rounds):
             for k, attempt in enumerate(able):

@@ -1,4 +1,4 @@
-"""The results of a race: comparisons of the runs, the verdict in sentences, and files."""
+"""The results of a race: comparisons of the runs, a verdict as text, and files."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ _SCHEMA = 3
 _WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
 _RUNS = 2  # depth of the runs in a file, one per line
 _DECADES = tuple(10.0**-k for k in range(2, 15))
-_POOR = 1e-2  # a contender whose answers all have larger errors is in the table of gaps
+_POOR = 1e-2  # a contender whose errors are all larger is listed in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
 
 
 @dataclass(frozen=True)
 class Gap:
-    """Runs of one contender with the same status, which have no answer or a poor one."""
+    """Runs of one contender with the same status, which have no answer or an inaccurate one."""
 
     name: str
     settings: str  # settings of these runs
     runs: int  # number of these runs
     answers: int  # number of the contender's runs that have an answer
-    status: str  # as in `Run`; "COMPLETED" if all answers are poor
+    status: str  # as in `Run`; "COMPLETED" if all answers are inaccurate
     reason: str  # reason of the first of these runs
 
     def row(self) -> Row:
-        """Return the cells of its row in the table."""
+        """Return the cells of a row in the table of gaps."""
         status = "" if self.status in (COMPLETED, NOT_RUN) else f"{self.status}, "
         return self.name, self.settings, status + self.reason
 
@@ -67,12 +67,12 @@ class Gaps(tuple[Gap, ...]):
 
 @dataclass(frozen=True, repr=False)
 class WorkPrecision:
-    """Runs of many methods and peers for one motion; made by `work_precision`.
+    """Runs of many methods and peers for one motion, as returned by `work_precision`.
 
-    In its methods `x` is the name of an error: "largest", "final", "l2", "linf", "energy", "gap" or
-    "slip"; `y` is the name of a cost: "time", "samples_time", "setup", "spread", "steps",
-    "rejected", "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the
-    last; any other raises ValueError.
+    Arguments `x` of the methods are names of errors: "largest", "final", "l2", "linf", "energy",
+    "gap" or "slip". Arguments `y` are names of costs: "time", "samples_time", "setup", "spread",
+    "steps", "rejected", "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by
+    default the last one; any other value raises ValueError.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class WorkPrecision:
     runs : tuple of Run
         All runs, including those without an answer.
     references : tuple of Reference
-        Source and error of the true motion, one for each end.
+        Source and error of the true motion for each end.
     machine : dict of str
         Processor, compiler and flags, versions, date, number of rounds.
 
@@ -101,12 +101,12 @@ class WorkPrecision:
 
     @property
     def reference(self) -> Reference:
-        """The reference for the last end time."""
+        """The reference for the last end."""
         return self.references[-1]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all methods and peers, in the order of the runs."""
+        """The names of all methods and peers, in the order of the runs."""
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
@@ -125,9 +125,9 @@ class WorkPrecision:
     def best(
         self, at: float = 1e-8, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> Run | None:
-        """Return the run of least `y` among the runs whose error `x` is at most `at`, or None.
+        """Return the run with the least `y` among those whose error `x` is at most `at`, or None.
 
-        An error of the state below the reference's own error counts as equal to it.
+        A state error below that of the reference counts as equal to the reference's.
 
         Examples
         --------
@@ -143,7 +143,7 @@ class WorkPrecision:
     def least(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
-        """Return, by name, the least `y` of each method that reaches an error of at most `at`.
+        """Return the least `y` of each method that reaches an error of at most `at`, by name.
 
         Examples
         --------
@@ -162,7 +162,7 @@ class WorkPrecision:
     ) -> tuple[str, ...]:
         """Return the names of methods that might still reach an error of at most `at`.
 
-        These have not reached it, but lack of time kept them from running at all their settings.
+        They have not reached it, but were not run at all their settings for lack of time.
 
         Examples
         --------
@@ -179,10 +179,10 @@ class WorkPrecision:
         self, margin: float = 1.2, *, x: str = "largest", y: str = "time",
         t_end: float | None = None,
     ) -> dict[str, tuple[float, ...]]:  # fmt: skip
-        """Return, by name, the decades of the error, 1e-2 … 1e-14, at which a method is unbeaten.
+        """Return the errors among 1e-2, 1e-3, …, 1e-14 at which each method is unbeaten, by name.
 
-        At these errors no other method is faster by more than a factor of `margin` >= 1. Decades
-        that a method might still reach (`not_run`) are left out.
+        At these errors no other method is faster by more than a factor of `margin` >= 1. Errors
+        that some method might still reach (`not_run`) are omitted.
 
         Examples
         --------
@@ -204,11 +204,11 @@ class WorkPrecision:
         return leads
 
     def verdict(self, *, t_end: float | None = None) -> str:
-        """Summarise which method is fastest at each error level, by what factor, and which fail.
+        """Summarise which method is fastest at each error, by what factor, and which methods fail.
 
-        If a peer is ahead of all methods of the package, this comes first, with the reason. The
-        error is the largest error of the state at the samples and the end. A method is called
-        unbeaten only where all others have reached the error, too, or have run all their settings.
+        Peers that are ahead of all methods of the package come first, with the reason. The error is
+        the largest error of the state at the samples and the end. A method is called unbeaten only
+        if all others have reached the error as well, or have run at all their settings.
 
         Examples
         --------
@@ -224,7 +224,7 @@ class WorkPrecision:
             limits.append(f"attainable {attainable:.1e}")
         known = f" ({'; '.join(limits)})" if limits else ""
         alone = by_name(r for r in self.of(t_end) if r.completed and math.isnan(r.errors.linf))
-        but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
+        but = f" (of {', '.join(alone)} only at the end)" if alone else ""
         lines = [
             f"To t = {reference.t_end:.6g} s, judged by {reference.name}{known}, at the sample "
             f"times and the end{but}:"
@@ -244,7 +244,7 @@ class WorkPrecision:
         for (name, is_open), rows in groupby(ranked, itemgetter(1)):
             held = list(rows)
             rank = "the fastest that was run" if is_open else "unbeaten"
-            # the longest set-up: some contenders compile once, at their first setting
+            # the longest set-up, because some contenders compile only at their first setting
             setup = max(run.setup for run in contenders[name] if run.completed)
             cost = f"{_brief(held[-1][3][name])}, set-up {_brief(setup)}"
             lines.append(f"{name} is {rank} {_span([decade for decade, *_ in held])} ({cost});")
@@ -253,44 +253,44 @@ class WorkPrecision:
                 if rival:
                     factors = {d: least[rival] / least[name] for d, least in least_at.items()}
                     parts = (f"{f:.3g} × at {d:.0e}" for d, f in factors.items())
-                    equal = " (as good as equal)" if max(factors.values()) <= EQUAL else ""
+                    equal = " (practically equal)" if max(factors.values()) <= EQUAL else ""
                     lines.append(f"    {rival} takes {', '.join(parts)}{equal}")
                 else:
-                    seen = "was seen" if is_open else "gets"
-                    lines.append(f"    no other {seen} there {_span([*least_at])}")
+                    reaches = "was seen to reach" if is_open else "reaches"
+                    lines.append(f"    no other method {reaches} errors {_span([*least_at])}")
         if none:
-            why = ", which the reference could not tell" if none[0] < floor else ""
-            lines.append(f"nobody has reached an error {_span(none)}{why}")
+            why = ", which the reference cannot resolve" if none[0] < floor else ""
+            lines.append(f"no method has reached errors {_span(none)}{why}")
         return printable("\n".join([*lines, *_without_answer(self.gaps(t_end=t_end))]))
 
     def _behind(self, t_end: float | None) -> Iterator[str]:
         """Yield a line for each peer that is ahead of all methods of the package at some errors."""
-        found = []
+        leads = []
         for decade in _DECADES:
             able = sorted(self._able(decade, "largest", "time", t_end), key=lambda run: run.time)
             peer = next((run for run in able if "peer" in run.tags), None)
             own = next((run for run in able if "peer" not in run.tags), None)
             if peer and own and peer.time < own.time:
-                found.append((decade, peer, own))
-        for (ahead, behind), rows in groupby(found, lambda row: (row[1].name, row[2].name)):
+                leads.append((decade, peer, own))
+        for (ahead, behind), rows in groupby(leads, lambda row: (row[1].name, row[2].name)):
             held = [(each, own.time / peer.time, peer, own) for each, peer, own in rows]
             cells = ", ".join(
                 f"{factor:.3g} × at {each:.0e}{_steps(peer.steps)}"
                 for each, factor, peer, _ in held
             )
             _, _, peer, own = held[-1]
-            why = f": so few steps cost less than what {behind} sets up"
+            why = f": so few steps cost less than the initial work of {behind}"
             if max(factor for _, factor, *_ in held) <= EQUAL:
-                why = " (as good as equal)"
+                why = " (practically equal)"
             elif own.steps or not peer.steps:
                 why = ""
             yield f"{ahead} is ahead of {behind}, {cells}{why};"
 
     def gaps(self, *, t_end: float | None = None) -> Gaps:
-        """Return the table of the runs that failed, were refused or were not run, with reasons.
+        """Return a table of the runs that failed, were refused or were not run, with the reasons.
 
-        Contenders whose answers all have errors above 1e-2 are included. It prints as a table, and
-        has `to_dataframe`.
+        Contenders whose errors are all above 1e-2 are included. The result prints as a table and
+        has a method `to_dataframe`.
 
         Examples
         --------
@@ -309,12 +309,12 @@ class WorkPrecision:
                 where, reason = " to ".join(ends).replace("nan", "all"), those[0].reason
                 if status == NOT_RUN:
                     where = f"beyond {tried[-1].setting:.0e}" if tried else "at all"
-                    so_far = f" ({_brief(answers[-1].time)} a call so far)" if answers else ""
+                    so_far = f" ({_brief(answers[-1].time)} per call so far)" if answers else ""
                     reason = f"no time left{so_far}"
                 rows.append(Gap(name, where, len(those), len(answers), status, reason))
             nearest = min((run.errors.largest for run in answers), default=0.0)
             if nearest > _POOR and len(tried) == len(runs):
-                reason = f"came no nearer than {nearest:.1e}"
+                reason = f"reached no error below {nearest:.1e}"
                 rows.append(Gap(name, "any", len(answers), len(answers), COMPLETED, reason))
         return Gaps(rows)
 
@@ -325,31 +325,32 @@ class WorkPrecision:
     ) -> WorkPrecisionChart:  # fmt: skip
         """Draw a cost over an error, both on logarithmic axes, and return the artists.
 
-        Two camps stand out: the contenders of `highlight` and all others. Bold stepped lines are
-        their fronts, the least `y` for every error, and arrows show the factors between them. Thin
-        lines join the runs of each contender. Errors above 10 are not answers, and out of view;
-        those below what can be attained, or judged, are drawn at that limit.
+        The chart compares two groups: the contenders of `highlight` and all others. Bold stepped
+        lines are the fronts of the groups, the least `y` for each error, and arrows show the
+        factors between them. Thin lines connect the runs of each contender. Errors above 10 are
+        outside the axes; errors below the attainable one, or that of the reference, are drawn at
+        this limit.
 
         Parameters
         ----------
         x, y : str
             Names of the error and of the cost.
         tags : sequence of str, optional
-            Draw only contenders with one of these tags (or names).
+            Draw only contenders with one of these tags or names.
         ax : matplotlib Axes, optional
-            Axes to draw into; default: those of a new pyplot figure, which also shows the table of
-            `gaps`, if it fits, and the machine.
+            Axes to draw into. Default: axes of a new pyplot figure, which also shows the machine
+            and, if it fits, the table of `gaps`.
         highlight : sequence of str, optional
-            Names or tags of the first camp. Default: the package's own methods if there are peers,
-            else the exact ones.
+            Names or tags of the first group. Default: the package's own methods if there are peers,
+            otherwise the exact ones.
         by : {"library"}, optional
-            Draw a small chart for each library instead, all with the same axes: for twenty
-            contenders or more. A peer's library is the first word of its name.
+            Draw a small chart for each library instead, all with the same axes; this suits twenty
+            or more contenders. The library of a peer is the first word of its name.
 
         Raises
         ------
         ValueError
-            If an argument is not as above; for names that are not in the race the message lists all
+            If an argument is invalid. For names that are not in the race the message lists all
             valid ones.
 
         Examples
@@ -383,7 +384,7 @@ class WorkPrecision:
         return pandas.DataFrame(map(dict.__or__, rows, errors)).drop(columns="errors")
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a JSON file, one run per line, which appears whole or not at all.
+        """Write the race to a JSON file with one run per line, completely or not at all.
 
         Examples
         --------
@@ -400,7 +401,7 @@ class WorkPrecision:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
-        """Read a file written by `save`; ValueError if it is damaged or another file.
+        """Read a file written by `save`; raise ValueError if it is damaged or another file.
 
         Examples
         --------
@@ -408,7 +409,7 @@ class WorkPrecision:
         >>> race = rl.work_precision(rl.scenes.rolling, 2.0, **ways)
         >>> race.save("race.json")
         >>> rl.WorkPrecision.load("race.json")
-        <WorkPrecision: ways 2, runs 3, answers 3, to t = 2 s>
+        <WorkPrecision: methods 2, runs 3, answers 3, to t = 2 s>
         """
         return strict.restored(path, cls._restored, strict.OBJECT)
 
@@ -416,8 +417,8 @@ class WorkPrecision:
         answers = sum(run.completed for run in self.runs)
         ends = ", ".join(f"{reference.t_end:g}" for reference in self.references)
         return (
-            f"<WorkPrecision: ways {len(self.names)}, runs {len(self.runs)}, answers {answers}, "
-            f"to t = {ends} s>"
+            f"<WorkPrecision: methods {len(self.names)}, runs {len(self.runs)}, "
+            f"answers {answers}, to t = {ends} s>"
         )
 
     def _repr_html_(self) -> str:
@@ -428,7 +429,7 @@ class WorkPrecision:
                 rows.append((name, f"{error:.2g}", f"{1e6 * time:.3g} µs"))
             else:
                 rows.append((name, "no answer", ""))
-        return html_table(repr(self)[1:-1], rows, ("way", "least error", "least time"))
+        return html_table(repr(self)[1:-1], rows, ("method", "least error", "least time"))
 
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
         if not number("at", at) > 0:
@@ -467,14 +468,14 @@ class WorkPrecision:
         race = read(cls, {name: about[name] for name in about.keys() - {"schema"}})
         ends = {each.t_end for each in race.references}
         if not ends or ends != {run.t_end for run in race.runs}:
-            raise ValueError("runs must be there, and end where the references do")
+            raise ValueError("runs must not be empty, and must have the ends of the references")
         if json.dumps(race._about(), sort_keys=True) != json.dumps(about, sort_keys=True):
-            raise ValueError("it must hold what save writes, in its types")
+            raise ValueError("it must contain what save writes, with the same types")
         return race
 
 
 def _without_answer(gaps: Gaps) -> Iterator[str]:
-    """Yield a line for each contender without an answer, with a poor one, or cut short."""
+    """Yield a line for each contender that has no answer or a poor one, or was cut short."""
     missing = sorted(gaps, key=lambda gap: gap.status == NOT_RUN)
     late = {gap.name for gap in missing if gap.status == NOT_RUN}
     for gap in missing:
@@ -484,7 +485,7 @@ def _without_answer(gaps: Gaps) -> Iterator[str]:
         elif gap.status == NOT_RUN:
             yield f"{name} was not run {settings}: {why}"
         elif not gap.answers:
-            yield f"{name} reached nothing{' so far' if name in late else ''}: {why}"
+            yield f"{name} has no answer{' so far' if name in late else ''}: {why}"
 
 
 def _steps(number: int) -> str:

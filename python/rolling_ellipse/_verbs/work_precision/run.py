@@ -1,6 +1,6 @@
 """Runs of a race, their errors, the reference that judges them, and their values in JSON.
 
-JSON has no NaN and no infinite numbers: they become null and the text "inf".
+JSON has neither NaN nor infinite numbers: they become null and the text "inf".
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ _Record = TypeVar("_Record")
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a run; NaN if the run has no such answer.
+    """Errors of a run; NaN if the run does not provide the quantity.
 
-    The error of a state is the largest of three: of theta [rad], of omega over the largest |omega|
-    of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
-    the end, or only at the end for a run without samples. Gap and slip, where they should be 0, are
-    divided by the longer semi-axis, and by that times the largest |omega|.
+    The error of a state is the largest of three: that of theta [rad], that of omega divided by the
+    largest |omega| of the motion, and that of x divided by the longer semi-axis. `largest` is the
+    largest error at the samples and the end, or only at the end for a run without samples. Gap and
+    slip are evaluated where they should be 0. Gap is divided by the longer semi-axis, and slip also
+    by the largest |omega|.
     """
 
     final: float = math.nan  # error of the state at the end
-    l2: float = math.nan  # root mean square of the states at the sample times
-    linf: float = math.nan  # largest of the states at the sample times
-    energy: float = math.nan  # largest change over the largest kinetic + |potential|
+    l2: float = math.nan  # root mean square error of the states at the sample times
+    linf: float = math.nan  # largest error of the states at the sample times
+    energy: float = math.nan  # largest change over the largest kinetic + |potential| energy
     gap: float = math.nan  # largest distance from the ground
     slip: float = math.nan  # largest velocity of the contact along the ground
 
@@ -48,17 +49,17 @@ class Run:
     model: str  # model, method and stabilization of `simulate`; for a peer "rolling", its name, ""
     method: str
     stabilization: str
-    setting: float = math.nan  # relative tolerance, or step [s]; NaN if it has neither
+    setting: float = math.nan  # relative tolerance, or step [s]; NaN if there is neither
     errors: Errors = Errors()
     time: float = math.nan  # shortest time of a call that returns the state at the end [s]
     setup: float = math.nan  # cost of a new scene, with the extra time of a first call [s]
-    spread: float = math.nan  # median of the times over the least, minus 1; NaN for a single timing
-    steps: int = 0  # number of steps in that call, like the next two; 0 if unknown
+    spread: float = math.nan  # median time over least time, minus 1; NaN for a single timing
+    steps: int = 0  # number of steps in one call, as for the next two fields; 0 if unknown
     rejected: int = 0
     evaluations: int = 0  # evaluations of the right-hand side
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
-    reason: str = ""  # why it has no answer, or a warning about its answer
-    tags: tuple[str, ...] = ()  # "own" or "peer", and others
+    reason: str = ""  # why there is no answer, or a warning about the answer
+    tags: tuple[str, ...] = ()  # "own" or "peer", and further tags
     samples_time: float = math.nan  # time of a call for the states at all sample times [s]
     t_end: float = math.nan  # [s]
 
@@ -68,7 +69,7 @@ class Run:
         return self.status == COMPLETED
 
     def value(self, quantity: str) -> float:
-        """Return one of its errors or other figures by name."""
+        """Return an error or another figure of the run by name."""
         return float(getattr(self.errors if quantity in ERRORS else self, quantity))
 
 
@@ -76,20 +77,20 @@ class Run:
 class Reference:
     """Source and error of the true motion by which the runs up to one end are judged.
 
-    `attainable` is the change of the state at the end due to a relative change of 2.2e-16 of every
-    number of the scene, one after the other, plus two units in its last place: no computation with
-    doubles can promise less. It is NaN if the motion of a given reference lasts longer than the
-    package's.
+    `attainable` is the sum of the changes of the state at the end due to a relative change of
+    2.2e-16 of each number of the scene, plus two ulp of the state: no computation with doubles can
+    guarantee less. It is NaN if the motion of a given reference lasts longer than that of the
+    package.
     """
 
     name: str  # source of the true motion
     t_end: float  # [s]
-    floor: float  # its own error, as a `final` error: smaller ones cannot be resolved
+    floor: float  # error of the reference, as a `final` error; smaller ones cannot be resolved
     attainable: float
-    growth: float = 1.0  # factor of both at the worst sample time, relative to the end; at least 1
+    growth: float = 1.0  # ratio of both at the worst sample time to those at the end; at least 1
 
     def limits(self, error: str) -> tuple[float, float]:
-        """Return floor and attainable for an error by name; 0 if it is not one of the state."""
+        """Return the limits `floor` and `attainable` of an error; 0 if it is not one of states."""
         if error not in OF_STATES:
             return 0.0, 0.0
         factor = 1.0 if error == "final" else self.growth
@@ -97,7 +98,7 @@ class Reference:
 
 
 def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
-    """Return the runs of each contender, in their order."""
+    """Return the runs of each contender, in the given order."""
     contenders: dict[str, list[Run]] = {}
     for run in runs:
         contenders.setdefault(run.name, []).append(run)
@@ -105,7 +106,7 @@ def by_name(runs: Iterable[Run]) -> dict[str, list[Run]]:
 
 
 def plain(value: Any) -> Any:
-    """Return nested records, as from `asdict`, in JSON values."""
+    """Return nested records, as returned by `asdict`, as JSON values."""
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     if isinstance(value, dict):
@@ -128,7 +129,7 @@ _RECORDS: dict[str, Any] = {kind.__name__: kind for kind in (Errors, Run, Refere
 
 
 def _value(kind: str, value: Any) -> Any:
-    """Return the value of a field of this type."""
+    """Return the JSON value of a field as an object of the field's type."""
     if kind in _RECORDS:
         return read(_RECORDS[kind], value)
     if kind == "Scene":

@@ -1,4 +1,4 @@
-"""The true motion of a race, its error, the attainable error, and the errors of runs."""
+"""The true motion of a race with its error, the attainable error, and the errors of runs."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ Truth = Callable[[FloatArray], Columns]
 
 _INEXACT = [each.name for each in fields(Scene) if each.name not in ("mass", "x", "impulse")]
 _ROUNDING = 2.2e-16
-_CHANGE = 2.0**-42  # a thousand roundings: neither rounding nor the square of the change matters
+_CHANGE = 2.0**-42  # a thousand roundings, so that rounding and second-order terms are negligible
 _MOST = 500  # maximum number of times at which the attainable error is computed
-_GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples modulo 1 are not simple fractions of any period
+_GOLDEN = (math.sqrt(5) - 1) / 2  # multiples modulo 1 are far from simple fractions of a period
 
 
 class Judge:
-    """The true motion at 0, at irregular sample times, and at the end."""
+    """The true motion at t = 0, at irregular sample times, and at the end."""
 
     def __init__(self, scene: Scene, t_end: float, samples: int, given: Truth | None) -> None:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
         self.scene, self.t_end = scene, t_end
-        # units: error over the attainable one, as bounded by the test suite with tables of 30 and
-        # more digits
+        # `units` bounds the ratio of the error to the attainable error; the test suite checks this
+        # bound against tables of 30 or more digits
         name, units, motion = "contact motion at rounding level", 8, _contact
         if rolls_for_certain(scene):
             name, units, motion = "exact rolling", 4, _rolling
@@ -67,12 +67,12 @@ class Judge:
         self.reference = Reference(name, t_end, floor, attainable, growth)
 
     def errors(self, sampled: Any, end: tuple[float, float, float]) -> Errors:
-        """Return the errors of a motion at `times` (None: samples are unknown) and at its end."""
+        """Return the errors of a motion at `times` (None if samples are unknown) and at its end."""
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
         if sampled is None:
             return Errors(final=final)
         motion = sampled
-        if not isinstance(sampled, Trajectory):  # energy and constraints follow from rolling states
+        if not isinstance(sampled, Trajectory):  # states of rolling give energy and constraints
             motion = Trajectory(
                 self.times, *sampled, scene=self.scene, model="rolling", method="exact",
                 status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
@@ -91,9 +91,9 @@ class Judge:
         )
 
     def _apart(self, states: Any, exact: Any) -> FloatArray:
-        """Return the differences of theta, omega and x over their sizes, (3, n).
+        """Return the differences of theta, omega and x in units of their sizes, (3, n).
 
-        The subtraction comes first, since the truth may be more precise than doubles.
+        The subtraction precedes the conversion to doubles, because the truth may be more precise.
         """
         return np.array(
             [
@@ -103,17 +103,18 @@ class Judge:
         )
 
     def _attainable(self, motion: Callable[[Scene, FloatArray], Columns]) -> FloatArray:
-        """Return the attainable error at up to `_MOST` of the times, the end last, (n,).
+        """Return the attainable error at up to `_MOST` of the times, including the end, (n,).
 
         Derivatives with respect to the numbers of the scene are central differences, or one-sided
-        if one of the changed scenes has no motion. NaN if the given reference outlasts the motion.
+        if one of the changed scenes has no motion. The result is NaN if the given reference lasts
+        longer than the motion.
         """
         places = np.unique(np.linspace(1, self.times.size - 1, _MOST).round().astype(int))
         times = self.times[places]
         states = [np.array(column[places], dtype=np.float64) for column in self._truth]
         known = 2 * np.spacing(np.abs(states)) / np.array(self._sizes)[:, None]
         scene = replace(self.scene, inertia=self.scene.mass * self.scene.gyration2)
-        if motion is _rolling:  # the start after the blow
+        if motion is _rolling:  # the motion starts after the blow
             scene = replace(scene, omega=scene.initial_state.omega, impulse=None)
         try:
             middle = motion(scene, times)
@@ -127,7 +128,7 @@ class Judge:
                 continue
             sides = []
             for changed in (value + change, value - change):
-                with suppress(ValueError):  # friction or the ground forbid the changed start
+                with suppress(ValueError):  # friction or the ground may forbid the changed start
                     sides.append(motion(replace(scene, **{name: changed}), times))
             if sides:
                 apart = self._apart(sides[0], [*sides, middle][1])
@@ -136,7 +137,7 @@ class Judge:
 
 
 def exact_rolling(scene: Scene) -> Callable[[Any], Columns]:
-    """Return theta, omega and x as a function of times, or of one."""
+    """Return theta, omega and x as a function of one time or several times."""
     start, arguments = scene.initial_state.x, arguments_of(scene)
 
     def sample(times: Any) -> Columns:
@@ -154,12 +155,12 @@ def _rolling(scene: Scene, times: FloatArray) -> Columns:
 def _contact(scene: Scene, times: FloatArray) -> Columns:
     motion = simulate(scene, times, model="contact", raise_on_failure=False)
     if motion.t.size < times.size:
-        raise ValueError(f"it ends at {motion.t_end!r} s, as {motion.message}")
+        raise ValueError(f"it ends at {motion.t_end!r} s: {motion.message}")
     return motion.theta, motion.omega, motion.x
 
 
 def rolls_for_certain(scene: Scene) -> bool:
-    """Whether the body is proved to roll forever on level ground."""
+    """Return whether the body is proved to roll forever on level ground."""
     return scene.slope == 0 and certify(scene).validity is Validity.VALID
 
 
