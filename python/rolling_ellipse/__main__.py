@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     int
         0 on success; 1 if the motion could not be followed to its end (the summary covers the part
         computed), or an answer to `benchmark` is wrong; 2 (and one line) on bad input, or if a file
-        cannot be written. A StabilityWarning is printed as one line, too.
+        cannot be written. Warnings of instability or of omitted blows are lines, too.
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {
@@ -50,6 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")  # the summary states how long the model is valid
             warnings.simplefilter("always", StabilityWarning)
+            warnings.filterwarnings("always", "a scene has no blows")  # a link's blows are omitted
             code, message = action(options)
     except (ValueError, TypeError, OSError, ImportError, RuntimeError, MemoryError) as error:
         _complain(error)

@@ -209,6 +209,8 @@ def test_a_scene_is_read_from_a_file_a_link_or_standard_input(
     ):
         found = strict_json(command("--scene", link, *options, "--json").out)
         assert found["distance"] == rl.simulate(expected, 6.0).x[-1], options
+    code, _, err = command("--scene", f"{link}&blows=2,0,-1,0,0")
+    assert code == 0 and err.startswith("python -m rolling_ellipse: a scene has no blows")
     monkeypatch.setattr("sys.stdin", None)
     assert command("--scene", "-").code == 2
 

@@ -108,3 +108,9 @@ def test_an_unknown_key_is_answered_with_the_right_one() -> None:
     for text in ('{"version": 1, "a": 2, "b": 1, "mu": 1}', "#a=2&b=1&mu=1"):
         with pytest.raises(ValueError, match=r"got 'mu'; did you mean friction\?$"):
             Scene.from_json(text)
+
+
+def test_a_warning_shows_the_blows_that_a_link_has_beside_its_scene() -> None:
+    with pytest.warns(UserWarning, match=r": pass 2,0,-1,0\.5,0 to simulate as blows=$"):
+        scene = Scene.from_json("#a=2&b=1&t=5&blows=2,0,-1,0.5,0")
+    assert scene == Scene(2.0, 1.0) == Scene.from_json("#a=2&b=1&t=5&blows=")

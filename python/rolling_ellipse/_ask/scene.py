@@ -261,8 +261,8 @@ class Scene(FieldsOnly, Listed):
         ----------
         source : str or path
             Text in braces ``{}``, as `to_json` writes it, or a link that starts with ``#``,
-            ``http:``, ``https:`` or ``file:``, whose ``t``, ``blows`` and ``lang`` are ignored. A
-            path is an `os.PathLike`, such as ``pathlib.Path("scene.json")``, not a str.
+            ``http:``, ``https:`` or ``file:``, whose ``t`` and ``lang`` are ignored. A path is an
+            `os.PathLike`, such as ``pathlib.Path("scene.json")``, not a str.
 
         Raises
         ------
@@ -271,6 +271,11 @@ class Scene(FieldsOnly, Listed):
             number or out of its range; the message starts with the key.
         TypeError
             If the source is of another type, or a required number is null.
+
+        Warns
+        -----
+        UserWarning
+            If a link has blows during the motion, which are an argument of `simulate`.
 
         Examples
         --------

@@ -2,6 +2,7 @@
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -126,6 +127,9 @@ def _of_link(link: str) -> _Given:
         names = [*(name for name in names if name not in _OLDER.values()), *_OLDER]
         required += ["mass", "theta", "omega", *_OLDER]
     given = _known("source", pairs, names, required)
+    if blows := given.get("blows"):  # t, jx, jz, dx, dz of each
+        message = f"a scene has no blows during its motion: pass {blows} to simulate as blows="
+        warnings.warn(message, UserWarning, stacklevel=4)
     numbers = {name: _linked(name, given[name]) for name in given if name not in _BESIDE}
     blow = {name: numbers.pop(name) for name in _BLOW if name in numbers}
     force = [blow[name] for name in ("jx", "jz") if name in blow]
@@ -153,8 +157,9 @@ def _known(what: str, pairs: Any, names: Sequence[str], required: Sequence[str] 
             wrong = f"got {shown(key)}{meant(key, names)}"
             raise ValueError(f"{what} must have keys among {', '.join(names)}, {wrong}")
         if key in given:
-            both = f"{shown(given[key])} and {shown(value)}"
-            raise ValueError(f"{key} must be given once, got {both}")
+            raise ValueError(
+                f"{key} must be given once, got {shown(given[key])} and {shown(value)}"
+            )
         given[key] = value
     for name in required:
         if name not in given:
