@@ -52,7 +52,8 @@ Sentences course_of(const Scene& scene, const Solution& solution, const Start& s
     return found;
 }
 
-// Says why the motion differs from what the initial velocities suggest; empty if it does not.
+// Explains why the motion differs from what the initial velocities suggest; empty if it does not
+// differ.
 Sentences surprise(const Scene& scene, const Start& start) {
     const Continuation& next = start.next;
     if (next.may_fly) return {{"wedged", {}}};
@@ -103,7 +104,7 @@ const Event* landing_of(const Solution& solution) {
     return nullptr;
 }
 
-// How and when the rolling that starts at the time `begin` ends, as far as the motion shows it.
+// How and when the rolling that starts at the time `begin` ends, as far as the motion shows.
 Sentence end_of_rolling(const Scene& scene, const Solution& solution, Outcome first, double begin) {
     const auto at = [](Outcome end, double t) { return Sentence{name(end) + "_at", {{"t", t}}}; };
     for (const Event& each : solution.motion.events) {

@@ -1,4 +1,4 @@
-// Sentences on what happens to a body, and why, for Python and for web pages.
+// Sentences about what happens to a body, and why, for Python and for web pages.
 #pragma once
 
 #include <optional>
@@ -38,10 +38,10 @@ Description describe(const Scene& scene, const Solution& solution, const Checkpo
 std::optional<Outcome> outcome_after_landing(const Scene& scene, const Solution& solution,
                                              const Checkpoint& checkpoint);
 
-// Says what the blow of the scene with this start does, and how the body moves after it.
+// Describes the effect of the blow of the scene with this start, and how the body moves after it.
 Sentences describe_start(const Scene& scene, const Start& start);
 
-// Says what the certificate of the scene proves about rolling.
+// Describes what the certificate of the scene proves about rolling.
 Sentences describe_proof(const Scene& scene, const Certificate& proof);
 
 }  // namespace rolling_ellipse

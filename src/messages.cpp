@@ -49,8 +49,8 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
                    "rigid body is possible";
         case Ending::undetermined:
             return "two motions of the sliding body are possible" + place +
-                   ": it flies off, or its own friction presses it on the ground (Painleve), and "
-                   "rigid mechanics does not choose";
+                   ": it flies off, or its own friction presses it against the ground (Painleve), "
+                   "and rigid mechanics does not choose";
         case Ending::validity_lost:
             return "rolling is valid until t = " + brief(t) +
                    " s only; after it the motion obeys the rolling equation, but not the laws of "

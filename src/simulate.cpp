@@ -12,7 +12,8 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Replaces "auto" by the simplest model that the scene needs, and by the method of that model.
+// Replaces "auto" with the simplest model that suffices for the scene, and with the method of that
+// model.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
         const bool rolls = settings.method != Method::automatic;  // the methods belong to rolling
@@ -44,8 +45,9 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// The end of valid rolling. On a slope the law is followed up to the time `until`, unless it is
-// broken or touched earlier; if rolling holds until then, the time of its end is unknown (NaN).
+// The end of valid rolling. On a slope, the law of the contact is followed up to the time `until`,
+// unless it is broken or at its limit earlier; if rolling remains valid until then, the time of its
+// end is unknown (NaN).
 EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity) {
     if (from.rolling) return end_of_rolling(*from.rolling, scene.friction);
     if (!from.on_slope) return {Validity::no_proof};
@@ -121,7 +123,7 @@ Integration<Motion> solve(const Scene& scene, const Beginning& from, const Setti
     return as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint));
 }
 
-// Says which blows came after the end of a motion; empty if none did.
+// A message about blows after the end of a motion; empty if there are none.
 std::string what_is_missed(const std::vector<Blow>& blows, const std::vector<Event>& events) {
     const auto is_blow = [](const Event& event) { return event.kind == EventKind::blow; };
     const std::size_t struck = std::count_if(events.begin(), events.end(), is_blow);
@@ -138,7 +140,7 @@ Solution solution(Integration<Motion> found, const Settings& settings, double t_
     return solution;
 }
 
-// Raises the maximum to a value; NaN counts as infinite.
+// Raises the maximum to a larger value; NaN counts as infinite.
 void raise(double& maximum, double value) {
     if (!(value <= maximum)) maximum = std::isnan(value) ? infinity : value;
 }

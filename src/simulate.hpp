@@ -1,7 +1,7 @@
 // The whole computation: scene -> initial state -> certificate -> model -> solution; and messages
 // for users: why a start does not roll, why a motion stopped.
 //
-// Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
+// Throughout the sources, "physics (4)" means formula (4) of notebooks/02_physics.ipynb.
 #pragma once
 
 #include <optional>
@@ -25,8 +25,8 @@ struct Solution : Integration<Motion> {
 
 // Numerical errors of an integrated motion in its energy and its constraints.
 struct Losses {
-    // Largest change of the energy, over the largest kinetic + |potential| energy. Heights are
-    // measured from the ground where the motion starts, so the origin of x has no effect.
+    // Largest change of the energy, divided by the largest kinetic + |potential| energy. Heights
+    // are measured from the ground where the motion starts, so the origin of x has no effect.
     double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
     double projected = 0.0;    // largest constraint residual after a step, before its projection
@@ -39,8 +39,8 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
 // Simulates the multiplier model from coordinates and velocities that violate the constraints; such
-// a motion is never valid. The scene has the body and the ground; a consistent start is part of a
-// scene.
+// a motion is never valid. The scene provides the body and the ground; a consistent start is part
+// of a scene.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
@@ -48,7 +48,8 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
 // is followed beyond the last requested time.
 double valid_until(const Scene& scene, const Solution& solution);
 
-// Numerical errors of energy and constraints in a motion computed in steps; empty for all others.
+// Numerical errors of energy and constraints in a motion computed in steps; empty for other
+// motions.
 std::optional<Losses> losses(const Solution& solution);
 
 // Time of a full swing or turn of the rolling motion that starts from the scene; throws
@@ -58,10 +59,11 @@ double period(const Scene& scene);
 // A number as text with six digits.
 std::string brief(double value);
 
-// A sentence on why a start does not roll; empty for one that rolls.
+// A sentence that says why a body does not roll at its start; empty if it rolls.
 std::string why_not_rolling(const Scene& scene, const State& start);
 
-// A sentence on why a motion ended early, at t, and on the remedy; empty for a complete motion.
+// A sentence that says why a motion ended early, at t, and suggests a remedy; empty for a complete
+// motion.
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end);
 
 }  // namespace rolling_ellipse

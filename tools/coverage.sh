@@ -1,22 +1,22 @@
 #!/bin/sh
 # Coverage of the suite: lines and branches of C++ (g++ -Og --coverage, gcovr) and of Python
-# (coverage.py, with the processes and threads that tests start), in a build apart from the ordinary
-# installation:
+# (coverage.py, with the processes and threads that tests start), in a build separate from the
+# ordinary installation:
 #
 #   tools/coverage.sh                                   (the whole suite, in one process)
 #   tools/coverage.sh tests/contact tests/proof         (a part of it; any argument of pytest)
 #
 # PYTHON names the interpreter (default python3; it must have the extras test and coverage and the
-# build requirements). The results are in build/coverage: code that was not run is listed by file and
-# line in lines.txt and branches.txt (C++) and python.txt. Each run starts from zero. Edges that only
-# an exception takes are not counted as branches: nearly every call has one.
+# build requirements). The results are in build/coverage: code that was not run is listed by file
+# and line in lines.txt and branches.txt (C++) and python.txt. Each run starts from zero. Edges
+# taken only by exceptions are not counted as branches, since nearly every call has one.
 set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 folder=$PWD/build/coverage
 # An inlined function would be counted at each call; without inlining it is counted once.
 once=-Dalways_inline=noinline
-# The filter keeps the project's sources: counting the lines of Eigen takes ten times as long.
+# The filter selects the project's sources; counting lines in Eigen, too, takes ten times as long.
 here=-fprofile-filter-files=src/.*
 
 "$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Build the extension with sanitizers of g++, apart from the ordinary installation, and run a
-# command of Python under it:
+# Build the extension with sanitizers of g++, separately from the ordinary installation, and run a
+# Python command with it:
 #
 #   tools/sanitized_build.sh                                   (builds only)
 #   tools/sanitized_build.sh --suite                           (the whole suite of tests, and
@@ -13,8 +13,9 @@
 # undefined arithmetic ends the process with a report, which the fuzzer counts as a crash. With
 # --threads the thread sanitizer is used: it reports data races, and the exit code is 66.
 #
-# PYTHON names the interpreter (default python3; it must have the build requirements, and no editable
-# installation of the package); the builds lie in build/sanitized and build/sanitized-threads.
+# PYTHON names the interpreter (default python3; it must have the build requirements, and no
+# editable installation of the package); the builds are in build/sanitized and
+# build/sanitized-threads.
 set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
@@ -33,8 +34,8 @@ fi
     --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
     -Ccmake.build-type=None -Ccmake.define.CMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -O1 -g1" .
 
-# Python itself is not sanitized: the runtime must be loaded first, with libstdc++, whose exceptions
-# it intercepts.
+# Python itself is not sanitized, so the runtime must be loaded first, together with libstdc++,
+# whose exceptions it intercepts.
 preload="$(g++ -print-file-name=$runtime) $(g++ -print-file-name=libstdc++.so.6)"
 export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
 export PYTHONMALLOC=malloc # gives NumPy arrays and bytes their own bounds
@@ -59,8 +60,8 @@ sys.exit(None if core.__file__.startswith('$folder/site') else f'not sanitized: 
 
 if [ "$1" = --suite ]; then
     shift
-    # The suite leaves out tests with limited memory, since the runtimes reserve terabytes of
-    # addresses; the browser, whose processes would load the runtime; and the fuzzer, which runs as
+    # The suite omits tests with limited memory, since the runtimes reserve terabytes of addresses;
+    # the tests in a browser, whose processes would load the runtime; and the fuzzer, which runs as
     # above without its limit. The output of the runtimes is not captured.
     set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
         --deselect tests/border/test_border.py::test_failing_to_start_threads_changes_no_bit \

@@ -105,7 +105,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     try {
         for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker);
     } catch (const std::exception&) {
-        // The system cannot start another thread: the existing ones do its fraction of the work.
+        // The system cannot start another thread: the existing threads do all the work.
     }
     SignalWatch check_for_signals;
     guarded(0, [&] {

@@ -1,4 +1,4 @@
-// NumPy arrays in and out, and interruptible loops over them without the GIL.
+// Conversion to and from NumPy arrays, and interruptible loops over them that run without the GIL.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -42,7 +42,7 @@ class GilRelease {
 
 // Checks for Ctrl-C at most every 50 ms and throws Python's exception for it. Checking more often
 // would be slow: each check takes the GIL, and waits 5 ms for it if a Python thread is busy. Python
-// handles signals only in its main thread; in any other thread nothing is checked.
+// handles signals only in its main thread, so no other thread checks for them.
 class SignalWatch {
   public:
     SignalWatch();
@@ -64,7 +64,7 @@ using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);
 
 // Splits 0 .. n into chunks and runs body(begin, end) on each, as `run_each` does with its pieces.
-// The results of a chunk do not depend on the thread that takes it.
+// The results of a chunk do not depend on the thread that computes it.
 inline constexpr py::ssize_t chunk = 1024;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
@@ -121,7 +121,7 @@ class Arguments {
         return std::apply([i](const auto&... each) { return std::array{each[i]...}; }, each_);
     }
 
-    // Calls an action that reads element i of each argument; errors name the index.
+    // Calls an action that reads element i of each argument; error messages name the index.
     template <class Action>
     auto naming(py::ssize_t i, const Action& action) const {
         try {
@@ -181,7 +181,7 @@ py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
         Row{});
 }
 
-// `computed` for a function of named arguments, each with n elements or one.
+// Like `computed`, for a function of named arguments, each with n elements or one.
 template <std::size_t Count, class Function>
 py::tuple computed_from(py::ssize_t n, const std::array<const char*, Count>& names,
                         const std::array<Array, Count>& arrays, const Function& function) {
@@ -189,7 +189,7 @@ py::tuple computed_from(py::ssize_t n, const std::array<const char*, Count>& nam
     return computed(n, [&](py::ssize_t i) { return std::apply(function, of[i]); });
 }
 
-// The arrays of `computed` as a dict by name.
+// The arrays that `computed` returns, as a dict by name.
 template <std::size_t Count>
 py::dict named(const char* const (&names)[Count], const py::tuple& arrays) {
     py::dict found;

@@ -136,7 +136,7 @@ py::dict facts(const std::vector<Answer>& answers) {
     return py::dict("codes"_a = codes, "numbers"_a = numbers);
 }
 
-// The column names of each table. In sample tables each quantity is a row instead.
+// The names of the columns of each table; in the tables of samples, the names of the rows.
 py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
@@ -145,8 +145,8 @@ py::dict columns() {
         "contact"_a = names_of(state_fields, force_fields));
 }
 
-// The samples of all scenes, concatenated, by kind. Each quantity is a row, but coordinates have
-// one row per sample.
+// The samples of all scenes, concatenated, for each type of sample. Each quantity is a row, except
+// that coordinates have one row per sample.
 py::dict samples(std::vector<Answer>& answers) {
     const auto rolling = joined(answers, &Answer::rolling);
     const auto contact = joined(answers, &Answer::contact);
@@ -187,8 +187,8 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
     return tables;
 }
 
-// The state that a motion has at its end, and the time: after the last event if it had too many.
-// There is no state if the motion ended early for another reason than that it was to stop.
+// The state at the end of a motion, and its time. A motion with too many events ends just after the
+// last one. There is no state if the motion ended early for a reason other than a requested stop.
 std::pair<std::optional<State>, double> reached_by(const Solution& solution, double t_end) {
     const auto& [events, ending] = std::tie(solution.motion.events, solution.ending);
     if (ending == Ending::max_events) return {events.back().after.state, events.back().t};
@@ -200,9 +200,9 @@ std::pair<std::optional<State>, double> reached_by(const Solution& solution, dou
     return {last.state, t};
 }
 
-// The end of each motion: its state, NaN without one, the time, and the largest normal impulse of
-// its impacts; and codes, -1 for none: mode, number of events, kind of the first event, ending, and
-// number of impacts.
+// The end of each motion. `states` contains the state (NaN if there is none), its time and the
+// largest normal impulse of the impacts; `codes` contains the mode, the number of events, the kind
+// of the first event, the ending and the number of impacts (-1 for none).
 py::dict ends_table(const Array& scenes, const Settings& settings, const Array& times,
                     int workers) {
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);

@@ -16,8 +16,8 @@
 
 namespace rolling_ellipse::bindings {
 
-// Binds a class of the core. Its objects cannot be pickled or copied; the Python objects that hold
-// them recreate them instead. Under pickle protocols 0 and 1, pybind11 would end the process.
+// Binds a class of the core. Its objects cannot be pickled or copied; the Python objects that own
+// them recreate them instead. Under pickle protocols 0 and 1, pybind11 would abort the process.
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name) {
     py::class_<T> bound(m, name);
@@ -107,7 +107,7 @@ py::tuple event_columns();
 Array event_rows(const std::vector<Event>& events);
 Event event_of(const EventRow& row);
 
-// How many of the given ascending times lie within the solution.
+// The number of the given ascending times that lie within the solution.
 py::ssize_t reached(const Solution& solution, const double* times, py::ssize_t n);
 
 // Arrays of theta, omega and x of n samples.

@@ -44,7 +44,7 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
 
 using Maybe = std::optional<double>;
 
-// A certificate by field name, with the validity as a code, since creating Python enums is slow.
+// The fields of a certificate by name. The validity is a code, since creating Python enums is slow.
 py::dict certificate(const Scene& scene) {
     const Certificate c = certify(scene);
     py::dict fields;
@@ -118,9 +118,9 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
 }  // namespace
 
 void bind_certificate(py::module_& m) {
-    bind_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?");
+    bind_enum<Validity>(m, "Validity", "enum.Enum", "Whether rolling is valid throughout.");
     bind_enum<Outcome>(m, "Outcome", "enum.IntEnum",
-                       "The first thing that happens to a rolling body.");
+                       "The first event in the motion of a rolling body.");
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
     m.def(

@@ -55,7 +55,7 @@ const Kernel& kernel_called(const std::string& wanted) {
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
                      const std::string& level) {
     const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
-    // A single scene is computed without vector lanes, since they would cost more.
+    // A single scene is computed without vector lanes, which would cost more.
     const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
     const auto sample_all = [&](const Kernel& by, py::ssize_t begin, py::ssize_t end) {
@@ -76,8 +76,8 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             try {
                 sample_all(lanes, begin, end);
             } catch (const std::invalid_argument&) {
-                // Vector lanes validate the times last; sampling one by one names the first invalid
-                // scene.
+                // Vector lanes validate the times last; the scenes are sampled again one by one, so
+                // that the error names the first invalid scene.
                 for (py::ssize_t i = begin; i < end; ++i) {
                     of.naming(i, [&] { sample_all(kernels().front(), i, i + 1); });
                 }
@@ -135,7 +135,8 @@ py::tuple flow_scalar(double t, double a, double b, double theta, double omega, 
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
-// The short way of Python's `flow`: plain floats within range, by one worker.
+// The fast path of Python's `flow`, for plain floats within range and the default number of
+// workers. Returns null if the arguments need the general path.
 PyObject* flow_of_floats(PyObject* const* values, PyObject* const* defaults) {
     constexpr std::size_t gyration2 = 6, workers = 8;
     FlowArguments of;

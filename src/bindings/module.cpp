@@ -49,7 +49,7 @@ py::dict tableaus() {
 }  // namespace
 }  // namespace rolling_ellipse::bindings
 
-// The module runs without the GIL: the core shares only constants that are made on first use
+// The module runs without the GIL: the core shares only constants that are computed on first use
 // (tests/core/threads_test.cpp, under ThreadSanitizer), bound objects never change, and every array
 // is filled before it is returned.
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {

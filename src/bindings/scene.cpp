@@ -22,7 +22,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
         validate(scene.body());            // first, so that errors name gyration2
-        validate(scene, Origin::reached);  // with the widest limit, as gravity is arbitrary here
+        validate(scene, Origin::reached);  // with the widest limits: gravity is arbitrary here
         const Geometry at = geometry(scene.axes(), theta);
         const State before = state_before_impulse(scene, at);
         const State after = collision(scene, at, before, gap_rate(before, at), law).after;
@@ -37,8 +37,8 @@ bool may_be_absent(const SceneField& field) {
     return field.otherwise || std::holds_alternative<std::optional<double> Scene::*>(field.number);
 }
 
-// Makes a scene from values given by field name; None stands for an absent optional value. Returns
-// no scene if a required value is absent or any value is not a Python float.
+// Creates a scene from values by field name, with None for an absent optional value. Returns no
+// scene if a required value is absent or any value is not a Python float.
 struct SceneMaker {
     std::vector<py::str> names;  // interned, so that dictionaries find them by address
 
@@ -98,7 +98,8 @@ void take(py::handle given, Value& value) {
     }
 }
 
-// Whether two tuples hold the same objects; comparing them one by one in Python would cost more.
+// Whether two tuples contain the same objects; comparing the objects one by one in Python would be
+// slower.
 bool hold_the_same(const py::tuple& x, const py::tuple& y) {
     const auto is = [](const py::handle one, const py::handle other) { return one.is(other); };
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), is);

@@ -9,14 +9,15 @@ namespace {
 
 constexpr std::size_t most_arguments = 16;
 
-// The object that stands for the function. Once made, only its reference count changes.
+// The object that takes the place of the function. Only its reference count changes after its
+// creation.
 struct Shortened {
     PyObject head;
     vectorcallfunc call;
     PyObject* weak_references;
     ShortWay way;
     PyObject* function;
-    std::size_t count;  // of arguments
+    std::size_t count;  // number of arguments
     PyObject* names[most_arguments];
     PyObject* defaults[most_arguments];
 };
@@ -24,7 +25,7 @@ struct Shortened {
 Shortened& of(PyObject* self) { return *reinterpret_cast<Shortened*>(self); }
 
 // Names are compared by identity, since Python's compiler interns them; a call with a name that is
-// not interned goes to the function.
+// not interned is passed on to the function.
 PyObject* call(PyObject* self, PyObject* const* given, std::size_t flags, PyObject* named) {
     const auto& [head, own, weak, way, function, count, names, defaults] = of(self);
     const auto by_python = [&] { return PyObject_Vectorcall(function, given, flags, named); };
@@ -52,7 +53,7 @@ int set_attribute(PyObject* self, PyObject* name, PyObject* value) {
     return PyObject_SetAttr(asked(self), name, value);
 }
 
-// Python's `help` reads the docstring from the type, without looking at the attributes.
+// Python's `help` reads the docstring from the type, without looking up attributes.
 PyObject* doc(PyObject* self, void*) { return PyObject_GetAttrString(asked(self), "__doc__"); }
 
 PyObject* represented(PyObject* self) { return PyObject_Repr(asked(self)); }
@@ -86,8 +87,8 @@ py::object make_type() {
 
 }  // namespace
 
-// The object and all that it holds are never freed: it serves as a function of a module, which
-// lives as long as the process.
+// The object and everything that it references are never freed, since it serves as a function of a
+// module, which lives as long as the process.
 py::object shortened(const py::function& function, ShortWay way) {
     const py::object type = make_type();
     auto* const made = PyType_GenericAlloc(reinterpret_cast<PyTypeObject*>(type.ptr()), 0);

@@ -112,8 +112,8 @@ py::tuple contact_samples(const Solution& solution, const Array& t) {
     return arrays;
 }
 
-// Read-only arrays of the times and of the samples there: theta, omega, x for rolling; q, q_dot for
-// the multiplier model; the values of states and forces, and the modes, for contact.
+// Read-only arrays of the times and of the samples at these times: theta, omega, x for rolling; q,
+// q_dot for the multiplier model; the values of states and forces, and the modes, for contact.
 py::tuple samples(const Solution& solution, const double* times, py::ssize_t n) {
     Array t = vector(n);
     std::copy_n(times, n, t.mutable_data());

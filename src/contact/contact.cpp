@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr std::size_t usual_events = 16;  // for which space is made at once
+constexpr std::size_t usual_events = 16;  // room reserved at the first event
 
 // The kind of the event that leads to the mode `next`; for sliding, the given kind.
 EventKind kind_of(Mode next, EventKind sliding) {
@@ -20,8 +20,8 @@ EventKind kind_of(Mode next, EventKind sliding) {
     return next == Mode::flight ? EventKind::lift_off : sliding;
 }
 
-// The state just after an event other than a blow, and the impulse of the ground at an impact. All
-// are in SI units.
+// The state just after an event other than a blow, and the impulse of the ground at an impact.
+// Everything is in SI units.
 InitialState start_after(const Scene& scene, EventKind kind, const State& before,
                          const State& after) {
     InitialState start{after, 0.0, 0.0, before.omega};
@@ -32,11 +32,11 @@ InitialState start_after(const Scene& scene, EventKind kind, const State& before
     return start;
 }
 
-// Tells, piece by piece, whether a slide lasts for ever. Without friction the energy gives omega^2,
-// and with it all forces, as functions of the angle alone: half a turn or two turning points tell.
-// With friction swings repeat themselves as long as the slip keeps its side, and each full swing
-// adds the same slip: it is enough that all slip in one of them exceeds all slip up to the end of
-// the first.
+// Determines, piece by piece, whether a slide lasts for ever. Without friction, the energy gives
+// omega^2, and hence all forces, as functions of the angle alone, so that half a turn or two
+// turning points are enough to decide. With friction, swings repeat as long as the slip keeps its
+// sign, and each full swing adds the same amount of slip. The slide therefore lasts for ever if the
+// slip throughout one full swing exceeds the largest slip up to the end of the first.
 class EndlessSlide {
   public:
     EndlessSlide(const Slide& slide, double friction)
@@ -76,8 +76,8 @@ class EndlessSlide {
     double least_ = infinity;
 };
 
-// The motion so far, and its state at a time. Times, states and segments are in natural units;
-// settings and events are not.
+// The motion so far and its current state. Times, states and segments are in natural units;
+// settings and events are in SI units.
 class ContactRun {
   public:
     ContactRun(const Scene& scene, const InitialState& start, const Settings& settings,
@@ -105,8 +105,8 @@ class ContactRun {
     }
 
   private:
-    // Follows the motion, left to itself, up to a time [s]: that of a blow, or of the end. A motion
-    // that stops is followed through the events of that instant.
+    // Follows the motion up to a time [s], that of the next blow or of the end. A motion that has
+    // stopped is followed only through the remaining events of that instant.
     void follow_until(double t) {
         until_ = stops_ ? now() : std::min(t / units_.time, std::numeric_limits<double>::max());
         is_there_ = false;
@@ -117,7 +117,7 @@ class ContactRun {
         }
     }
 
-    // Strikes the body as a scene in its state does.
+    // Applies a blow like the impulse of a scene that starts in the current state.
     void strike(const Blow& blow) {
         ContactSample before;
         Sampler(motion_, 1)(&blow.t, 1, &before);
@@ -138,14 +138,15 @@ class ContactRun {
         until_ = now();
     }
 
-    // Stops a motion that lasts for ever, or ends it if it is to stop otherwise.
+    // Stops a motion that is known to last for ever. Its ending is `never`, unless the settings ask
+    // for a stop once the motion is decided, and it is.
     void last_for_ever(bool is_decided) {
         if (!settings_.stop || stops_ || struck_ < settings_.blows.size()) return;
         if (!settings_.stop.decided || !is_decided) ending_ = Ending::never;
         stop();
     }
 
-    // Begins a motion, and chooses its first law. A body that touches the ground and moves into it
+    // Starts a motion, and chooses its first law. A body that touches the ground and moves into it
     // collides at once.
     void begin(const InitialState& start) {
         begun_ = now();
@@ -174,8 +175,8 @@ class ContactRun {
 
     Axes axes() const { return scene_.axes(); }
 
-    // Returns the angle from the nearest flat position or tip, where a thin body is most sensitive
-    // to it, and exchanges the axes of the scene accordingly.
+    // Returns the angle from the nearest flat position or tip, near which a thin body is most
+    // sensitive to the angle, and exchanges the axes of the scene accordingly.
     DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
@@ -190,8 +191,8 @@ class ContactRun {
         return angle.rest;
     }
 
-    // Continues from a state, its angle now measured from the nearest flat position or tip; returns
-    // that angle.
+    // Continues from a state, with its angle measured from the nearest flat position or tip;
+    // returns that angle.
     DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Scene before = scene_;
         const DoubleDouble angle = count_from_quarter(theta);
@@ -358,7 +359,7 @@ class ContactRun {
         }
         state_ = without_slip(axes(), before.theta, before.omega, before.x, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
-        // A body that keeps sliding keeps its x_dot: h omega would add a rounding error.
+        // If the body keeps sliding, its x_dot does not change; h omega would add a rounding error.
         if (next.mode == Mode::sliding && is_rolling_speed(before.x_dot, state_.x_dot)) {
             state_.x_dot = before.x_dot;
         }
@@ -391,8 +392,8 @@ class ContactRun {
         hit(before, at, small_rate ? *small_rate : gap_rate(before, at));
     }
 
-    // Adds the changes of angle, x and x_dot during a flight to a state; keeps the low parts of the
-    // sums.
+    // Adds the changes of angle, x and x_dot during a flight to a state; stores the low parts of
+    // the sums.
     void add_flight(const Flight& flight, double lasts, State& state) {
         const auto& [into, along] = flight.gravity;
         const double moved = lasts * (flight.start.x_dot + 0.5 * along * lasts);
@@ -483,7 +484,7 @@ class ContactRun {
     double now() const { return static_cast<double>(t_); }
     double time_left() const { return static_cast<double>(-t_ + until_); }
     bool is_over_after(double lasts) const {
-        return !(static_cast<double>(t_ + lasts) <= until_);  // NaN if it lasts forever
+        return !(static_cast<double>(t_ + lasts) <= until_);  // the sum with infinity is NaN
     }
 
     // Advances the time to the end of the segment just added; false if `until_` comes first.
@@ -513,18 +514,18 @@ class ContactRun {
     const Settings& settings_;
     const double t_end_;      // [s]
     double until_ = 0.0;      // time of the next blow, or of the end
-    bool is_there_ = true;    // whether that time is reached
+    bool is_there_ = true;    // whether `until_` is reached
     std::size_t struck_ = 0;  // number of blows so far
     long left_;               // number of events left until the motion stops
-    bool stops_ = false;      // whether it stops now
+    bool stops_ = false;      // whether the motion stops now
     double begun_ = 0.0;      // time of the start, or of the last blow
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_;
     const double rest_speed_;
     Motion motion_;
-    std::optional<InitialState> start_;     // of the motion that begins next
-    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
+    std::optional<InitialState> start_;     // start of the motion that follows next
+    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another slide follows
     DoubleDouble turned_;                   // quarter turns subtracted from theta
     LowParts low_;                          // low parts of state_, kept from impact to impact
     bool axes_exchanged_ = false;

@@ -11,7 +11,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// Bounces are summed only up to this ratio of successive rebounds, which limits them to 3e5.
+// Bounces are summed only up to this ratio of successive rebounds, which limits their number to
+// 3e5.
 constexpr double largest_ratio = 0.9999;
 
 // sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, by power series in 4 x^2, without
@@ -55,8 +56,8 @@ class Gap {
         return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
-    // The gap as its initial value plus its change, so that it is accurate even for hops far lower
-    // than the body.
+    // The gap, computed as its initial value plus its change so that it is accurate even for hops
+    // far lower than the body.
     double value(double t) const {
         const State& s = flight_.start;
         const double fallen = 0.5 * flight_.gravity.into * t;
@@ -74,10 +75,10 @@ class Gap {
     }
 
     // The time of a contact, given the neighbouring doubles between which the gap closes. The
-    // height of the centre is then set to h; at the later time this would always raise it and so
-    // add 1e-16 of its energy. Yet the later time is taken if the body turns by more than 1e-8
-    // between the two, since the gap then bends by a rounding error or more, or if the earlier time
-    // is the start of the flight.
+    // height of the centre is then set to h. At the later time, this would always raise the body
+    // and thus add 1e-16 of its energy, so the time with the smaller gap is chosen. The later time
+    // is used if the body turns by more than 1e-8 between the two, since the gap then bends by a
+    // rounding error or more, or if the earlier time is the start of the flight.
     double closes(const Bracket& between) const {
         constexpr double small_turn = 1e-8;
         const auto [low, high] = between;
@@ -85,7 +86,7 @@ class Gap {
         return std::abs(value(low)) < std::abs(value(high)) ? low : high;
     }
 
-    // The first root after t of the parabola with the gap's value and two derivatives there.
+    // The first root after t of the parabola with the gap's value and first two derivatives at t.
     std::optional<RootGuess> root_about(double t) const {
         const double bend = flight_.gravity.into + at(t).ddh * square(flight_.start.omega);
         const double gap = value(t);
@@ -102,8 +103,8 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // The time at which the centre falls to a height, at most the initial height if it starts
-    // downwards.
+    // The time at which the centre falls to a height, which is at most the initial height if the
+    // centre starts downwards.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
@@ -116,9 +117,10 @@ class Gap {
         return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
-    // Rise of h above its tangent, h - (h0 + h0' phi), after a small turn phi, and its slope, h' -
-    // h0', from the difference of h^2 and the square of the tangent: all terms are of order phi^2,
-    // and the first, with the initial h'', is accurate for every body.
+    // The rise of h above its tangent, h - (h0 + h0' phi), after a small turn phi, and the slope of
+    // this rise, h' - h0'. Both follow from the difference between h^2 and the square of the
+    // tangent. All terms are of order phi^2, and the first term, with the initial h'', is accurate
+    // for every body.
     struct Rise {
         double height;
         double slope;
@@ -148,7 +150,7 @@ class Gap {
 // positive where h exceeds the only positive root of
 //     h^4 - (g cos(alpha)/omega^2) h^3 - a^2 b^2,
 // that is, around the tip, and negative elsewhere, physics (55). This divides time into intervals
-// on which the gap is convex or concave, so that the first root in each is certain.
+// on which the gap is convex or concave, so that the first root in each is found with certainty.
 class Curvature {
   public:
     explicit Curvature(const Flight& flight) {
@@ -249,8 +251,8 @@ double first_touch(const Flight& flight, const Gap& gap) {
                 const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
                 if (gap.value(lowest) <= 0)
                     return gap.closes(bisect_root(now.begin, lowest, value));
-                // A tip that passes below a centre this low touches the ground, even if rounding
-                // leaves a positive gap for a fast-spinning body.
+                // A tip that passes below the centre at this height touches the ground, even if
+                // rounding leaves a positive gap for a fast-spinning body.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
@@ -259,7 +261,8 @@ double first_touch(const Flight& flight, const Gap& gap) {
             return gap.closes(bisect_root(from, end, value, gap.root_about(from)));
         }
         const Curvature::Interval next = curvature.after(now);
-        // The body spins so fast that an interval, or half a convex one, lasts less than an ulp.
+        // Whether the body spins so fast that an interval, or half a convex one, lasts less than an
+        // ulp.
         const bool too_fast =
             !(now.end < next.end) || (next.convex && !(next.begin < curvature.tip_time(next)));
         if (too_fast || !(end < sure)) return end;

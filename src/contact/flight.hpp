@@ -41,7 +41,7 @@ double speed_of_fall(const Scene& scene);
 // the speed in the settings is too large.
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings);
 
-// A rebound: its speed, the ratio of this speed to the speed of approach, and c after it.
+// A rebound: its speed, the ratio of this speed to the speed of approach, and c after the rebound.
 struct Bounce {
     double rebound;
     double ratio;

@@ -8,7 +8,7 @@ namespace rolling_ellipse {
 
 std::optional<double> cancelled_moment(const SlidingBody& body, const Geometry& at,
                                        const DoubleDouble& angle) {
-    constexpr double little = 0x1p-4;  // terms whose sum is a smaller fraction have cancelled
+    constexpr double little = 0x1p-4;  // below this fraction of its terms, a sum has lost digits
     const auto [into, along] = body.gravity;
     const double falling = at.h * along - (at.dh + body.ahead) * into;
     const double terms = std::abs(at.h * along) + (std::abs(at.dh) + std::abs(body.ahead)) * into;
@@ -30,11 +30,11 @@ ROLLING_ELLIPSE_WIDE SlideSeries rolling_series(const SlidingBody& body, const S
     auto& [motion, slip, rolled, pressure, response, u, work] = found;
     auto& [angle, w, x_dot, path, time] = motion;
     slip = response = work = time = LongSeries{};
-    Factors curve, by_curve;  // (p, q, h, (a b - u)(a b + u)) by (omega, omega, h, omega^2)
-    Factors arm, by_arm;      // (u, p, h, h) by (h, C + u^2 omega^2, C, p)
-    Factors turn, by_turn;    // (u, W, u, h) by (u h, u omega', omega', omega)
-    Factors force, by_force;  // (p, p, u) by (u omega', omega^2, h F/m)
-    Factors squared;          // (omega, u, p) by itself
+    Factors curve, by_curve;  // (p, q, h, (a b - u)(a b + u)) times (omega, omega, h, omega^2)
+    Factors arm, by_arm;      // (u, p, h, h) times (h, C + u^2 omega^2, C, p)
+    Factors turn, by_turn;    // (u, W, u, h) times (u h, u omega', omega', omega)
+    Factors force, by_force;  // (p, p, u) times (u omega', omega^2, h F/m)
+    Factors squared;          // (omega, u, p) times itself
     const double u0 = square(a * centre.sin) + square(b * centre.cos);
     const double h0 = std::sqrt(u0);
     const double bend0 = (a - b) * (b * square(centre.cos) - a * square(centre.sin)) * (a * b + u0);
@@ -76,7 +76,8 @@ ROLLING_ELLIPSE_WIDE SlideSeries rolling_series(const SlidingBody& body, const S
             torque = u2 * *centre.torque - (p * ab2 + d * h * bend) * omega2;
         }
         if (k == 0) over_inertia = 1 / inertia;
-        // Coefficient k of a quotient, from its inner terms and the last coefficients.
+        // Coefficient k of a quotient, from the inner terms of quotient times denominator and
+        // coefficient k of the numerator and of the denominator.
         const auto quotient = [&](int lane, double numerator, double denominator, double over) {
             return (k == 0 ? numerator : numerator - turns[lane] - denominator * by_turn[0][lane]) *
                    over;

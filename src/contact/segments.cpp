@@ -16,13 +16,15 @@ using OwnSample = std::conditional_t<
                            std::is_same_v<Law, SteppedRolling>,
                        FlowSample, ContactSample>>;
 
-// Samples a law at times from its start. Laws whose header declares `sample` are not listed here.
+// These functions sample a law at times since its start. The other laws declare `sample` in their
+// own headers.
 
 void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
     FlowSampler{flow, n}(times, n, samples);
 }
 
-// Prevents rounding from sinking a flying body into the ground; a grazing contact stays on it.
+// Rounding must not sink a flying body into the ground; a body in grazing contact stays on the
+// ground.
 void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
     const double tall = most_height(flight.axes);
     for (std::size_t i = 0; i < n; ++i) {
@@ -40,9 +42,9 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
 }
 
 // While bounces settle, velocities change linearly in time, and the rate of the gap falls linearly
-// from the first rebound to 0: in a sample the body moves away from the ground, as at the start.
-// Each coordinate is the integral of its rate, plus a term linear in time that makes up for the
-// rest of its total change.
+// from the first rebound to 0. In all samples, the body therefore moves away from the ground, as it
+// does at the start. Each coordinate is the integral of its rate, plus a term linear in time that
+// supplies the rest of its total change.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
     const auto& [axes, lasts, start, end, angle] = settling;
     const double rebound = gap_rate(start, geometry(axes, start.theta));
@@ -71,7 +73,8 @@ void sample(const Standing& standing, const double*, std::size_t n, ContactSampl
     std::fill_n(samples, n, standing);
 }
 
-// Converts samples of a law to another type; in the multiplier model the force is an unknown, too.
+// These functions convert samples of a law to another type. In the multiplier model, the force is
+// one of the unknowns.
 
 template <class Law>
 void convert(const Scene& scene, const Law&, const std::vector<FlowSample>& from,
@@ -124,8 +127,8 @@ double whole_angle(const DoubleDouble& turned, double theta) {
     return turned.high == 0 ? theta : static_cast<double>(turned + theta);
 }
 
-// Converts a sample to SI units and to its total angle; the scene has the axes of the segment's
-// law.
+// These functions convert a sample to SI units and to its total angle; the scene has the axes of
+// the segment's law.
 
 void complete(FlowSample& sample, const Motion& motion, const Scene&, const DoubleDouble& turned) {
     const Units& units = motion.units;
@@ -191,8 +194,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
-        // Time j in units of the motion. All times from i on in the same segment are sampled at
-        // once.
+        // Time j in units of the motion. All times from i on that lie in the same segment are
+        // sampled together.
         const auto time = [&, unit = units.time](std::size_t j) {
             return std::min(times[j] / unit, std::numeric_limits<double>::max());
         };

@@ -31,22 +31,21 @@ struct Event {
     InitialState after;  // also the impulse of the ground at an impact or a blow
 };
 
-// A body whose state stays as it is: at rest, or at an instant from which no motion continues and
+// A body whose state does not change: at rest, or at an instant from which no motion continues and
 // at which no contact force obeys the laws.
 using Standing = ContactSample;
 
-// A law of several kB, kept behind a pointer: stored in place, it would make every segment that
-// large.
+// A law of several kB, stored behind a pointer so that segments stay small.
 template <class Law>
 using Apart = std::shared_ptr<const Law>;
 
-// A stretch of the motion and the law it follows, from a time up to the next segment.
+// A stretch of the motion, from its start up to the next segment, and the law that it follows.
 struct Segment {
     double begin;
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
                  Flight, Settling, Standing>
         law;
-    DoubleDouble turned{};        // angle to add to those of the law
+    DoubleDouble turned{};        // angle to add to the angles of the law
     bool axes_exchanged = false;  // the law has a and b exchanged (odd quarter turns)
 };
 
@@ -55,7 +54,7 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
-    std::vector<double> turns;  // times [s] of turns of rolling resistance
+    std::vector<double> turns;  // times [s] at which rolling resistance changes its couple
     bool rests = false;         // true if the only law is one of rolling and the body is at rest
 };
 
@@ -86,8 +85,8 @@ Motion single(const Scene& scene, decltype(Segment::law) law);
 
 // Samples a motion. The times may come in several calls; if the `expected` total number justifies a
 // table, it is built only once. A sample is a FlowSample (theta, omega, x), a ContactSample (state
-// and force) or a CoordinateState, in SI units; every segment provides all three. A sample at an
-// event is the one just after it. A motion without segments has no samples.
+// and force) or a CoordinateState, in SI units; every segment provides all three. A sample at the
+// time of an event is the state just after the event. A motion without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);

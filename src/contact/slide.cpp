@@ -51,8 +51,8 @@ LongSeries powers_of(double reach) {
 }
 
 // The first point, as a fraction of the reach, at which a series that must stay positive is
-// provably negative; coefficient(k) returns a value with the magnitude of the terms it was made
-// from.
+// provably negative; coefficient(k) returns a value and the magnitude of the terms from which it
+// was computed.
 template <class Coefficient>
 std::optional<double> first_end(const LongSeries& powers, const Coefficient& coefficient) {
     Tracked least = coefficient(0);  // a lower bound of the series
@@ -144,14 +144,15 @@ class SlideIntegration {
         SlideSeries series = slide_.rolls_by ? rolling_series(body, centre, rolling_forces_)
                                              : slide_series(body, centre, clock());
         auto& [angle, omega, x_dot, path, time] = series.motion;
-        // Largest reach of a piece in its unit of time: 1 + 15 times the time slid so far. It
-        // limits circles, whose series never lose accuracy. h omega and pressure bound the reach,
-        // too: for a nearly round body their relative changes exceed those of angle and speed.
+        // Largest reach of a piece in its unit of time: 1 + 15 times the time slid so far. This
+        // limit matters for circles, whose series never lose accuracy. The series of h omega and of
+        // the pressure bound the reach, too: for a nearly round body, their relative changes exceed
+        // those of angle and speed.
         const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
-        SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large
+        SlidePiece& piece = slide_.pieces.emplace_back();  // constructed in place: a piece is large
         piece.centre = from;
         piece.clock = clock();
         piece.unit = unit;
@@ -180,13 +181,14 @@ class SlideIntegration {
     }
 
   private:
-    // Computes omega from the energy where the body slows down on its way to the tip. The series
-    // carry the rounding errors of the earlier, fast motion. Those of the energy, measured from the
-    // tip, are smaller unless friction has done much work, which adds its own. The energy does not
-    // include the work of rolling resistance, physics (66).
+    // Computes omega from the energy where the body slows down on its way to the tip. There the
+    // series carry the rounding errors of the earlier, fast motion. The rounding errors of the
+    // energy, which is measured from the tip, are smaller unless friction has done much work, which
+    // adds rounding errors of its own. The energy does not include the work of rolling resistance,
+    // physics (66).
     void keep_energy() {
         if (slide_.body.ahead != 0) return;
-        constexpr double small = 0.25;      // terms of the energy over the largest kinetic energy
+        constexpr double small = 0.25;      // energy terms relative to the largest kinetic energy
         constexpr double rounding = 1e-12;  // a larger relative change of omega is not rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
@@ -201,8 +203,8 @@ class SlideIntegration {
         last_.slip = last_.slip + -at_.h * change;
     }
 
-    // Computes the slip from x_dot and h omega where both are smaller than the largest slip so far:
-    // as a sum of changes, the slip has the rounding errors of its largest value.
+    // Computes the slip from x_dot and h omega where both are smaller than the largest slip so far,
+    // since the slip, as a sum of changes, has the rounding errors of its largest value.
     void keep_slip() {
         const double rolled = at_.h * double(last_.omega);
         const double size = std::abs(double(last_.x_dot)) + std::abs(rolled);
@@ -214,8 +216,8 @@ class SlideIntegration {
 
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
-    // A rate: 1 + the rate of turning + the rate at which the force changes B, if large. In units
-    // of this rate no power overflows.
+    // The rate that determines the unit of time: 1 + the rate of turning + the rate at which the
+    // force changes B, if it is large. In units of this rate, no power overflows.
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -241,7 +243,7 @@ class SlideIntegration {
             powers = powers_of(reach_);
         };
         if (body.ahead != 0) {
-            // A rotation that starts to either side has a speed of 0.
+            // A rotation that is only about to start has a speed of 0.
             const bool starts = series.motion.omega[0] == 0;
             search(End::rotation, [&](int k) -> Tracked {
                 const double omega = series.motion.omega[k];
@@ -268,7 +270,7 @@ class SlideIntegration {
             });
         };
         if (body.side != 0) {
-            // A slip that starts after rolling at the limit has a rate of 0 to within rounding.
+            // A slip that follows rolling at the limit starts with a rate of 0 to within rounding.
             const bool starts = series.slip[0] == 0;
             search(End::slip, [&](int k) -> Tracked {
                 const double slip = series.slip[k];
@@ -307,8 +309,9 @@ class SlideIntegration {
         return tracked(mu) * normal[k] - tracked(side) * friction[k];
     }
 
-    // Moves the end of a piece to where the forces of the state there break the law: near a tip of
-    // a thin body, and where the margin hardly falls, the series have lost digits.
+    // Moves the end of a piece to the point at which the forces, computed from the state, break the
+    // law. Near a tip of a thin body, and where the margin hardly falls, the series have lost
+    // digits.
     void refine_law_end(SlidePiece& piece) const {
         constexpr double rounding = 1e-6;  // a larger share of the reach is not rounding
         constexpr int corrections = 2;
@@ -393,14 +396,15 @@ class SlideIntegration {
     double reach_ = 0.0;
     std::optional<End> end_;
     RollingForces3 rolling_forces_;
-    double law_side_ = 1.0;  // side of the friction whose law ends the rolling
+    double law_side_ = 1.0;  // side of the friction at whose limit rolling ends
     // True once c has been 0 to within rounding and not negative, as when a slide starts near B = 0
     // under infinite friction. c then has the rounding errors of gravity and h'' omega^2, too.
     bool grazes_ = false;
 };
 
-// The reading of the piece's clock at a time from the centre of the piece. It is at most the reach,
-// since the slip has its sign only up to there and the time of an event may be rounded up.
+// The reading of the piece's clock at a time after the centre of the piece. The reading is at most
+// the reach, since the slip keeps its sign only up to there and the time of an event may be rounded
+// up.
 double clock_at(const SlidePiece& piece, double time) {
     time /= piece.unit;
     if (piece.clock == SlideClock::time) return std::min(time, piece.reach);
@@ -418,7 +422,7 @@ Slide slide_from(const Scene& scene, const State& start, double side,
     const QuarterView angle = quarter_view({start.theta, 0.0});
     Scene seen = scene;
     if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
-    const std::size_t usual_pieces = rolls_by ? 24 : 16;  // half a swing takes some twenty
+    const std::size_t usual_pieces = rolls_by ? 24 : 16;  // about twenty in half a swing
     const Geometry at = geometry(seen.axes(), angle.rest);
     SlidingBody body = sliding_body(seen, at, start.omega, side);
     if (rolls_by) {

@@ -1,7 +1,7 @@
-// Sliding to one side, and rolling with resistance, solved by power series: a few per arc, each
-// accurate to double precision within its reach, and used for samples, too. The slide ends at a
-// first root that is proved by the signs of Bernstein coefficients rather than searched for by
-// sampling.
+// Sliding to one side, and rolling with resistance, solved by power series. An arc takes a few
+// series, each accurate to double precision within its reach; samples use the same series. The
+// slide ends at the first root of a series, which is proved by the signs of Bernstein coefficients
+// rather than searched for by sampling.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 namespace rolling_ellipse {
 
 struct SlidePoint {
-    // Angle of the body from the quarter turn nearest to the start. There a thin body is most
-    // sensitive to the angle, and the total angle cannot be stored precisely enough.
+    // Angle of the body from the quarter turn nearest to the start. A thin body is most sensitive
+    // to the angle near quarter turns, and the total angle cannot be stored precisely enough.
     DoubleDouble angle;
     DoubleDouble omega;
     DoubleDouble slip;
@@ -26,11 +26,13 @@ struct SlidePoint {
     DoubleDouble x_dot;
     DoubleDouble path;  // path from the start
     DoubleDouble time;  // time from the start
-    // Energy per mass except that of x_dot, 0 at rest on the tip; only friction changes it.
+    // Energy per mass without that of x_dot. It is 0 at rest on the tip, and only friction changes
+    // it.
     DoubleDouble energy;
 };
 
-// The motion from a point onwards: its changes as power series in a clock that starts there at 0.
+// The motion from a point onwards. Its changes are power series in a clock that reads 0 at this
+// point.
 struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
@@ -46,12 +48,12 @@ struct Slide {
     double x_base;
     SlidePoint last;  // end of the last piece
     std::vector<SlidePiece> pieces;
-    std::optional<double> rolls_by;  // the friction by which the body rolls instead
+    std::optional<double> rolls_by;  // the friction coefficient of a body that rolls instead
 };
 
-// A slide at its start, slipping to the given side (0 without friction). If it follows another
-// slide, it starts with the precision that a rounded state would lose. With `rolls_by`, the body
-// rolls with resistance as long as this friction holds it.
+// A slide at its start, with slip to the given side (0 without friction). If it follows another
+// slide, it starts from the unrounded end of that slide. With `rolls_by`, the body rolls with
+// resistance as long as this friction holds it.
 Slide slide_from(const Scene& scene, const State& start, double side,
                  const std::optional<SlidePoint>& end_of_other = {},
                  std::optional<double> rolls_by = {});
@@ -66,7 +68,7 @@ enum class SlideStop {
     slip_vanishes,
     pressure_vanishes,
     rotation_vanishes,  // only with rolling resistance, whose couple then changes
-    law_fails,          // rolling needs more friction than there is, or a pull
+    law_fails,          // rolling needs more friction than available, or a pull
     jams,
     out_of_bounds,
     time_is_over,
@@ -82,11 +84,12 @@ State end_of(const Slide& slide);
 // The angle of the body at the last point of the slide, to full accuracy.
 DoubleDouble angle_at_end(const Slide& slide);
 
-// The angular velocity at the last point, where the slip has vanished; from x_dot = h omega if
-// x_dot was smaller than h omega during the slide and so has smaller rounding errors.
+// The angular velocity at the last point, where the slip has vanished. It is computed from x_dot =
+// h omega if x_dot was smaller than h omega during the slide and therefore has smaller rounding
+// errors.
 DoubleDouble omega_without_slip(const Slide& slide);
 
-// States and forces at n times from the start, ascending.
+// States and forces at n ascending times since the start.
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples);
 
 }  // namespace rolling_ellipse

@@ -64,7 +64,7 @@ PreciseHeight2 precise_height2(const Axes& axes, const DoubleDouble& angle) {
 
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
                                          const DoubleDouble& angle) {
-    constexpr double little = 0x1p-4;  // terms whose sum is a smaller fraction have cancelled
+    constexpr double little = 0x1p-4;  // below this fraction of its terms, a sum has lost digits
     const double nu = body.normal_share;
     const double phi = body.friction_share;
     const double terms = body.gyration2 + square(at.dh) + std::abs(phi * at.h * at.dh) +
@@ -92,8 +92,9 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 
-// In the last moment the impulse of N changes omega and slip in a fixed ratio, physics (54). At
-// B = 0 a unit of impulse adds 1/h' to omega, whose terms all but cancel for a light body.
+// In the last moment the impulse of N changes omega and slip in a fixed ratio, physics (54). At B =
+// 0 a unit of impulse adds 1/h' to omega; a general formula has terms that all but cancel for a
+// body of small inertia.
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
@@ -112,8 +113,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
     const bool turns = !stops && impulse_to_turn < impulse_to_jam;
     const double omega_after = stops ? without_slip : turns ? 0.0 : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
-    // The moment lasts until B = 0 or until N = c/B has delivered the impulse: in a slide that
-    // starts with such a small B, the body need not turn towards B = 0, or turn at all.
+    // The moment lasts until B = 0 or until N = c/B has delivered the impulse. In a slide that
+    // starts with such a small B, the body may turn away from B = 0, or not turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_end) * b / c;
@@ -142,11 +143,11 @@ ROLLING_ELLIPSE_WIDE SlideSeries slide_series(const SlidingBody& body, const Sli
     SlideSeries slide;
     auto& [motion, slip, rolled, pressure, response, u, work] = slide;
     auto& [angle, w, x_dot, path, time] = motion;
-    Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) by (angle', angle', h, omega^2)
-    Factors lever, by_lever;   // (p, u, u, h) by (L, h, V, V)
-    Factors force, by_force;   // (L, h, u V, h V) by (C, omega, omega', impulse')
-    Factors clocks, by_clock;  // (dt/dtau, C, dt/dtau, impulse') by (omega, h, x_dot, h omega)
-    Factors squared;           // (omega, u) by itself
+    Factors curve, by_curve;   // (p, q, h, (a b - u)(a b + u)) times (angle', angle', h, omega^2)
+    Factors lever, by_lever;   // (p, u, u, h) times (L, h, V, V)
+    Factors force, by_force;   // (L, h, u V, h V) times (C, omega, omega', impulse')
+    Factors clocks, by_clock;  // (dt/dtau, C, dt/dtau, impulse') times (omega, h, x_dot, h omega)
+    Factors squared;           // (omega, u) times itself
     // (a b - u)(a b + u) as a product, without cancellation for thin bodies or circles.
     const double u0 = square(a * sin) + square(b * cos);
     const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
@@ -251,11 +252,11 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return is_held(scene, at) && std::abs(std::tan(scene.slope)) <= scene.friction;
 }
 
-// The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
-// it already slips can a slide with N = c/B > 0, c < 0, be a second motion besides flight: without
-// slip, N and F of rolling rule out a slip that starts to that side. Such a state may be a start,
-// but no motion leads to it: a slide ends earlier, where c or B vanishes, and an impact with B < 0
-// lasts until the slip stops.
+// The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). A slide
+// with c < 0 and N = c/B > 0 is a second possible motion, besides flight, only if the body already
+// slips: without slip, N and F of rolling rule out a slip that starts to that side. A motion may
+// start in such a state, but no motion leads to it: a slide ends earlier, where c or B vanishes,
+// and an impact with B < 0 lasts until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, at, omega, side), at, omega);
@@ -295,7 +296,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
 
 // Whether a contact that rolls at the limit of its law (|F| = mu N, or N = 0 with infinite
 // friction), to within rounding of the forces and an uncertainty `blur` of theta, breaks the law at
-// the next moment that rounding lets us distinguish.
+// the next moment that can be distinguished from the present one despite rounding.
 bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
                  const ContactForce& force, double blur) {
     constexpr double least_turn = 0x1p-20;  // turn from now to the next moment [rad]
@@ -311,14 +312,14 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
         law_rounding * (law_size(force, scene.friction) + law_size(terms, scene.friction));
     for (double turn = least_turn; turn <= most_turn; turn *= 16) {
         const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
-        if (turns_back && state.omega != 0 && lever != 0) return false;  // the turn decides
+        if (turns_back && state.omega != 0 && lever != 0) return false;  // turning back decides
         const double heading = side_of(turns_back ? pull : state.omega);
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
         const double mean_pull = 0.5 * (pull + rolling.acceleration(later, 0.0, lever));
         const double later_omega2 = (turns_back ? 0.0 : omega2) + 2 * mean_pull * heading * turn;
-        if (!(later_omega2 > 0)) return false;  // it rocks less far; the law hardly changes
+        if (!(later_omega2 > 0)) return false;  // it turns back earlier; the law hardly changes
         const ContactForce next = rolling.force(scene.mass, later, std::sqrt(later_omega2), lever);
-        const double side = side_of(next.friction);  // at the limit, also that of F unless F = 0
+        const double side = side_of(next.friction);  // at the limit, also sign(F) unless F = 0
         const double now = law_margin(force, scene.friction, side);
         const double change = law_margin(next, scene.friction, side) - now;
         if (std::abs(now) > rounding + std::abs(change) / turn * blur) return false;
@@ -327,7 +328,7 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     return false;
 }
 
-// The continuation of a state. The geometry and the slip may be those an instant later.
+// The continuation of a state. `at` and `slip` may be the geometry and the slip an instant later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
@@ -381,8 +382,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta) {
     const Geometry before = geometry(scene.axes(), state.theta);
     const Geometry after = geometry(new_axes, theta);
-    // Keeps the offset of a value from its value in rolling, if it is at most 16 times the change
-    // due to rounding.
+    // Preserves the offset of a value from its value in rolling if the offset is at most 16 times
+    // the change due to rounding.
     const auto kept = [](double value, double was, double is) {
         return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
     };

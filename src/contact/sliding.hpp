@@ -17,7 +17,8 @@ struct SlidingBody {
     double gyration2;
     GroundGravity gravity;
     double side;
-    // Shares of the contact force along normal and ground: 1, -mu s; for infinite friction 0, -s.
+    // Shares of the contact force along the normal and along the ground: 1 and -mu s; for infinite
+    // friction, 0 and -s.
     double normal_share;
     double friction_share;
     // The lever of the normal force ahead of the contact, physics (63), and whether its couple
@@ -25,11 +26,11 @@ struct SlidingBody {
     double ahead;
     bool is_held;
 
-    // False for infinite friction, as the force stays moderate near the tip although B is small
-    // there; and for a body that is held from turning, whose B is constant.
+    // False for infinite friction, since the force then stays moderate near the tip although B is
+    // small there, and for a body that is kept from turning, whose B is constant.
     bool may_jam() const { return normal_share != 0 && !is_held; }
 
-    // The lever arm of the contact force about the centre; the force turns the body backwards.
+    // The lever arm of the contact force about the centre; a positive arm turns the body backwards.
     double lever(const Geometry& at) const {
         if (is_held) return 0.0;
         return (at.h * friction_share + at.dh * normal_share) + ahead * normal_share;
@@ -53,8 +54,8 @@ struct PreciseHeight2 {
 };
 PreciseHeight2 precise_height2(const Axes& axes, const DoubleDouble& angle);
 
-// V = k^2 h^2 B where its terms all but cancel, as for a light body near B = 0; computed from an
-// angle in double-double precision. Empty where they do not cancel.
+// V = k^2 h^2 B, computed from an angle in double-double precision where its terms all but cancel,
+// as they do for a body of small inertia near B = 0. Empty where they do not cancel.
 std::optional<double> cancelled_response(const SlidingBody& body, const Geometry& at,
                                          const DoubleDouble& angle);
 
@@ -64,14 +65,14 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
 // The rate at which the contact force changes B by turning the body, measured on a clock that slows
-// down as B does: the square root of what the force adds to the second derivative of log B. In real
-// time the rate is 1/B times as large.
+// down as B decreases: the square root of what the force adds to the second derivative of log B. In
+// real time the rate is 1/B times as large.
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
-// The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment N = c/B
-// makes the slip vanish (the slide stops), stops the rotation (rolling resistance then turns its
-// couple) or makes c vanish (it jams). Holds angular velocity, slip and velocity of the centre
-// after that moment, and its duration.
+// The end of a slide that has reached B = 0 with c > 0, physics (54): within a moment, N = c/B
+// makes the slip vanish (`stops`), makes the rotation vanish (`turns`: the couple of rolling
+// resistance then reverses) or makes c vanish (the body jams). Stores the angular velocity, the
+// slip and the velocity of the centre after that moment, and its duration.
 struct LastMoment {
     bool stops;
     bool turns;
@@ -85,7 +86,7 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
 enum class SlideClock { time, slowed };
 
 // The centre of the series: sine and cosine of the angle, velocities, and the response V of a slide
-// or the torque of rolling if it is known more accurately than sine and cosine give it.
+// or the torque of rolling, if known more accurately than computed from the sine and cosine.
 struct SlideCentre {
     double sin;
     double cos;
@@ -141,22 +142,23 @@ struct Continuation {
     // resolved.
     bool grazes = false;
     bool may_fly = false;     // the body rolls, but flight would obey the laws as well
-    bool has_jammed = false;  // the state just after a JAM
+    bool has_jammed = false;  // whether the state is just after a JAM
 };
 
 inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
 
-// The mode that the forces allow. Without slip the body rolls if it may and can; otherwise it
-// starts to slide, or leaves the ground if nothing presses it to the ground any more. On slopes the
-// forces may allow both rolling and flight (c < 0 < N): the body then rolls, just as if it had
-// arrived rolling. At a start, c = 0 and |F| = mu N count as true if they hold to within rounding
-// and the effect of an uncertainty `blur` of theta [rad]; the next moment then decides.
+// The mode that the forces allow. Without slip, the body rolls if `may_roll` is set and the forces
+// allow it; otherwise it starts to slide, or leaves the ground if it is no longer pressed against
+// it. On slopes the forces may allow both rolling and flight (c < 0 < N): the body then rolls, just
+// as if it had arrived rolling. At a start, c = 0 and |F| = mu N count as true if they hold to
+// within rounding and the effect of an uncertainty `blur` of theta [rad]; the next moment then
+// decides.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// The state of a scene with its angle measured for new axes, which changes h and h' by rounding.
-// The gap is kept and, in contact, so are its rate and the slip: a contact remains a contact, and a
-// body without slip remains without slip.
+// The state of a scene with its angle measured for new axes, which changes h and h' only by
+// rounding. The gap is preserved and, in contact, so are its rate and the slip: a contact remains a
+// contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);
 
 // How a body continues from its start, which may be in the air.

@@ -12,9 +12,9 @@ struct CarlsonPair {
     double rd;
 };
 
-// R_F and R_D by duplication, then by series in the symmetric functions of the deviations. B. C.
-// Carlson, Numer. Algorithms 10 (1995) 13; DLMF 19.36(i). Both series end at order 7: the error is
-// about (largest deviation)^8 / 100, below 1e-18 for deviations < 1e-2.
+// R_F and R_D by the duplication theorem, then by series in symmetric functions of the deviations.
+// B. C. Carlson, Numer. Algorithms 10 (1995) 13; DLMF 19.36(i). Both series end at order 7: the
+// error is about (largest deviation)^8 / 100, below 1e-18 for deviations < 1e-2.
 CarlsonPair carlson(double x, double y, double z) {
     constexpr double series_radius = 1e-2;
     double rd_sum = 0.0;
@@ -67,8 +67,9 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// Arc length of the ellipse from the tip to the contact, by the sine and cosine of the angle turned
-// from the tip, physics (10): DLMF 19.25.10 without its last term -h', the lead of the centre.
+// Arc length of the ellipse from the tip to the contact, as a function of the sine and cosine of
+// the angle turned from the tip, physics (10). This is DLMF 19.25.10 without its last term -h', the
+// lead of the centre over the contact.
 double arc_from_tip(const Axes& lying, double s, double c) {
     const auto [long_axis, short_axis] = lying;
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -93,7 +94,7 @@ QuarterPath quarter_path(const Axes& axes, double s, double c) {
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
-// The paths for an angle of any size: whole half turns plus a remainder.
+// The paths for any angle, from whole half turns and a remainder.
 QuarterPath unwrapped_path(const Axes& axes, double theta) {
     if (axes.a == axes.b) return {axes.a * theta, axes.a * theta};
     const double s = std::sin(theta);
@@ -108,7 +109,7 @@ QuarterPath unwrapped_path(const Axes& axes, double theta) {
 
 }  // namespace
 
-// physics (10), DLMF 19.25.9 with negative parameter: every term is positive.
+// physics (10): DLMF 19.25.9 with a negative parameter, for which every term is positive.
 double path_from_flat(const Axes& lying, double s, double c) {
     const double c2 = lying.c2();
     const double s2 = lying.b * lying.b;
@@ -137,7 +138,8 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // Judges by the angle h'/h'' from equilibrium, since a nearly round body has small h' anyway.
+    // The criterion is the angle h'/h'' from equilibrium, since h' of a nearly round body is always
+    // small.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

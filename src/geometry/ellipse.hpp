@@ -69,8 +69,9 @@ struct FlatView {
 FlatView flat_view(const Axes& axes, double theta);
 FlatView flat_view(const Axes& axes, double sin, double cos);
 
-// under_tip: L - h, the depth of the centre below its highest position; over_flat: h - S, its
-// height above the lowest [m]. They are products, since differences of heights would lose accuracy.
+// under_tip is L - h, the depth of the centre below its highest position [m]; over_flat is h - S,
+// the height of the centre above its lowest position [m]. Both are computed as products, since
+// differences of heights would lose accuracy.
 inline double under_tip(const FlatView& at, double h) {
     return at.c2 * square(at.cos) / (at.long_axis + h);
 }
@@ -78,9 +79,9 @@ inline double over_flat(const FlatView& at, double h) {
     return at.c2 * square(at.sin) / (at.short_axis + h);
 }
 
-// Whether the contact lies right below the centre, to within 8 ulp of the height and of the angle.
-// On a slope the vertical through the centre meets the ground h tan(slope) = h incline downhill of
-// the foot of the perpendicular.
+// Whether the contact lies vertically below the centre, to within 8 ulp of the height and of the
+// angle. On a slope the vertical through the centre meets the ground h tan(slope) = h incline
+// downhill of the foot of the perpendicular.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
 // The angle psi - theta = atan2(h', h) from the ground's normal to the contact, in (-pi/2, pi/2).
@@ -138,8 +139,8 @@ inline double within_a_turn(double angle) {
 
 inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 
-// An angle split into quarter turns and the angle from the nearest flat position or tip. No other
-// form is as precise.
+// An angle split into quarter turns and the angle from the nearest flat position or tip. This form
+// preserves the precision of a DoubleDouble.
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
@@ -151,15 +152,15 @@ inline QuarterView quarter_view(const DoubleDouble& angle) {
     return {quarters, angle - half_pi_exact * quarters};
 }
 
-// The same for an angle of at most a quarter turn, from its sine and cosine.
+// The quarter view of an angle of at most a quarter turn, given its sine and cosine.
 inline QuarterView quarter_view(double sin, double cos) {
     const double s = std::abs(sin);
     if (s <= cos) return {0.0, {std::atan2(sin, cos), 0.0}};
     return {std::copysign(1.0, sin), {-std::copysign(std::atan2(cos, s), sin), 0.0}};
 }
 
-// An equivalent angle, small enough that sums with it resolve a fraction of a turn: unchanged up to
-// 1e15, where a double resolves 0.1 rad, and reduced by full turns beyond.
+// An equivalent angle, small enough that sums with it resolve a fraction of a turn. Angles up to
+// 1e15, where a double resolves 0.1 rad, are unchanged; larger ones are reduced by full turns.
 inline double resolved(double angle) {
     constexpr double largest = 1e15;
     return std::abs(angle) > largest ? within_a_turn(angle) : angle;

@@ -59,7 +59,7 @@ class Stagnation {
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
     // True if the most recent changes are negligible relative to the first ones or to the scale.
-    // (An iteration that diverges from a tiny start has tiny changes, too.)
+    // (An iteration that diverges slowly from tiny values has tiny changes, too.)
     bool settled(const Vector<N>& size) const {
         constexpr double share_of_first = 1e-6;
         constexpr double near_rounding = 1e-11;
@@ -74,7 +74,7 @@ class Stagnation {
     Vector<N> first_ = Vector<N>::Zero();
 };
 
-// Limit on the iterations of a step; they end as soon as the changes have settled.
+// Limit on the iterations of a step, which normally end earlier, once the changes have settled.
 inline constexpr int most_iterations = 200;
 
 // Dense output of an implicit method, computed by a shorter step and hence of full order. The
@@ -111,7 +111,7 @@ class Gauss {
 
     StepCounts counts;
 
-    // Takes a step; false if the stages do not converge because it is too large.
+    // Takes a step; false if the stages do not converge because the step is too large.
     bool advance(Point<N>& point, double h) {
         const std::array<double, S> hb = weights(h);
         // First guess: the collocation polynomial of the previous step, extrapolated.
@@ -174,10 +174,10 @@ class Gauss {
     double last_step_ = 0.0;  // size of the step that filled `increments_`
 };
 
-// Radau IIA with three stages, order 5: implicit, L-stable, also for differential-algebraic systems
-// diag(mass) y' = f(t, y). E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.8:
-// simplified Newton iteration in coordinates that split the stages into a real and a complex
-// system, each of the size of y.
+// Radau IIA with three stages, of order 5: implicit, L-stable, and applicable to
+// differential-algebraic systems diag(mass) y' = f(t, y). As in E. Hairer, G. Wanner, Solving
+// Ordinary Differential Equations II, IV.8, simplified Newton iteration is done in coordinates that
+// split the stages into a real and a complex system, each of the size of y.
 template <class System>
 class Radau {
   public:
@@ -188,7 +188,7 @@ class Radau {
 
     StepCounts counts;
 
-    // Takes a step; false if the stages do not converge because it is too large.
+    // Takes a step; false if the stages do not converge because the step is too large.
     bool advance(Point<N>& point, double h) {
         constexpr double rounding = 2 * epsilon;
         const std::complex<double> pair(C::alpha, C::beta);

@@ -49,7 +49,7 @@ class ExplicitMethod {
     StepCounts counts;
     Dense last_dense;  // dense output of the last error-controlled step, if keeps_dense
 
-    // Takes a step of the given size; always true.
+    // Takes a step of the given size; always returns true.
     bool advance(Point<N>& point, double h) {
         evaluate<0, Tableau::stages>(point, h);
         add<N>(point, increment(h));
@@ -62,8 +62,9 @@ class ExplicitMethod {
         return dense_of_stages(h);
     }
 
-    // Error-controlled steps up to t_end; `visit(point)` is called with each new point and may
-    // change it. The controller is the elementary one of HNW II.4 with SciPy's limits on growth.
+    // Takes error-controlled steps up to t_end; `visit(point)` is called with each new point and
+    // may change it. The controller is the elementary one of HNW II.4 with SciPy's limits on
+    // growth.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
                      Visit visit) {
@@ -122,13 +123,14 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // Omits a term of the interpolant that overflows because a stage does.
+            // Omits a term of the interpolant that overflows because a stage overflows.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
     }
 
-    // Number of stages in the error estimate, including f at the end of the step if weighted.
+    // Number of stages in the error estimate, including f at the end of the step if its weight is
+    // not 0.
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
@@ -176,7 +178,7 @@ class ExplicitMethod {
         return sum / N;
     }
 
-    // The mean square of a step's error relative to the tolerance; its root is never needed.
+    // The mean square of a step's error relative to the tolerance; its root is not needed.
     [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
                                                double h, const Tolerance& tolerance) const {
         Vector<N> size;
@@ -197,7 +199,7 @@ class ExplicitMethod {
 
     // Size of the first step, from the magnitudes of y, y' and y'': HNW II.4.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        constexpr double longest = 1e300;  // replaces an infinite span, which could not shrink
+        constexpr double longest = 1e300;  // replaces an infinite span, which could not be reduced
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> inverse = inverse_scale(tolerance, size);

@@ -1,5 +1,6 @@
-// A solution, stored as the list of points between its steps. The dense output of a step is stored
-// if it needs no further evaluation of f; otherwise it is computed when the step is sampled.
+// A solution, stored as the list of the points (knots) at the ends of its steps. The dense output
+// of a step is stored if it needs no further evaluation of f; otherwise it is computed when the
+// step is sampled.
 //
 // An integration method is a class template over a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size
@@ -114,10 +115,10 @@ void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* t
     }
 }
 
-// Calls take(knot, change) at evenly chosen knots and at the midpoints of some steps. A knot costs
+// Calls take(knot, change) at evenly spaced knots and at the midpoints of some steps. A knot costs
 // less than three evaluations of f, a midpoint at most two steps; together they cost about a
 // twentieth of the integration. Implicit methods are examined at knots only, since their dense
-// output is a step of the same accuracy.
+// output is itself a step of the same accuracy.
 template <class Integrator, int N, class Take>
 void survey(Integrator& integrator, const Steps<N>& steps, long evaluations, Take take) {
     constexpr std::size_t least_knots = 8;

@@ -37,7 +37,7 @@ struct Point {
     Vector<N> origin = Vector<N>::Zero();
 };
 
-// Adds an increment to y + carry; the rounding error stays in the carry.
+// Adds an increment to y + carry; the rounding error is stored in the carry.
 template <int N>
 void add(Point<N>& point, const Vector<N>& increment) {
     for (int i = 0; i < N; ++i) {
@@ -66,7 +66,7 @@ struct DenseOutput {
     }
 };
 
-// Steps between two calls of the checkpoint: they take 10 us if cheap, and up to 4 ms if slow.
+// Number of steps between two calls of the checkpoint. Together they take from 10 us to 4 ms.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {
@@ -100,7 +100,7 @@ enum class Ending {
     jammed,        // a slide has no continuation
     undetermined,  // a slide has two continuations
     validity_lost,
-    never  // the events at which the motion is to stop can no longer happen
+    never  // the events at which the motion is to stop can no longer occur
 };
 
 template <>
@@ -117,10 +117,10 @@ struct Integration {
     StepCounts counts = {};
 };
 
-// Steps of one size up to t_end; the last one is shorter. `method.advance(point, h)` updates the
-// point except its time and returns false if the step fails; `visit(point)` is called with each new
-// point and may change it. Times are multiples of the step, so that rounding errors do not
-// accumulate.
+// Takes steps of equal size up to t_end; the last one may be shorter. `method.advance(point, h)`
+// updates the point except its time and returns false if the step fails; `visit(point)` is called
+// with each new point and may change it. Times are multiples of the step, so that rounding errors
+// do not accumulate.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {

@@ -61,7 +61,7 @@ MultiplierSolution accelerations(const Scene& scene, const CoordinateState& stat
     const double most = scene.rolling_resistance * force.normal;
     const double torque = -(at.h * force.friction + at.dh * force.normal);
     const double omega = state.q_dot[coordinate::theta];
-    // Without rotation the couple of rolling resistance is as large as it takes, up to its limit.
+    // Without rotation, the couple of rolling resistance balances the torque, up to its limit.
     const double couple = omega == 0 ? std::clamp(torque, -most, most) : std::copysign(most, omega);
     const double omega_dot = (torque - couple) / scene.inertia;
     return contact_solution(scene.axes(), at, state, force,
@@ -129,8 +129,9 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
-// Projects by Newton's method until the residuals stop shrinking. psi and r have no mass, so their
-// values are free: if far off, they are first computed from theta, to keep theta precise.
+// Projects by Newton's method until the residuals stop shrinking. psi and r have no mass, so that
+// they can be changed freely: if they are far off, they are first computed from theta, so that the
+// projection hardly changes theta.
 double ConstrainedBody::project(CoordinateState& state) const {
     constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;

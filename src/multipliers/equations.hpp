@@ -2,8 +2,8 @@
 // Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
 //     M q_ddot = Q + A^T lambda,   A q_dot = 0,
 //     M = diag(m, m, I, 0, 0),     Q = (m g sin, -m g cos, 0, 0, 0)
-// with the slope in Q. M is singular in psi and r (eqs 19, 20); the saddle-point matrix with A is
-// regular.
+// Q contains the slope. M is singular in psi and r (eqs 19, 20); the saddle-point matrix of M and A
+// is regular.
 #pragma once
 
 #include "geometry/constraints.hpp"
@@ -24,7 +24,8 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// Rolling in full: the state (where x is the integral of h from 0), accelerations and multipliers.
+// All about a rolling body: its coordinates and velocities (x is the integral of h from 0),
+// accelerations and multipliers.
 struct RollingDetail : MultiplierSolution {
     CoordinateState state;
 };
@@ -41,7 +42,7 @@ class ConstrainedBody {
     // Accelerations and multipliers with A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
-    // Accelerations and multipliers that keep the constraints.
+    // Accelerations and multipliers that preserve the constraints.
     MultiplierSolution solve(const CoordinateState& state) const;
 
     SpecificEnergy specific_energy(const CoordinateState& state) const;

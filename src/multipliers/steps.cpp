@@ -67,7 +67,7 @@ struct IndexTwo {
         return typical;
     }
 
-    // The Jacobian, by finite differences in q, which is accurate enough for simplified Newton
+    // The Jacobian, from finite differences in q, which are accurate enough for simplified Newton
     // iteration; all other terms are linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
         const double length = motion.body.length();
@@ -139,7 +139,8 @@ bool projects(const SteppedMultipliers& motion) {
            motion.settings.stabilization == Stabilization::projection_energy;
 }
 
-// Projects a state as the stabilization prescribes; returns the largest residual before that.
+// Projects a state as the stabilization prescribes; returns the largest residual before the
+// projection.
 double project(const SteppedMultipliers& motion, CoordinateState& state) {
     const bool by_energy = motion.settings.stabilization == Stabilization::projection_energy;
     return by_energy ? motion.body.project(state, motion.specific_energy)
@@ -169,7 +170,7 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
-// The state at a knot plus a change, without the half turns of the knot in its angles.
+// The state at a knot plus a change; its angles omit the half turns of the knot.
 template <int N>
 CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
                          const Vector<N>& change) {

@@ -28,7 +28,7 @@ struct SteppedMultipliers {
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a rolling body given by its state, or one with any coordinates and velocities.
+// The start of a rolling body from its state, or a start with any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 

@@ -74,7 +74,7 @@ class RootBracket {
     int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none so far
 };
 
-// A guess of a root and of the slope there; two points around it are evaluated first.
+// A guess of a root and of the slope at the root; two points around the guess are evaluated first.
 struct RootGuess {
     double root;
     double slope;
@@ -95,8 +95,8 @@ Bracket bisect_root(double low, double high, const Function& f,
 }
 
 // Finds the single extremum in an interval by golden-section search, to 1e-8 of the interval;
-// within that distance the function is flat. The comparison takes two points, the lower one first,
-// and is true if the extremum lies below the upper one.
+// within that distance the function is flat to within rounding. The comparison takes two points,
+// the lower one first, and is true if the extremum lies below the upper one.
 template <class Comparison>
 double golden_section(double low, double high, const Comparison& is_below_upper) {
     constexpr double golden = 0.6180339887498949;

@@ -3,8 +3,8 @@
 // vector level (rolling/level/kernel_code.hpp), the others once. All names are in an anonymous
 // namespace, so that no function of a wide level can be linked into code for machines without it.
 //
-// Every function that takes or returns a Pack is inlined: a call would pass it in other registers
-// in the wide version of a function (numerics/wide.hpp).
+// Every function that takes or returns a Pack is inlined, because the wide version of a function
+// (numerics/wide.hpp) would pass a Pack in different registers.
 //
 // Operations and their order are the same at every level. Only two_product uses a fused
 // multiply-add; its result is exact with or without it.
@@ -18,7 +18,7 @@
 #include <immintrin.h>
 #endif
 
-#if defined(ROLLING_ELLIPSE_LANES)  // the including file chooses
+#if defined(ROLLING_ELLIPSE_LANES)  // chosen by the including file
 #elif defined(__AVX512F__)
 #define ROLLING_ELLIPSE_LANES 8
 #elif defined(__AVX2__)
@@ -39,7 +39,7 @@ using PackPair = TwoParts<Pack>;
 template <class T>
 using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, PackBits>;
 
-// A value copied to all lanes; a Pack stays as it is.
+// A value copied to all lanes; a Pack is returned unchanged.
 template <class T, class Number>
 [[gnu::always_inline]] inline T filled(Number value) {
     return value - T{};
@@ -105,7 +105,7 @@ template <class T>
     return found;
 }
 
-// from[index] in each lane, with a separate index for each.
+// from[index] in each lane, with a separate index for each lane.
 template <class T>
 [[gnu::always_inline]] inline T element(const T* from, T index) {
     T found{};
@@ -245,7 +245,8 @@ template <class T>
 }
 
 // The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A minimax polynomial
-// (error 2e-19) is used up to 22.5 degrees; beyond, it is applied to the angle from 45 degrees.
+// (error 2e-19) is used up to 22.5 degrees; beyond that, it is applied to the angle from 45
+// degrees.
 template <class T>
 [[gnu::always_inline]] inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;

@@ -1,4 +1,4 @@
-// Constants, tiny functions, double-double numbers of 106 bits, and sine and cosine for inner
+// Constants, small functions, double-double numbers of 106 bits, and sine and cosine for inner
 // loops.
 #pragma once
 
@@ -22,7 +22,7 @@ inline constexpr double equal_ulps = 8;
 // of them do not overflow.
 inline constexpr double largest_number = 1e50;
 
-// 1.5 * 2^52: adding it rounds a number to a whole number.
+// 1.5 * 2^52; adding this constant rounds a number to a whole number.
 inline constexpr double to_integer = 6755399441055744.0;
 
 // Result of a comparison: bool for doubles, one truth value per lane for several lanes.
@@ -47,7 +47,7 @@ struct TwoParts {
 };
 using DoubleDouble = TwoParts<double>;
 
-// Always inlined, since code for wider vectors passes packs of doubles in other registers.
+// Always inlined, since code for wider vectors passes packs of doubles in different registers.
 template <class T>
 [[gnu::always_inline]] inline TwoParts<T> quick_two_sum(T large, T small) {
     const T sum = large + small;
@@ -115,7 +115,7 @@ struct QuarterAngle {
 
 inline QuarterAngle nearest_quarter(double angle) {
     constexpr double per_radian = 6.36619772367581382433e-01;
-    // pi/2 in parts of 33 bits, whose multiples are exact, plus the rest
+    // pi/2 as two parts of 33 bits, whose multiples are exact, and the remainder
     constexpr double first = 1.5707963267341256;
     constexpr double second = 6.077100506303966e-11;
     constexpr double third = 2.0222662487959506e-21;
@@ -133,8 +133,8 @@ struct SineCosine {
 };
 
 // Sine and cosine for |angle| <= pi/4, without calls or branches; the bits are the same with every
-// C library. The omitted terms of the series are 5e-17 of the sine and 2e-18 of the cosine. Pairs
-// of terms are independent of each other.
+// C library. The omitted terms of the series amount to 5e-17 of the sine and 2e-18 of the cosine.
+// Pairs of terms are independent of each other.
 inline SineCosine sine_cosine_of_rest(double angle) {
     const double z = angle * angle;
     const double z2 = z * z;

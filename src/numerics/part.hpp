@@ -4,7 +4,7 @@
 
 #include <array>
 
-#define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, two elsewhere
+#define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, otherwise two
 #include "numerics/lanes.hpp"
 #include "numerics/quadrature.hpp"
 #include "numerics/series.hpp"
@@ -13,14 +13,14 @@
 namespace rolling_ellipse {
 namespace {
 
-using PartMatrix = std::array<PartArray, part_order>;  // [j] belongs to the value at node j
+using PartMatrix = std::array<PartArray, part_order>;  // [j] multiplies the value at node j
 
 struct PartRule {
     PartArray places;
     PartArray weights;
     PartMatrix integrals;  // integrals from -1 to the nodes
-    PartMatrix moments;    // the same of (1 + x) times a function, over (1 + x)^2
-    PartMatrix legendre;   // coefficients of the Legendre polynomials
+    PartMatrix moments;    // integrals of (1 + x) times a function, divided by (1 + x)^2
+    PartMatrix legendre;   // Legendre coefficients from values at the nodes
     PartMatrix powers;     // power coefficients from Legendre coefficients
 };
 
@@ -65,7 +65,7 @@ inline const PartRule& part_rule() {
                 }
             }
         }
-        auto& powers = rule.powers;  // powers of P_0 = 1, P_1 = x and, by recurrence, the others
+        auto& powers = rule.powers;  // of P_0 = 1, of P_1 = x and, by recurrence, of the others
         powers[0][0] = powers[1][1] = 1.0;
         for (int k = 1; k + 1 < part_order; ++k) {
             for (int i = 0; i <= k + 1; ++i) {

@@ -1,5 +1,5 @@
-// Polynomials of a small degree fixed at compile time, with a bound on the rounding of every
-// coefficient; their proved signs and all roots on one interval.
+// Polynomials of small degree, fixed at compile time, with a bound on the rounding error of every
+// coefficient. Their signs on an interval are proved, and all their roots on it are computed.
 #pragma once
 
 #include <algorithm>
@@ -32,23 +32,24 @@ inline Tracked operator*(Tracked x, Tracked y) {
     return {x.value * y.value, x.magnitude * y.magnitude};
 }
 
-// Two doubles in one register, where the processor has one.
+// Two doubles in one register, where the processor has one of that size.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };
 
 // The largest number of roundings in any chain of operations from the parameters to a result. Each
-// is at most epsilon/2 of the magnitude, so that together they stay below the margin.
-//   * The law of rolling, degree 10, is the longest: counted along the lines of force_polynomials
-//     and grip_polynomial, with n + m + 1 + min(M, N) for the product of polynomials of degrees M,
-//     N with n, m roundings, it has 37.
+// rounding is at most epsilon/2 of the magnitude, so that their sum stays below the margin.
+//   * The law of rolling, of degree 10, has the longest chain, 37, counted along the lines of
+//     force_polynomials and grip_polynomial. A product of polynomials of degrees M and N with m and
+//     n roundings has m + n + 1 + min(M, N).
 //   * A series of degree 24 (slides) has 25 in the powers of its reach, plus those of its terms.
 //   * The Bernstein form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is
 //     31 for degree 10, 73 for degree 24.
 //   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
-// So the law has 98, and the series 98 plus those of its terms. Subdivision in the middle adds N
-// sums each time, up to 48 times; `divided` adds their roundings to the magnitude. The parameters
-// are rounded, too: the sign is right for some body and start just as close to the exact ones.
+// In total, the law has 98, and the series 98 plus those of its terms. Each subdivision in the
+// middle, of which there are up to 48, adds N sums; `divided` adds their roundings to the
+// magnitude. The parameters are rounded, too: the sign is proved for some body and start that are
+// just as close to the exact ones.
 constexpr double most_roundings = 128;
 
 // Bound on the rounding error of a number.
@@ -109,8 +110,8 @@ Polynomial<N - 1> derivative(const Polynomial<N>& p) {
     return result;
 }
 
-// A polynomial given by its Bernstein coefficients on [0, 1]; the least and the largest coefficient
-// bound it.
+// A polynomial given by its Bernstein coefficients on [0, 1]; the smallest and the largest
+// coefficient bound its values.
 template <int Degree>
 struct Bernstein {
     std::array<Tracked, Degree + 1> coefficients{};
@@ -126,7 +127,8 @@ constexpr auto binomials() {
 
 template <int N>
 Bernstein<N> bernstein(const Polynomial<N>& p) {
-    // Matrix from powers to the Bernstein form: binomial(i, j)/binomial(N, j), physics (37).
+    // The matrix that converts powers to the Bernstein form: binomial(i, j)/binomial(N, j), physics
+    // (37).
     static constexpr auto matrix = [] {
         std::array<std::array<double, N + 1>, N + 1> rows{};
         for (int i = 0; i <= N; ++i) {
@@ -189,7 +191,7 @@ Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
 
 namespace detail {
 
-// Number of bisections after which an interval of [0, 1] counts as a point.
+// Number of bisections after which a subinterval of [0, 1] counts as a point.
 constexpr int deepest = 48;
 
 template <int N>
@@ -240,7 +242,7 @@ void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
 
 }  // namespace detail
 
-// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided within
+// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided to within
 // rounding.
 template <int N>
 Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
@@ -256,7 +258,7 @@ Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
 }
 
 // The first point in [0, 1] from which p is provably negative. Values within rounding of zero do
-// not count as negative; if only such values come before, the result is 0.
+// not count as negative; if p has only such values before that point, the result is 0.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     int changes = 0;

@@ -30,7 +30,8 @@ inline Node node_of(const GaussRule& rule, int i) {
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
 
-// Number of nodes of the rule on a part; a function there is given by its values at these nodes.
+// Number of nodes of the rule on a part; a function on a part is given by its values at these
+// nodes.
 inline constexpr int part_order = 20;
 using PartArray = std::array<double, part_order>;
 

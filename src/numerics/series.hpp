@@ -68,8 +68,8 @@ double derivative(const std::array<double, Size>& series, double z) {
     return sum;
 }
 
-// Four numbers in one register where the processor has one that wide (numerics/wide.hpp); the bits
-// are the same as for single doubles.
+// Four numbers in one register where the processor has one that wide (numerics/wide.hpp). The
+// results have the same bits as those for single doubles.
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 
 // Order of the power series that cover an arc in a few pieces. A higher order gives a larger radius
@@ -87,11 +87,11 @@ template <class Coefficients>
     return Number(terms(p, q, k, 2, k - 2) + (p[1] * q[k - 1] + p[k - 1] * q[1]));
 }
 
-// Factors of products computed side by side, one in each lane, coefficient by coefficient.
+// Factors of several products, one product in each lane, computed side by side and coefficient by
+// coefficient.
 using Factors = std::array<Quad, long_order + 1>;
 
-// Coefficient k of the product in a lane, from its inner terms and the last coefficients of both
-// factors.
+// Coefficient k of the product in a lane, from its inner terms and coefficient k of both factors.
 struct ProductAt {
     int k;
 
@@ -104,7 +104,7 @@ struct ProductAt {
     }
 };
 
-// The factors 1/(k + 1), which integrate coefficient k of a rate.
+// The factors 1/(k + 1), by which coefficient k of a rate gives coefficient k + 1 of the integral.
 inline constexpr auto over_next = [] {
     std::array<double, long_order + 1> found{};
     for (int k = 0; k <= long_order; ++k) found[k] = 1.0 / (k + 1);
@@ -122,11 +122,11 @@ template <class Function>
     for_each_order(call, std::make_integer_sequence<int, long_order + 1>{});
 }
 
-// The radius at which the last terms of all these series are a twentieth of an ulp of the series;
+// The radius at which the last terms of each series are at most a twentieth of an ulp of its sum;
 // the omitted terms are a fifth of that. Half an ulp would be too much, since the error may have
-// the same sign step after step. The last four terms count, since three may vanish by symmetry;
-// each is scaled to the end of the series as if terms fell by a factor of five. Each step of the
-// fixed-point iteration divides the error of the logarithm by eight.
+// the same sign step after step. The last four terms are used, since three of them may vanish by
+// symmetry; each is scaled to the end of the series as if successive terms fell by a factor of
+// five. Each step of the fixed-point iteration divides the error of the logarithm by eight.
 inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

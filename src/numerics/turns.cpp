@@ -12,12 +12,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// Degree of the fitted polynomials. Dense output has at most 7; other quantities need more
-// halvings.
+// Degree of the fitted polynomials. Dense output has a degree of at most 7; other quantities need
+// more halvings.
 constexpr int degree = 8;
 
-// Chebyshev nodes on [0, 1], to four digits. At one more point between them, `compared`, the
-// polynomial is compared with the quantity.
+// Chebyshev nodes on [0, 1], to four digits, and between them, at index `compared`, one more point,
+// at which the polynomial is compared with the quantity.
 constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329, 0.41,
                                                    0.5,    0.671, 0.8214, 0.933, 0.9924};
 constexpr int compared = 4;
@@ -61,7 +61,7 @@ bool add_turns_in(const Measure& measure, double size, std::vector<Part> parts,
                   std::vector<double>& times) {
     constexpr double roundings = 1000;  // rounding errors allowed; the inverse basis has norm 300
     constexpr int deepest = 16;
-    std::size_t halvings = 64 * parts.size();  // limit, as halving does not help against noise
+    std::size_t halvings = 64 * parts.size();  // a limit, since halving does not reduce noise
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;

@@ -12,7 +12,7 @@ namespace {
 // A position of a rolling body: the angle and the height of the centre.
 struct Position : ShapePlace {
     double angle;      // phi, the angle from the flat position
-    double over_flat;  // h - S, its height above the flat position
+    double over_flat;  // h - S, height above the flat position
 };
 
 Position position(const Shape& shape, double sin2, double cos2) {
@@ -51,8 +51,8 @@ Grip grip(const Shape& shape, const Position& at, double friction) {
     return {energy_over_flat(at, least), energy_over_flat(at, most)};
 }
 
-// A range of positions in terms of ln tan phi: near the flat position forces vary on the scale of
-// (b/a)^2, near the tip on that of 1/mu.
+// A range of positions in terms of ln tan phi: near the flat position the forces vary on a scale of
+// (b/a)^2, near the tip on a scale of 1/mu.
 struct Scan {
     double first;
     double last;
@@ -145,9 +145,9 @@ Onset upper_onset(const Rolling& body) {
     return onset;
 }
 
-// The window of a body that slips when released from rest, h |h'| > mu (k^2 + h^2): between the
-// roots of a quadratic equation in y = h^2 - B, physics (48). It ends at the largest of the lower
-// energies there.
+// The window of a body that slips when released from rest at positions with h |h'| > mu (k^2 +
+// h^2), which lie between the roots of a quadratic equation in y = h^2 - B, physics (48). The
+// window ends at the largest lower energy of these positions.
 std::optional<SlipWindow> window_of_rest(const Rolling& body) {
     const Shape& shape = body.shape;
     const double friction = body.friction;

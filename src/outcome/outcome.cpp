@@ -10,16 +10,17 @@
 namespace rolling_ellipse {
 namespace {
 
-// The alternative named where a body with rolling resistance is refused.
-constexpr const char* instead = "the events of simulate tell how the body moves with it";
+// The alternative named in the error message for a body with rolling resistance.
+constexpr const char* instead = "the events of simulate show how the body moves with it";
 
-// A slip after rolling never starts inside the Painleve region. Where |F| exceeds mu N > 0, with
-// side s = -sign F, and as c = Gnn N + Gtn F holds in rolling, too, physics (50), the response of
-// sliding B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
-// c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where N
-// <= 0 and c > 0, a body without slip has a side on which B > 0. So `jams` never follows rolling.
-// Nor does a body that rolls on level ground leave it before it slips: the same c is positive where
-// N vanishes, so that it starts to slide even with infinite friction.
+// A slip after rolling never starts inside the Painleve region. Let |F| exceed mu N > 0, with the
+// side s = -sign F. Since c = Gnn N + Gtn F holds in rolling, too, physics (50), the response of
+// sliding B = Gnn - mu s Gtn is positive: if s Gtn <= 0, it is a sum of positive terms; otherwise
+// it follows from c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2
+// per mass). Where N <= 0 and c > 0, a body without slip has a side on which B > 0. Hence `jams`
+// never follows rolling. Nor does a body that rolls on level ground leave the ground before it
+// slips: c is positive where N vanishes, so that the body starts to slide even with infinite
+// friction.
 
 // The outcome for a body that rolls up to the top: it passes the tip or turns back; `edge` if
 // rounding hides which of the two.

@@ -14,9 +14,9 @@ namespace rolling_ellipse {
 enum class Outcome : std::int8_t {
     rests,
     rocks,          // the body turns back before anything else happens
-    rolls_over,     // it passes the tip before anything else happens
+    rolls_over,     // the body passes the tip before anything else happens
     slips,          // the contact slides
-    loses_contact,  // it leaves the ground, or is in the air
+    loses_contact,  // the body leaves the ground, or is in the air
     jams,           // the contact jams; never directly after rolling, see outcome/outcome.cpp
     edge,           // rounding hides which of two outcomes occurs
 };
@@ -29,9 +29,9 @@ inline constexpr std::array names<Outcome>{"RESTS",         "ROCKS", "ROLLS_OVER
 // velocity, from the signs of polynomials alone.
 Outcome classify(const Body& body, double friction, double theta, double omega);
 
-// The first event after the blow of a scene. On level ground it needs no integration. On a slope
-// the rolling motion is followed until it turns back, passes the tip (for a circle: half a turn) or
-// ends; `edge` if it does none of these for a long time.
+// The first event after the blow of a scene. On level ground, no integration is needed. On a slope,
+// the rolling motion is followed until the body turns back, passes the tip (a circle: rolls half a
+// turn) or no longer rolls; `edge` if none of this happens for a long time.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
 // The downward impulse at a horizontal distance from the centre that gives the body the angular
@@ -44,7 +44,7 @@ double press_to(const Scene& scene, double distance, double omega);
 double speed_to_the_tip(const Scene& scene);
 
 // The least friction coefficient with which neither the blow nor the rolling after it ever causes
-// slip, whatever the friction of the scene; infinite if no finite one suffices.
+// slip, whatever the friction of the scene; infinite if no finite coefficient suffices.
 double required_friction(const Scene& scene);
 
 // The least friction coefficient with which a body can lie still on the slope of the scene,
@@ -59,15 +59,15 @@ struct SpeedRange {
 
 // The speeds and friction coefficients at which the kind of motion on level ground changes. Speeds
 // are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2]. A speed or
-// friction is infinite, and its angle absent, if the change never happens.
+// friction is infinite, and its angle absent, if the change does not occur.
 struct Thresholds {
     double roll_over_speed;                // above it, the body turns over
     double contact_loss_speed = infinity;  // above it, rolling needs N < 0 somewhere
     std::optional<double> contact_loss_angle;
     // Ranges of speeds in which rolling somewhere needs more friction than available: none for a
-    // circle, else one or two, see outcome/onset.hpp. The last one has no upper end.
+    // circle, otherwise one or two; see outcome/onset.hpp. The last range has no upper end.
     std::vector<SpeedRange> slip_windows;
-    std::optional<double> slip_angle;     // where friction first fails at the least of these speeds
+    std::optional<double> slip_angle;     // angle at which friction fails first at slip_speed()
     double friction_to_roll_over;         // max |F|/N of rolling at the roll-over speed
     double painleve_friction = infinity;  // least mu for which sliding may jam
     std::optional<double> painleve_angle;
@@ -90,9 +90,9 @@ struct LiftOff {
     std::vector<SpeedRange> jam_speeds;
 };
 
-// Lift-off of a body between its first slip and the tip; below slip_speed it does not slip. Above
-// the Painleve friction it may jam instead of leaving the ground, and at higher speeds leave the
-// ground again. A scan finds these ranges, and bisection refines them to the last bit.
+// Lift-off of a body between its first slip and the tip; below `slip_speed` it does not slip. Above
+// the Painleve friction the body may jam instead of leaving the ground, and leave it again at
+// higher speeds. A scan finds these ranges, and bisection refines them to the last bit.
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint);
 

@@ -10,8 +10,8 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// A time, and the observable there minus the requested value; exactly 0 where it touches that value
-// to within rounding.
+// A time, and the observable at this time minus the requested value; exactly 0 where the observable
+// touches that value to within rounding.
 struct Reading {
     double t;
     double excess;
@@ -82,8 +82,8 @@ struct Search {
                 if (readings[i - 1].is_last) {
                     passed.push_back(readings[i].t);
                 } else {
-                    // -now times the excess is falling, so that a time with excess 0 is the upper
-                    // end.
+                    // -now times the excess falls, so that a time with an excess of 0 becomes the
+                    // upper end.
                     const RootBracket bracket(readings[i - 1].t, readings[i].t,
                                               -now * readings[i - 1].excess,
                                               -now * readings[i].excess);

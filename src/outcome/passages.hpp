@@ -1,6 +1,6 @@
-// The times at which a quantity of a motion passes a value. They belong to the motion itself, not
-// to samples of it. The search examines intervals on each of which the quantity only rises or only
-// falls.
+// The times at which a quantity of a motion passes a value. These times belong to the motion
+// itself, not to samples of it. The search examines intervals on each of which the quantity only
+// rises or only falls.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact
 struct Observable {
     std::optional<Quantity> quantity;  // absent for the caller's function
     Measure measure;
-    double length;  // a length [m] whose rounding counts, too, since paths are sums
+    double length;  // a length [m] whose rounding error is added: paths are sums
 };
 
 // Observes a quantity of a motion. Motion and checkpoint must outlive the observable.
@@ -35,8 +35,8 @@ struct Stretch {
     std::vector<double> times;   // start, turning points, end [s], ascending
     std::vector<double> values;  // values of the observable
     bool proved = true;          // the observable is monotone between the times
-    // The period [s] of a motion with many periods, of which `times` cover the first and the last
-    // two.
+    // The period [s] of a motion with many periods, of which `times` cover the first two and the
+    // last two.
     std::optional<DoubleDouble> period = {};
 };
 

@@ -7,7 +7,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The quantity at ascending times, from the kind of sample that is cheapest to compute.
+// The quantity at ascending times, from the cheapest type of sample that contains it.
 void measure(const Motion& motion, const Sampler& sample, Quantity quantity, const double* times,
              std::size_t n, double* values) {
     const auto take = [&](auto kind, const auto& value) {
@@ -43,7 +43,7 @@ struct Course {
     std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
     bool monotone = false;                 // the observable is provably monotone between knots
     std::optional<DoubleDouble> period = {};
-    double swung = 0.0;  // quarter turns in a period, if the body swings back
+    double swung = 0.0;  // quarter turns in a period of a rocking body
 };
 
 // Determines the course of each law for one observable.
@@ -156,7 +156,7 @@ struct Survey {
 
     // Adds the turning points between the times, between which the motion is smooth. Each interval
     // is divided into at least `least` parts, and each quarter turn into four. A caller's function
-    // gets 16 parts in all, since it may change while the body rests. Returns whether the
+    // gets at least 16 parts in all, since it may change while the body rests. Returns whether the
     // observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
@@ -192,7 +192,7 @@ void refuse_length(const Observable& of, const std::string& requirement, const s
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
-    constexpr std::size_t many = 1000;  // expected samples, enough for a table to pay
+    constexpr std::size_t many = 1000;  // expected samples, enough for a table to pay off
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;

@@ -19,14 +19,14 @@ double direction_of(const RollingStart& from) {
 }
 
 // The law on the quarter turn whose mirror images make up the motion. A position (`place`) is given
-// by the angle from the flat position, or by minus the angle from the tip if the motion starts
-// nearer the tip, so that positions near the start have full precision.
+// by the angle from the flat position or, if the motion starts nearer the tip, by minus the angle
+// from the tip, so that positions near the start have full precision.
 struct Quarter {
     const EnergyRange& range;
     double friction;
     bool from_tip;
     double direction;    // sign of omega at the start
-    bool rises;          // moves towards the tip; true if flat or upright
+    bool rises;          // whether it moves towards the tip; true if flat or upright
     ContactForce force;  // contact force at the start
     double start;        // position at the start
 
@@ -96,8 +96,8 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double zer
     add_between(zero, high);
 }
 
-// The positions, ascending, beyond which the law may be broken: its zeros and those of N. A zero of
-// the squared form at a negative N is not a zero of the law.
+// The positions, ascending, beyond which the law may be broken: the zeros of the law and those of
+// N. A zero of the squared form at a negative N is not a zero of the law.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {
@@ -133,14 +133,16 @@ void add_ends_about(std::vector<double>& places, double start, const Quarter& qu
     std::sort(places.begin(), places.end());
 }
 
-// The angle turned from the start, and the sign of omega at its end.
+// The angle turned since the start, and the sign of omega at the end of the turn.
 struct Turn {
     double angle;
     double heading;
 };
 
-// The turn to the first of the positions (ascending, at least one) after `from`, on either side of
-// the flat position; empty if the body never reaches one: on the separatrix it ends at the tip.
+// The turn to the first of the given positions after `from`. There is at least one position; the
+// positions are ascending, and each stands for its mirror image on the other side of the flat
+// position, too. Empty if the body reaches none of them: on the separatrix, its motion ends at the
+// tip.
 std::optional<Turn> first_meeting(const Quarter& quarter, double from,
                                   const std::vector<double>& places) {
     const double on = quarter.direction;

@@ -8,14 +8,15 @@
 
 namespace rolling_ellipse {
 
-// edge: the margin of the law is 0 to within rounding. no_proof: the start does not roll.
+// edge: the margin of the law is 0 to within rounding. no_proof: the body does not roll at the
+// start.
 enum class Validity { valid, invalid, edge, no_proof };
 
 template <>
 inline constexpr std::array names<Validity>{"VALID", "INVALID", "EDGE", "NO_PROOF"};
 
-// The end of rolling, forward in time: theta and the sign of omega there. The angle is empty if
-// rolling does not end.
+// The end of rolling, forward in time: theta and the sign of omega at that moment. The angle is
+// empty if rolling does not end.
 struct EndOfRolling {
     Validity validity;
     std::optional<double> angle = std::nullopt;

@@ -6,13 +6,13 @@
 namespace rolling_ellipse {
 namespace {
 
-// Numerator of dN/dx, N = h P/V^2: physics (36).
+// Numerator of dN/dx, where N = h P/V^2: physics (36).
 Polynomial<7> normal_derivative(const ForcePolynomials& p) {
     const Polynomial<6> moment = p.height * p.normal;
     return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
 }
 
-// Numerator of d(F/N)^2/dx over Q, (F/N)^2 = G Q^2/P^2: physics (36).
+// Numerator of d(F/N)^2/dx divided by Q, where (F/N)^2 = G Q^2/P^2: physics (36).
 Polynomial<11> needed_derivative(const ForcePolynomials& p) {
     const Polynomial<7> bracket =
         derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
@@ -124,8 +124,8 @@ ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& p
         if (forces.normal < extremes.least_normal.normal) extremes.least_normal = forces;
         if (forces.needed() > extremes.most_friction.needed()) extremes.most_friction = forces;
     };
-    // The zeros of N come first: of all positions with infinite |F|/N, one of them is then
-    // reported.
+    // The zeros of N come first, so that one of them is reported if several positions have an
+    // infinite |F|/N.
     for (const double x : roots_on_unit_interval(bernstein(polynomials.normal))) {
         RollingForces forces = rolling_forces(range, x);
         forces.normal = 0.0;

@@ -1,6 +1,6 @@
 // The heights h of a rolling motion, and its contact forces as rational functions of h.
 //
-// Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
+// Lengths are in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
 // k^2, u = h^2, y = u - B, s = K + 1 + B and the energy above the height e = H - h, H = E/(m g):
 //     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D    physics (32)
 //     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
@@ -75,7 +75,8 @@ struct RollingForces {
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
-    // angle() is from the flat position, 0 .. pi/2; angle_to_tip() is accurate near the tip.
+    // angle() is measured from the flat position, 0 .. pi/2; angle_to_tip() is accurate near the
+    // tip.
     double angle() const { return std::atan2(sin, cos); }
     double angle_to_tip() const { return std::atan2(cos, sin); }
     // The friction needed, |F|/N; infinite where N <= 0, unless N = F = 0.

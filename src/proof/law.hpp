@@ -8,13 +8,14 @@
 
 namespace rolling_ellipse {
 
-// Margin of the law for friction to one side, -1 or 1; with infinite friction, the normal force.
+// The margin of the law for friction to one side, -1 or 1; for infinite friction, it is the normal
+// force.
 inline double law_margin(const ContactForce& force, double friction, double side) {
     if (std::isinf(friction)) return force.normal;
     return friction * force.normal - side * force.friction;
 }
 
-// Margin of the law for friction to either side: the law holds where it is positive.
+// The margin of the law for friction to both sides; the law holds where the margin is positive.
 inline double law_margin(const ContactForce& force, double friction) {
     return law_margin(force, friction, std::copysign(1.0, force.friction));
 }
@@ -36,8 +37,8 @@ inline bool at_the_limit(const ContactForce& force, double friction) {
            law_rounding * law_size(force, friction) + least_friction * std::abs(force.normal);
 }
 
-// A slightly larger friction coefficient, so that a law at its limit holds by a margin larger than
-// rounding error.
+// A slightly larger friction coefficient, with which a law at its limit holds by a margin larger
+// than the rounding error.
 inline double beyond_the_limit(double friction) {
     return friction * (1 + 8 * law_rounding) + 8 * least_friction;
 }

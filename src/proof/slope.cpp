@@ -20,7 +20,7 @@ Scene downhill(Scene scene) {
 }
 
 // The well between two upright equilibria, half a turn apart: W = D omega^2/2 rises up to the lying
-// equilibrium and falls beyond it, as dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics
+// equilibrium and falls beyond it, since dW = (g sin(alpha) h - g cos(alpha) h') dtheta by physics
 // (18).
 class Well {
   public:

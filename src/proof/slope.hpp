@@ -15,8 +15,8 @@ struct Meeting {
     double heading;
 };
 
-// `touched`: the first point at which the margin of the law is 0 within rounding, not negative.
-// `broken`: the first point at which the law fails; the search ends there.
+// `touched`: the first point at which the margin of the law is 0 to within rounding, but not
+// negative. `broken`: the first point at which the law fails; the search ends there.
 struct LawMeetings {
     std::optional<Meeting> touched;
     std::optional<Meeting> broken;
@@ -38,7 +38,7 @@ class LawWatch {
     bool examine(const Mirror&) { return false; }
     bool examine(const Repeat&) { return false; }
 
-    // The limits found so far. A motion that ends close to the limit counts as having touched it.
+    // The meetings found so far. A motion that ends close to the limit counts as having touched it.
     LawMeetings met() const;
 
   private:
@@ -47,7 +47,7 @@ class LawWatch {
     // A stretch of time on which the margin is within rounding of 0.
     struct Stretch {
         bool open = false;
-        std::optional<Meeting> begin;  // empty if it starts with the motion
+        std::optional<Meeting> begin;  // empty if the stretch starts with the motion
     };
 
     bool examine_parts(const SlopePiece& piece);

@@ -4,7 +4,8 @@
 // that the law first breaks at the first root of a polynomial. In a half turn of a run or climb,
 // polynomials on its parts may provide a faster proof that the law holds. Half turns need not be
 // followed one by one: at each angle N and F are linear in W = D omega^2/2, physics (58), so that
-// the law holds on an interval of W. A law that holds in two half turns holds in all between.
+// the law holds on an interval of W. If it holds in two half turns, it holds in all half turns
+// between them.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -67,7 +68,7 @@ struct LawWatch::Law {
         return least > tolerance();
     }
 
-    // 0, 1 and the points between them at which the margin passes +tolerance or -tolerance.
+    // 0, 1 and the points between them at which the margin crosses +tolerance or -tolerance.
     std::vector<double> divisions() const {
         std::vector<double> places{0.0, 1.0};
         for (const double level : {tolerance(), -tolerance()}) {
@@ -182,10 +183,10 @@ LawMeetings LawWatch::met() const {
 
 namespace {
 
-// Whether the law provably holds on a part with the given forces: its margin at each node exceeds
-// the largest possible change of the margin between a node and the points around it, since |P_k'|
-// <= k (k + 1)/2 on -1 ... 1. The omitted terms, which fall at least by a factor of 2 per degree,
-// change it by less than 40 times the sum of the last two.
+// Whether the law provably holds on a part with the given forces. The margin at each node must
+// exceed the largest possible change of the margin between a node and the points around it, which
+// follows from |P_k'| <= k (k + 1)/2 on -1 ... 1. The omitted terms, which fall by a factor of at
+// least 2 per degree, change the margin by less than 40 times the sum of the last two terms.
 bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, double friction) {
     constexpr double to_a_node = 0.077;  // largest distance of a point from the nearest node
     constexpr double resolved = 1e-8;
@@ -253,15 +254,15 @@ double broken_about(const SlopeRun& run, double friction) {
     return least;
 }
 
-// Combines the results for a stretch of a motion and for a later one, or a later part of the same
-// one.
+// Combines the results for a stretch of a motion with those for a later stretch, or for a later
+// part of the same stretch.
 LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
     return {met.touched ? met.touched : later.touched, met.broken ? met.broken : later.broken};
 }
 
-// The limits reached in the first half turn of a run in which the law breaks; the law then breaks
-// in all later half turns, too. The search takes growing steps from a guess, then bisects. The run
-// is followed at least up to a time from its start.
+// The limits reached in a run. If the law breaks in a half turn, it breaks in all later ones, too.
+// The search for the first of them takes growing steps from a guess, then bisects. The run is
+// followed at least up to the time `until` after its start.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
     const double all = run.half_turns - 1;

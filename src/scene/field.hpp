@@ -7,7 +7,8 @@
 
 namespace rolling_ellipse {
 
-// A unit as printed (UTF-8; C2 B2 is a superscript 2) and its exponents of metre, second, kilogram.
+// A unit as printed (UTF-8; C2 B2 is a superscript 2) and its exponents of metre, second and
+// kilogram.
 struct Unit {
     const char* symbol;
     int length = 0;

@@ -6,9 +6,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// The velocity of the material contact point, physics (12), v along the ground and u away from it,
-// and the matrix by which an impulse there changes it (Delassus matrix), physics (39). W. J.
-// Stronge, Impact Mechanics (2000), ch. 3.
+// The velocity of the material contact point, v along the ground and u away from it, physics (12),
+// and the Delassus matrix, by which an impulse at the contact changes that velocity, physics (39).
+// See W. J. Stronge, Impact Mechanics (2000), ch. 3.
 struct Contact {
     double v;
     double u;
@@ -19,8 +19,9 @@ struct Contact {
     double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
 };
 
-// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) is more accurate for
-// a light body that turns fast, u - v gtn/gtt for a body that hardly moves into the ground.
+// Two formulas give u_without_slip. The first, (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2
+// + h^2), is more accurate for a body of small inertia that turns fast; the second, u - v gtn/gtt,
+// for a body that hardly moves into the ground.
 Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate,
                 const LowParts& low = {}) {
     const double inverse_mass = 1 / scene.mass;
@@ -50,7 +51,7 @@ struct Reaction {
     bool sticks = false;   // whether the collision ends with v = 0
 };
 
-// Infinite friction: the limit of the law below, physics (42), avoiding a product infinity * 0.
+// Infinite friction, physics (42): the limit of the law below, without a product infinity * 0.
 Reaction unlimited_friction(const Contact& c, double restitution, Restitution law) {
     const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
@@ -59,7 +60,7 @@ Reaction unlimited_friction(const Contact& c, double restitution, Restitution la
         return {-(c.v + c.gtn * normal) / c.gtt, normal, rebound, true};
     }
     if (u_without_slip <= 0) {
-        // v = 0 and u = -e u_without_slip: the full 2 x 2 system.
+        // Solves the full 2 x 2 system for v = 0 and u = -e u_without_slip.
         const double normal = -(1 + restitution) * u_without_slip * c.gtt / c.determinant;
         return {-(c.v + c.gtn * normal) / c.gtt, normal, -restitution * u_without_slip, true};
     }
@@ -67,16 +68,17 @@ Reaction unlimited_friction(const Contact& c, double restitution, Restitution la
     return {(rebound - c.u) / c.gtn, 0.0, rebound, false};  // friction alone stops the approach
 }
 
-// The impulse path of Coulomb friction, physics (41), with the normal impulse p as its parameter: u
-// and v change linearly while the contact slips, and while it sticks. Compression ends at u = 0,
-// and restitution ends as its law prescribes.
+// The impulse path of Coulomb friction, physics (41), with the normal impulse p as its parameter.
+// Both u and v are linear in p while the contact slips and while it sticks. Compression ends at u =
+// 0; the law of restitution decides where restitution ends.
 class ImpulsePath {
   public:
     ImpulsePath(const Contact& c, double restitution, Restitution law)
         : u_(c.u), restitution_(restitution), rebound_(-restitution * c.u), law_(law) {}
 
     // Follows the path with du/dp = `du` and a tangential impulse of `tangential` per unit of
-    // normal impulse, for a normal impulse of at most `most`; false if restitution ends earlier.
+    // normal impulse, for a normal impulse of at most `most`. Returns false if restitution ends
+    // earlier.
     bool follow(double du, double tangential, double most) {
         double left = most;
         if (u_ < 0) {
@@ -104,7 +106,7 @@ class ImpulsePath {
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
-    // The normal impulse that remains until restitution ends, and u at that end.
+    // The normal impulse still to come until restitution ends, and u at that moment.
     struct End {
         double p;
         double u;
@@ -157,21 +159,21 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
     return path.result(sticks);
 }
 
-// Adds a change to a number and its low part.
+// Adds a change to a number that is stored in two parts.
 void add(double change, double& number, double& low) {
     const DoubleDouble sum = DoubleDouble{number, low} + change;
     number = sum.high;
     low = sum.low;
 }
 
-// The gap rate afterwards is exactly the rebound, and v exactly 0 if the contact sticks. The
-// angular momentum about the contact, which no reaction changes, gives the sticking angular
-// velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
-// rebound; if omega changes little, its change is computed from v and u before the collision. If
-// the contact keeps slipping, the impulse gives x_dot and omega. If little is left of the omega of
-// a light, fast body, the angular momentum about another point on the line of the impulse, at the
-// height of the centre, gives omega accurately. If little is left of h' omega, the impulse gives
-// z_dot.
+// After the collision, the gap rate is exactly the rebound, and v is exactly 0 if the contact
+// sticks. The reaction does not change k^2 omega + h x_dot + h' z_dot, the angular momentum about
+// the contact. If the contact sticks, x_dot = h omega and z_dot = h' omega + rebound afterwards,
+// which gives omega, physics (40); if omega changes little, its change is computed from v and u
+// before the collision instead. If the contact keeps slipping, the impulse gives x_dot and omega.
+// Where most of omega would cancel, the angular momentum about another point on the line of the
+// impulse, at the height of the centre, can give omega more accurately. Where h' omega + rebound
+// would cancel, the impulse gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Contact& c, const Reaction& reaction,
            State& state, LowParts& low) {
     const double k2 = scene.inertia / scene.mass;
@@ -253,8 +255,8 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // An angle this small counts as 0: the slide would end at a time that doubles cannot tell from
-    // 0.
+    // A negligible angle counts as 0, since the slide would end at a time that is indistinguishable
+    // from 0 in double precision.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;

@@ -1,6 +1,6 @@
 // Collisions with the ground: Coulomb friction along the impulse path, energetic restitution (W. J.
-// Stronge, Impact Mechanics (2000), ch. 3 to 5). An applied impulse is treated as a collision,
-// without restitution, of the body that it has just set in motion.
+// Stronge, Impact Mechanics (2000), ch. 3 to 5). An applied impulse first changes the velocities of
+// the free body, which then collides with the ground without restitution.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -8,15 +8,15 @@
 namespace rolling_ellipse {
 
 // The law of restitution with a coefficient e. Stronge: restitution returns e^2 of the work of
-// compression. Poisson: its normal impulse is e times that of compression (Traite de mecanique,
-// 1833). Newton: the gap opens e times as fast as it closed.
+// compression. Poisson: the normal impulse of restitution is e times that of compression (Traite de
+// mecanique, 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
 
 template <>
 inline constexpr std::array names<Restitution>{"STRONGE", "POISSON", "NEWTON"};
 
 // The state just after the applied impulse, or the scene's own state if there is none. Its mode
-// follows from its velocities; contact/sliding.hpp has the mode that the forces allow.
+// follows from its velocities; contact/sliding.hpp determines the mode that the forces allow.
 struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]
@@ -25,7 +25,7 @@ struct InitialState {
     double slip_removed = 0.0;  // initial slip that infinite friction stops at once [m/s]
     double energy_lost = 0.0;   // energy lost when the slip stops [J]
     double gap_rate = 0.0;      // rate of the gap, without cancellation; 0 in contact [m/s]
-    bool touching = false;      // the body was on the ground before the impulse
+    bool touching = false;      // whether the body touched the ground before the impulse
 };
 
 inline constexpr Field<InitialState> start_fields[] = {
@@ -40,18 +40,18 @@ InitialState initial_state(const Scene& scene);
 // in units of m g times the long semi-axis.
 double energy_after_impulse(const Scene& scene, const Geometry& at);
 
-// The least coefficient of friction with which the contact does not slip after the applied impulse;
-// infinite if no finite one is enough. The scene's own coefficient is ignored; every larger one
-// leads to the same state.
+// The smallest coefficient of friction with which the contact does not slip after the applied
+// impulse; infinite if no finite coefficient suffices. The scene's own coefficient is ignored.
+// Every larger coefficient leads to the same state.
 double sticking_friction(const Scene& scene);
 
-// The kinetic energy [J] lost in a collision, never negative even with rounding.
+// The kinetic energy [J] lost in a collision; a negative result, due to rounding, is replaced by 0.
 double energy_lost(const Scene& scene, const State& before, const State& after);
 
 // The rate of the gap: the velocity of the lowest point away from the ground.
 double gap_rate(const State& state, const Geometry& at);
 
-// The low parts of the values of a state. Without them, the nearly equal rounding errors of many
+// The low parts of the numbers in a state. Without them, the nearly equal rounding errors of many
 // nearly equal impacts would add up.
 struct LowParts {
     double theta = 0.0;
@@ -60,8 +60,9 @@ struct LowParts {
     double x_dot = 0.0;
 };
 
-// The state just after the collision of a body that touches the ground (its mode unchanged) and the
-// rate of the gap. The rate before is an argument: after a low hop it is more accurate than z_dot.
+// The state of a body that touches the ground just after its collision, with its mode unchanged,
+// and the rate of the gap. The rate before the collision is an argument of its own because, after a
+// low hop, it is known more accurately than z_dot.
 struct Collision {
     State after;
     LowParts low;

@@ -11,8 +11,8 @@ namespace {
 constexpr double aspect_limit = 1e3;
 constexpr double blow_margin = 1e-12;  // for rounding, as a fraction of the long semi-axis
 
-// Rejects an inertia (a moment or k^2) out of bounds. The bounds compare k^2 with the square of the
-// long semi-axis, so that the k^2 of a valid scene is valid for a body, too.
+// Rejects a moment of inertia, or a k^2, that is out of bounds. The bounds compare k^2 with the
+// square of the long semi-axis, so that the k^2 of a valid scene is valid for a body, too.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-6;
@@ -27,12 +27,12 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
 }
 
 // Rejects a blow whose line of action misses the body. A tangent parallel to that line lies at the
-// distance `reach` from the centre: h of physics (1), in the direction across the line.
+// distance `reach` from the centre: h of physics (1) for the direction across the line.
 void require_reach(const Scene& scene, const Geometry& at, const Impulse& blow,
                    const std::string& name) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
-    const double jx = blow.jx / larger;  // jx scaled, so that its square never overflows
+    const double jx = blow.jx / larger;  // scaled so that its square does not overflow
     const double jz = blow.jz / larger;
     const double size = root_of_squares(jx, jz);
     const double across_x = -jz / size;
@@ -53,7 +53,7 @@ void require_no_approach(const State& start, const Geometry& at) {
     if (start.z != at.h || start.z_dot >= rolling) return;
     refuse("z_dot",
            "at least h'(theta)*omega = " + text(rolling) +
-               " [m/s] while touching the ground (less moves into it)",
+               " [m/s] while touching the ground (a smaller value moves into it)",
            start.z_dot);
 }
 
@@ -61,7 +61,7 @@ void require_in_size(const char* name, const Unit& unit, std::optional<double> v
     if (!value) return;
     require_finite(name, unit, *value);
     if (std::abs(*value) <= most) return;
-    refuse(name, "at most " + text(most) + in_brackets(unit) + " in size for this body", *value);
+    refuse(name, "at most +-" + text(most) + in_brackets(unit) + " for this body", *value);
 }
 
 }  // namespace

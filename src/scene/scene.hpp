@@ -1,4 +1,5 @@
-// The body, its ground, its start and its state as plain values, and the rules they must obey.
+// The body, the ground, the start and the state as plain structs, and the rules that they must
+// obey.
 #pragma once
 
 #include <algorithm>
@@ -66,7 +67,8 @@ struct Scene {
     double theta;
     double omega;
     double x;
-    // If absent, the body touches the ground and its velocity is that of rolling (0 in the air).
+    // Without z, the body touches the ground. A missing velocity is that of rolling, or 0 in the
+    // air.
     std::optional<double> z;
     std::optional<double> x_dot;
     std::optional<double> z_dot;
@@ -164,8 +166,8 @@ struct ContactSample {
     ContactForce force;
 };
 
-// Returns 0 for an angular velocity below 1e-100 rad/s, which counts as rest. Where the square of
-// an angle matters, such a small angle counts as 0, too.
+// Returns 0 for an angular velocity below 1e-100 rad/s in magnitude, which counts as rest. Where
+// the square of an angle matters, an angle below 1e-100 rad counts as 0, too.
 inline double zero_if_negligible(double value) {
     return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }
@@ -177,19 +179,19 @@ inline bool nearly_equal(double value, double target, double ulps = equal_ulps) 
     return std::abs(value - target) <= ulps * ulp;
 }
 
-// Whether x_dot is that of rolling, h omega, to within eight rounding errors of its terms: x_dot
-// and omega are rounded by half an ulp each, the product with h by 3 ulp.
+// Whether x_dot is that of rolling, h omega, to within eight times the rounding error of its terms:
+// half an ulp each for x_dot and omega, and 3 ulp for the product with h.
 inline bool is_rolling_speed(double x_dot, double h_omega) {
     constexpr double ulps_of_terms = 4;
     return nearly_equal(x_dot, h_omega, equal_ulps * ulps_of_terms);
 }
 
-// The largest angle [rad] for which states on the ground take h and h' from the rounded angle,
-// which is off by up to 6e-8 rad.
+// The largest angle [rad] for which the h and h' of a state on the ground are computed from the
+// rounded angle, whose error is then up to 6e-8 rad.
 inline constexpr double most_turned = 1e9;
 
-// Eight rounding errors of an angle, half an ulp each [rad]; beyond `most_turned` they stop
-// growing.
+// Eight rounding errors of an angle [rad], of half an ulp each. They stay constant beyond
+// `most_turned`.
 inline double angle_roundings(double theta) {
     const double size = std::min(std::abs(resolved(theta)), most_turned);
     return 0.5 * equal_ulps * (std::nextafter(size, infinity) - size);
@@ -232,8 +234,8 @@ inline bool is_weightless(const Geometry& at, double gravity_into_ground, double
            equal_ulps * epsilon * gravity_into_ground + free_acceleration_rate(at, omega) * blur;
 }
 
-// Units matched to the size of a body, powers of two, so that conversion is exact. Results computed
-// in them do not depend on the units of the input and stay in the range of doubles.
+// Units matched to the size of a body. They are powers of two, so that conversion is exact. Results
+// computed in them do not depend on the units of the input and stay in the range of doubles.
 struct Units {
     double length = 1.0;  // unit of length [m]
     double time = 1.0;    // unit of time [s]
@@ -250,7 +252,7 @@ struct Units {
 // The powers of two near the long semi-axis L, sqrt(L/g) and the mass.
 Units natural_units(const Body& body, double mass = 1.0);
 
-// Converts a scene to other units, except its impulse.
+// Converts a scene, except its impulse, to other units.
 Scene in_units(Scene scene, const Units& units);
 
 State in_units(const State& state, const Units& units);
@@ -268,23 +270,24 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
-// Where a scene comes from: typed by a user, or reached by a motion. A body whose state was reached
-// by a motion may have gained energy down a slope, and may be about to hit the ground it touches.
+// Where a scene comes from: typed by a user, or reached by a motion. In a state reached by a
+// motion, the body may have gained energy down a slope, and may be about to hit the ground that it
+// touches.
 enum class Origin { typed, reached };
 
-// Whether rolling resistance can balance a lever, given as the sum of two terms, to within
-// rounding.
+// Whether rolling resistance can balance the lever one + other, to within rounding.
 inline bool is_within(double resistance, double one, double other) {
     const double rounding = equal_ulps * epsilon * (std::abs(one) + std::abs(other));
     return resistance > 0 && std::abs(one + other) <= resistance + rounding;
 }
 
-// Whether a body that neither slips nor turns is kept from turning: its centre lies above the patch
-// of contact, which extends by the lever of rolling resistance to both sides, physics (63).
+// Whether a body that neither slips nor turns is held in place, physics (63). This is so if its
+// centre lies above the contact patch, which extends to both sides by the lever of rolling
+// resistance.
 bool is_held(const Scene& scene, const Geometry& at);
 
-// The lever of rolling resistance, whose couple opposes a rotation or one that is about to start;
-// positive if the rotation is clockwise.
+// The lever of rolling resistance, whose couple opposes a rotation, even one that is only about to
+// start; positive if the rotation is clockwise.
 inline double lever_against(const Scene& scene, double rotation) {
     return scene.rolling_resistance > 0 ? std::copysign(scene.rolling_resistance, rotation) : 0.0;
 }
@@ -305,10 +308,10 @@ void validate(const Impulse& impulse);
 void validate(const Scene& scene, Origin origin = Origin::typed);
 
 // Throws unless the impulse is finite, its line of action meets the body and the resulting motion
-// is not too fast; the error has the name.
+// is not too fast. The error message uses the given name.
 void validate_blow(const Scene& scene, const Geometry& at, const std::string& name = "impulse");
 
-// The scene of a body that continues from a state of its motion, without an impulse.
+// The scene of a body that continues, without an impulse, from a state that its motion has reached.
 Scene reached(Scene scene, const State& state);
 
 // The state before any impulse, given the geometry at its angle. Absent values are filled in;

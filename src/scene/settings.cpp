@@ -85,7 +85,7 @@ void validate_stages(const Settings& settings) {
     if (*settings.stages < 2 || *settings.stages > 4) refuse("stages", "2, 3 or 4", stages);
 }
 
-// Rejects what needs events, for a model that has none.
+// Rejects an argument that needs events if the model has none.
 void require_events(const Settings& settings, const char* argument, const std::string& none,
                     const std::string& given) {
     const bool by_rolling = settings.method != Method::automatic;
@@ -96,7 +96,7 @@ void require_events(const Settings& settings, const char* argument, const std::s
     }
 }
 
-// Rejects blows out of order or outside of the span.
+// Rejects blows that are out of order or outside the span.
 void validate_blows(const Settings& settings, double t_end) {
     if (settings.blows.empty()) return;
     require_events(settings, "blows", "()", text(settings.blows.front().t) + " s");
@@ -104,7 +104,7 @@ void validate_blows(const Settings& settings, double t_end) {
     for (const Blow& blow : settings.blows) {
         if (!(blow.t >= last && blow.t <= t_end)) {
             refuse("blows",
-                   "at times [s] that do not fall, within the motion, [0, " + text(t_end) + "]",
+                   "at times [s] that do not decrease, within the motion, [0, " + text(t_end) + "]",
                    text(blow.t) + (last > 0 ? " after " + text(last) : ""));
         }
         last = blow.t;
@@ -132,7 +132,7 @@ void validate(const Settings& settings, double t_end) {
         throw std::invalid_argument("rtol and atol must not both be 0, got 0.0 and 0.0");
     }
     validate_method(settings);
-    constexpr double largest_gain = 1e50;  // its square times a residual is a force
+    constexpr double largest_gain = 1e50;  // its square times a residual must not overflow
     for (const double gain : settings.baumgarte) {
         if (!(gain >= 0 && gain <= largest_gain)) {
             refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);

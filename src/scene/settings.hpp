@@ -1,4 +1,4 @@
-// The settings that choose how a motion is computed, and the rules they must obey.
+// The settings that choose how a motion is computed, and the rules that they must obey.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct Blow {
     Impulse impulse;
 };
 
-// Where a motion stops: at events of some kinds, or once it is proved to do the same for ever.
+// Where a motion stops: at events of some kinds, or once it is proved to stay the same for ever.
 struct Stop {
     long kinds = 0;  // the sum of 1 << EventKind
     bool decided = false;
@@ -58,7 +58,7 @@ struct Settings {
     std::optional<double> rest_speed;  // slower bounces are summed [m/s]; if absent, by size
     std::vector<Blow> blows = {};      // in order of time
     Stop stop = {};
-    long count = 1;  // the motion stops at this event of the kinds of `stop`
+    long count = 1;  // the motion stops at the event of this number among the kinds of `stop`
 
     bool is_for_events() const { return stop || !blows.empty(); }
 };
@@ -78,7 +78,7 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
                                             std::pair{"stop", &Settings::stop},
                                             std::pair{"count", &Settings::count}};
 
-// Called now and then during a long computation; throws to stop it.
+// Called from time to time during a long computation; throws to stop the computation.
 using Checkpoint = std::function<void()>;
 
 // Throws std::invalid_argument, naming the argument, the requirement and the value given.

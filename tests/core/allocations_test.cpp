@@ -157,7 +157,7 @@ void bodies_allocate_nothing() {
     }
 }
 
-// The counter sees the allocation of one vector.
+// The counter registers the allocation of one vector.
 void it_counts() {
     const long once = allocations([] { std::vector<double> one(3); });
     check(once == 1, "a vector", once, 1);

@@ -62,7 +62,8 @@ void equations_are_solved_whatever_their_order(Number unit) {
     CHECK(!LU<Number, 3>(0.0 * rows).solve(right).allFinite());
 }
 
-// A polynomial that is negative from 0.25 to 0.75; a constant makes it touch zero or stay above.
+// The polynomial is negative from 0.25 to 0.75; with a constant added, it only touches zero, or is
+// negative only near 0.5.
 void the_first_place_where_a_polynomial_is_negative() {
     const Polynomial<2> dips = polynomial(-0.25, 1.0) * polynomial(-0.75, 1.0);
     const auto place = first_negative(bernstein(dips));
@@ -70,7 +71,8 @@ void the_first_place_where_a_polynomial_is_negative() {
     CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
     const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
     CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
-    // A polynomial that starts at zero and rises is not negative there; one below zero is.
+    // A polynomial that starts at zero and rises is not negative there; one that starts below zero
+    // is.
     const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
     CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
     CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
@@ -85,7 +87,7 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// Each segment gives coordinates, states and flow samples of the same motion, of a body that rolls,
+// Each segment provides coordinates, states and flow samples of the same motion. The body rolls,
 // slides, leaves the ground and lands.
 void every_segment_knows_every_kind_of_sample() {
     const Scene scene = bouncing(0.0, 5.5, 0.3);

@@ -1,6 +1,6 @@
-// Several threads in the core at once give the same bits as one thread. (In much of the package
-// Python's lock, where there is one, keeps threads apart.) ThreadSanitizer (preset tsan) shows that
-// they share no mutable state.
+// Several threads that run the core at the same time give the same bits as one thread. (In much of
+// the package, Python's global lock, where there is one, lets only one thread run at a time.)
+// ThreadSanitizer (preset tsan) shows that they share no mutable state.
 //
 //     cmake --preset tsan && cmake --build --preset tsan && ctest --preset tsan
 
@@ -21,7 +21,8 @@ using namespace rolling_ellipse;
 namespace {
 
 constexpr int threads = 8;
-// Rounds of each thread, through jobs 5 apart, so that 8 threads do all jobs, most of them twice.
+// Rounds of each thread, which takes every fifth job, so that 8 threads do all jobs, most of them
+// twice.
 constexpr int rounds = 8;
 
 using Numbers = std::vector<double>;
@@ -92,7 +93,7 @@ Numbers judgements(double omega) {
             period(scene_of(omega))};
 }
 
-// The jobs of a thread; one of them samples a motion that all threads share.
+// All jobs; one of them samples a motion that the threads share.
 std::vector<Work> works() {
     static const Solution shared =
         simulate(scene_of(6.0), loose(Model::contact, Method::automatic), 2.0, [] {});

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compiles the core for web pages: tools/live/build.sh [file.wasm.gz]
-# Needs em++ (apt-get install emscripten) and a minute of two cores. Sources are those of
-# CMakeLists.txt, and so are the flags of their arithmetic; Eigen is that of $PYTHON's wheel
-# cmeel-eigen, or the system's.
+# Compiles the core for web pages: tools/live/build.sh [file.wasm.gz]. This needs em++ (apt-get
+# install emscripten) and takes a minute on two cores. The sources and the floating-point flags are
+# those of CMakeLists.txt. Eigen is taken from the wheel cmeel-eigen of $PYTHON or, without it, from
+# the system.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 target=$(realpath -m "${1:-python/rolling_ellipse/_player/live.wasm.gz}")
@@ -11,7 +11,7 @@ print(*(p for d in sys.path for p in glob.glob(d + '/cmeel.prefix/include/eigen3
 list=$(sed -n '/add_library(rolling_ellipse_core/,/)/p' CMakeLists.txt)
 export FLAGS="-std=c++17 -O2 -DNDEBUG -fwasm-exceptions -ffp-contract=off -fno-math-errno \
   -DEIGEN_DONT_VECTORIZE -Isrc -I${eigen:-/usr/include/eigen3}"
-command -v ccache > /dev/null && export EM_COMPILER_WRAPPER=ccache  # compiles what has changed
+command -v ccache > /dev/null && export EM_COMPILER_WRAPPER=ccache  # compiles only what has changed
 FOLDER=$(mktemp -d)
 export FOLDER
 trap 'rm -r "$FOLDER"' EXIT

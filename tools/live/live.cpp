@@ -1,5 +1,5 @@
 // The core for a web page: simulates a scene, describes its motion in sentences, then samples it at
-// any times; or tells only the first outcome. tools/live/build.sh compiles it.
+// any times; or reports only the first outcome. tools/live/build.sh compiles it.
 #include "describe.hpp"
 
 namespace rolling_ellipse {
@@ -69,7 +69,7 @@ std::size_t events_until_blow() {
 }
 
 // The part of a question from the last blow of the last motion on: a scene in the state before that
-// blow, with the impulse that the question has for it. Without a blow it is the whole question.
+// blow, with the impulse of the blow in the question. Without a blow, it is the whole question.
 Question from_blow(const Question& of) {
     const std::size_t count = events_until_blow();
     if (count == 0) return of;
@@ -144,7 +144,7 @@ extern "C" const char* columns() {
 }
 
 // Simulates the motion of a question. The answer is JSON, with sentences if `in_words` is set, or
-// the text of a refusal.
+// an error message.
 extern "C" const char* ask(const double* asked, int in_words) {
     try {
         question = question_from(asked);
@@ -161,8 +161,8 @@ extern "C" const char* ask(const double* asked, int in_words) {
 }
 
 // The first outcome after the last blow that `ask` would report for the last motion with another
-// last blow, or the text of a refusal. Only a body that is struck in the air is simulated; the last
-// motion stays.
+// last blow, or an error message. Only a body that is struck in the air is simulated; the last
+// motion remains available to `samples`.
 extern "C" const char* first(const double* asked) {
     try {
         const Question struck = from_blow(question_from(asked));

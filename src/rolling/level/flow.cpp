@@ -9,7 +9,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The energy as a height above the ground, the tip and the flat position [m], physics (26).
+// The energy as a height [m] above the ground, above the tip and above the flat position, physics
+// (26).
 EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
     const double h = std::sqrt(h2);
@@ -18,8 +19,8 @@ EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     return {kinetic + h, kinetic - under_tip(at, h), kinetic + over_flat(at, h)};
 }
 
-// Whether the last terms of a series at 1 are within half an ulp of it; the omitted terms are a
-// tenth of that.
+// Whether the last two terms of a series at 1 are at most half an ulp of its sum; the omitted terms
+// are a tenth of that.
 bool is_complete(const Series& series) {
     constexpr double half_ulp = 1e-16;
     const double size = std::max({std::abs(series[0]), std::abs(series[1]), std::abs(series[2])});
@@ -28,8 +29,9 @@ bool is_complete(const Series& series) {
     return last <= half_ulp * size;
 }
 
-// The state after a short move, by one power series, which keeps small changes accurate; empty if
-// the move is too long for it, or needs none: for a body at rest, a circle, or t = 0.
+// The state after a short move, from a single power series, which keeps small changes accurate.
+// Empty if the move is too long for one series, and if none is needed: for a body at rest, a
+// circle, or t = 0.
 std::optional<FlowSample> short_move(const RollingStart& from, double x, double t) {
     const auto [unit, short_axis, c2, sin, cos] = from.view;
     if (from.rests || c2 == 0 || t == 0 || !may_be_short(from, t)) return std::nullopt;
@@ -55,7 +57,7 @@ FlowSample long_move(const RollingFlow& flow, double t) {
     return moved;
 }
 
-// A motion, complete except for its quarter.
+// A motion, complete except for the time and path of a quarter turn.
 RollingFlow flow_of(const RollingStart& from, double x) {
     RollingFlow flow;
     flow.kind = from.rests ? MotionKind::rest : MotionKind::uniform;
@@ -71,8 +73,8 @@ RollingFlow flow_of(const RollingStart& from, double x) {
 void set_quarter(RollingFlow& flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     set_quarter(flow.phase);
-    // With a tail the steps end 1e-9 of the path too early, so the path of the quarter is
-    // recomputed.
+    // In a map with a tail, the steps end 1e-9 of the path before the tip, so the path of the
+    // quarter is recomputed.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path = path_from_flat(flow.from.view.lying(), 1.0, 0.0);
     }
@@ -83,7 +85,8 @@ void set_quarter(RollingFlow& flow) {
 RollingStart rolling_start(const Body& body, double theta, double omega) {
     omega = zero_if_negligible(omega);
     FlatView view = flat_view(body.axes(), theta);
-    // A body that starts on the tip moves down; both sides give the same bits.
+    // On the tip, the sign of phi is chosen so that the body moves down; both signs give the same
+    // bits.
     if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
     const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
     return {body, theta, omega, view, energy_height(view, body, omega), rests};
@@ -145,7 +148,7 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         sin = flow.direction * (cos < 0 ? -sin : sin);
         cos = std::abs(cos);
     } else {
-        // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller values is more
+        // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller numbers is more
         // accurate.
         const double amplitude = flow.amplitude;
         const double kappa = flow.phase.integrand.kappa;

@@ -1,8 +1,9 @@
 // Exact rolling on level ground: its start and the state at any time. There are no steps: a state
 // costs the same however far it is from the start.
 //
-// A motion is described by its phase. Types below hold the integrand of the time, the coordinate of
-// integration and the integrals, for one body (T = double) or one per lane of a Pack.
+// A motion is described by its phase. The types below store the integrand of the time, the
+// coordinate of integration and the integrals, for one body (T = double) or for one body in each
+// lane of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
@@ -70,8 +71,8 @@ struct PhaseMap {
     T quarter;  // Y, the tip or turning point; infinite on the separatrix
     T step;     // step of the trapezoidal rule for a quarter
     T steps;    // steps in a quarter, or from the flat position to the tail
-    // Whether the quarter is longer than its steps, which end within rounding of the tip. A body
-    // with a tail is computed alone.
+    // Whether the quarter extends beyond its steps, which then end within rounding of the tip. A
+    // body with a tail is computed alone, not side by side with others.
     Mask<T> has_tail;
     T grade;  // g of physics (61)
     T kappa;
@@ -83,8 +84,8 @@ struct PhaseMap {
     T b[3];
 };
 
-// A point in the coordinate y = quarters Y + offset; `quarters` is the nearest quarter unless a
-// function says otherwise.
+// A point in the coordinate y = quarters Y + offset; `quarters` is the nearest whole number unless
+// a function says otherwise.
 template <class T>
 struct PhasePlace {
     T quarters;
@@ -98,7 +99,8 @@ struct PhasePoint {
     T cos;
 };
 
-// Time [s], angle [rad] and path of the centre [m] over an interval of y, or their rates in y.
+// Time [s], angle [rad] and path of the centre [m] over an interval of y, or their derivatives with
+// respect to y.
 template <class T>
 struct PhaseIncrement {
     T time;
@@ -106,8 +108,8 @@ struct PhaseIncrement {
     T path;
 };
 
-// Doubles in the widest Pack. The rates of one body are computed at several points side by side,
-// one such Pack at a time.
+// Number of doubles in the widest Pack. The rates of one body are computed at several points side
+// by side, one such Pack at a time.
 inline constexpr int widest_pack = 8;
 inline constexpr int most_places = 48;  // room for the nodes of a panel and its end
 
@@ -126,14 +128,14 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // time in which the phase advances by pi
     T quarter_path;            // path of the centre in a quarter of a rotation
-    // The following give a first guess of the point at a time:
+    // The following members give a first guess of the point at a given time:
     static constexpr int most_steps = 160;  // largest number of steps in a map
     T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond both ends
-    T time[most_steps + 2];                 // time from flat to the steps, by cubics for dt/dy
+    T time[most_steps + 2];                 // time from flat to the steps, from cubics for dt/dy
 };
 
-// The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis as the
-// unit of length and a unit of time of their own.
+// The constants of the power series in time (rolling/level/motion.hpp). The unit of length is the
+// long semi-axis; the unit of time is chosen for each table or move.
 struct SeriesConstants {
     double short_axis2;
     double c2;
@@ -174,8 +176,8 @@ struct RollingFlow : PhaseMotion<double> {
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
-// Whether one power series about the start may cover a move, judged by the time scales of the flat
-// position and of the rotation.
+// Whether one power series about the start may cover a move, judged by the time scales of rocking
+// about the flat position and of the rotation.
 inline bool may_be_short(const RollingStart& from, double t) {
     const double rate = std::sqrt(from.body.gravity / from.view.short_axis);
     return std::abs(t) * (std::abs(from.omega) + rate) < 0.05;

@@ -17,11 +17,12 @@ constexpr int most_keys = 144;
 constexpr int no_key = -1;
 
 // The key by which bodies are sorted, so that bodies side by side have similar numbers of steps in
-// a quarter; `no_key` for a body that the kernel cannot take.
+// a quarter; `no_key` for a body that the kernel cannot compute.
 int key_of(const RollingStart& start, double t) {
     const bool is_finite = std::abs(t) <= std::numeric_limits<double>::max();
     if (start.rests || start.view.c2 == 0 || t == 0 || !is_finite) return no_key;
-    // A short move is the small difference of two times; only its power series stays accurate.
+    // For a short move, the kernel would subtract two nearly equal times; only a power series is
+    // accurate.
     if (may_be_short(start, t)) return no_key;
     const PhaseIntegrand<double> integrand = phase_integrand(phase_start(start));
     const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
@@ -75,7 +76,8 @@ void sample(const Kernel& kernel, const RollingStart* starts, const double* time
                 ++ends[keys[k]];
             }
         }
-        // Counting sort: `ends` first holds the starts, and each of them then advances to its end.
+        // Counting sort: `ends` first contains the start of each key's range, which then advances
+        // to its end.
         int sorted = 0;
         for (int& end : ends) sorted += std::exchange(end, sorted);
         std::array<std::uint32_t, most_bodies> places;

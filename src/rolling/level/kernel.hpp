@@ -1,6 +1,6 @@
-// Exact rolling of many bodies, and of one motion at many times by a table; also the inner loops of
-// both. The same code is compiled for several vector levels (lanes_*.cpp) and gives the same bits
-// at each (numerics/lanes.hpp).
+// Exact rolling of many bodies at one time each, and of one body at many times with a table. Also
+// the inner loops of both: the same code is compiled for several vector levels (lanes_*.cpp) and
+// gives the same bits at each (numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,13 @@ inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path and padding: a row fills a register
 
-// Power series in time of angle, angular velocity and path about a point. The last row is zero,
-// since rows are read in pairs.
+// Power series in time for the angle, the angular velocity and the path, about a point. The last
+// row is zero, since rows are read in pairs.
 struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
 
-// A point of a table, and the motion there when on the way up.
+// A point of a table, and the motion at this point on the way up from the flat position.
 struct TablePlace {
     double y;         // the coordinate of rolling/level/flow.hpp
     double sin, cos;  // sine and cosine of the angle from the flat position
@@ -35,7 +35,7 @@ struct TablePlace {
     double holds;       // 1 if the series has full double precision within its radius, else 0
 };
 
-// The series for an interval of times from the flat position.
+// The series for an interval of the time since the flat position.
 struct FlowPiece {
     DoubleDouble centre;
     double low;
@@ -55,7 +55,8 @@ struct FlowReader {
     DoubleDouble half_turn;
     double half_turns_per_time;
     DoubleDouble start_time;
-    // `spin`: sign of the motion after whole turns; `alternates`: 1 if half turns change it.
+    // `spin` is the sign of omega after an even number of half turns; `alternates` is 1 if every
+    // half turn changes this sign.
     double spin;
     double alternates;
     double quarters_per_half_turn;
@@ -67,7 +68,7 @@ struct FlowReader {
     double theta;
     double x;
     double start_radius;  // largest |t| of the series about the start [s]
-    TableSeries start;    // series about t = 0; angle and path are measured from there
+    TableSeries start;    // series about t = 0, where its angle and path are 0
 };
 
 // Arrays for the samples at many times.
@@ -93,20 +94,21 @@ struct Kernel {
     void (*rates)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                   double quarters, const double* offsets, int count, PhaseRates<double>& found);
     // The states of bodies, each at its own time: starts[p], times[p] and samples[p] for every p in
-    // `places`. A body is left open if it must be sampled alone. Null in the kernel that takes
-    // bodies one by one.
+    // `places`. `is_open` marks a body that must still be sampled alone. Null in the kernel that
+    // computes bodies one by one.
     void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
                    int count, FlowSample* samples, bool* is_open);
     // Computes the motion at each point from its coordinate y.
     void (*states)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                    double amplitude, TablePlace* places, int count);
-    // Writes the series about the points into pieces, in these units; the path starts at 0.
+    // Writes the series about the points into pieces. `time_unit` and `length_unit` are the units
+    // of `body`; the path of each series starts at 0.
     void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
                    TablePlace* places, int count, FlowPiece* pieces);
-    // Index of the first time that is NaN or beyond +-`most`; n if all are fine.
+    // Index of the first time that is NaN or beyond +-`most`; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
-    // Samples a motion at many times. theta is NaN where no piece reaches; returns whether that
-    // occurs.
+    // Samples a motion at many times. theta is NaN at times beyond the last piece; returns whether
+    // there are any.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
                  const FlowColumns& out);
 };
@@ -114,20 +116,20 @@ struct Kernel {
 Kernel kernel_avx2();
 Kernel kernel_avx512();
 
-// The kernels that this processor can run, fastest last. The first takes bodies one by one.
+// The kernels that this processor can run, fastest last. The first computes bodies one by one.
 const std::vector<Kernel>& kernels();
 
 // The fastest kernel of this processor.
 const Kernel& kernel();
 
 // The states of n bodies, each at its own time, several side by side in the lanes of a vector
-// register. A body gets the same bits as when computed alone, at every vector level and whatever
-// its neighbours. The bodies are not validated; throws std::invalid_argument for a time out of
-// range.
+// register. Each result has the same bits as when the body is computed alone, at every vector level
+// and whatever the other bodies are. The bodies are not validated; throws std::invalid_argument for
+// a time out of range.
 void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples);
 
-// The table of a rotation or a libration, for any time. It is never copied, since the reader that
+// The table of a rotation or a libration, for any time. It cannot be copied, since the reader that
 // is passed to a kernel points to the pieces and their ends.
 struct FlowTable {
     FlowTable() = default;
@@ -142,9 +144,9 @@ struct FlowTable {
 // The table of a motion; empty if no series is accurate enough.
 std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
-// Samples a motion, to which it keeps a reference, at an expected number of times. No table is made
-// for a few times, for rest, or for uniform rotation. The bits of a sample depend only on its own
-// time.
+// Samples a motion, to which the sampler keeps a reference. `expected` is the number of times to be
+// sampled; no table is made if it is small, for rest, or for uniform rotation. The bits of a sample
+// do not depend on the other times.
 class FlowSampler {
   public:
     FlowSampler(const RollingFlow& flow, std::size_t expected);

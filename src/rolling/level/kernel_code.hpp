@@ -1,5 +1,5 @@
-// The functions of a Kernel. Each vector level compiles them in a separate source, so they call no
-// function of the standard library (numerics/lanes.hpp).
+// The functions of a Kernel. They are compiled in a separate source file for each vector level, and
+// therefore call no function of the standard library (numerics/lanes.hpp).
 #pragma once
 
 #include "rolling/level/kernel.hpp"
@@ -22,7 +22,8 @@ void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
     }
 }
 
-// States of bodies side by side. `is_open` marks bodies to be sampled alone, at late times.
+// Computes the states of bodies side by side. `is_open` marks bodies whose times are so late that
+// they must be sampled alone.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
@@ -46,7 +47,8 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
     }
 }
 
-// One value of several points side by side; the first or last point fills lanes beyond the ends.
+// One number of each of several points, side by side; lanes beyond either end repeat the first or
+// last point.
 inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
     Pack found{};
     for (int lane = 0; lane < lanes; ++lane) {
@@ -95,8 +97,9 @@ void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map
     }
 }
 
-// Whether the last two terms of a series, one of which may be small by chance, are only a few
-// rounding errors of the sum to which it is added. The omitted terms are a twentieth of that.
+// Whether the last two terms of a series, one of which may be small by chance, amount to only a few
+// rounding errors of the number to which the series is added. The omitted terms are a twentieth of
+// that.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -149,8 +152,8 @@ struct alignas(64) Block {
     double quarters[block];
 };
 
-// Subtracts n half turns from t + start without rounding. At late times even the low part of n T is
-// longer than a piece.
+// Subtracts n half turns from t + start without rounding. At late times, even the low part of n T
+// exceeds the length of a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& block) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
@@ -212,8 +215,8 @@ inline void alone(const TableSeries& series, double z, Block& block, int i) {
     block.path[i] = sum[2];
 }
 
-// The piece at a time by bisection, without branches, which would be mispredicted for unsorted
-// times.
+// Finds the piece for a time by bisection, without branches, which would be mispredicted for
+// unsorted times.
 inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     int i = 0;
     for (int half = motion.half; half > 0; half /= 2) {
@@ -255,8 +258,8 @@ void sample_series(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// The samples of a block from its series. theta is NaN beyond the pieces; returns whether that
-// occurs.
+// Converts the values of the series in a block to samples. theta is NaN beyond the last piece;
+// returns whether that occurs.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;

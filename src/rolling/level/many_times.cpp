@@ -1,7 +1,7 @@
 // Exact rolling at many times, by Taylor series in time about points of the exact solution.
 //
 // The series cover the quarter turn (or swing) that starts at the flat position; the motion at all
-// other times is a mirror image of that. One more series starts at t = 0, so that small moves are
+// other times is a mirror image of this one. A further series about t = 0 makes small moves
 // accurate. The coefficients follow from the equation of motion by the rules for products,
 // quotients and roots of series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #include <algorithm>
@@ -42,7 +42,7 @@ class TableMaker {
     // The table of the motion; empty if no series is accurate enough.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
-        // For nearly all motions the first one suffices at this order.
+        // At this order, the first spacing suffices for nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -76,7 +76,8 @@ class TableMaker {
 
     std::size_t count() const { return places_.size(); }
 
-    // Half the time to the previous point; half_way_on: half the time to the next one.
+    // half_way_back is half the time to the previous point, half_way_on half the time to the next
+    // one.
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
@@ -211,8 +212,9 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // Below this number of times no table is made, since it costs as much as ten single times. A
-    // root search, which samples a few times again and again, thus always gets the same bits.
+    // Below this number of times no table is made, since a table costs as much as ten single
+    // samples. A root search, which repeatedly samples a few times, therefore always gets the same
+    // bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

@@ -1,5 +1,6 @@
-// An exact rolling motion, by its phase from the start, and by power series in time about one of
-// its points. One body or point (T = double) gets the same bits as several side by side.
+// An exact rolling motion, computed from its phase since the start, or from power series in time
+// about one of its points. The bits are the same for one body or point (T = double) as for several
+// side by side.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The values of a RollingStart, for one body or for one per lane.
+// The values of a RollingStart, for one body or for one body in each lane.
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
@@ -72,7 +73,7 @@ inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
                 (integrand.energy_height + sqrt(h2)) / h2);
 }
 
-// Sets the motion of a given start, except for its quarter.
+// Sets the motion from a given start, except for the time and path of a quarter turn.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     PhaseIntegrand<T>& integrand = motion.phase.integrand;
@@ -84,11 +85,13 @@ void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     const T factor = shape_factor(integrand, at.sin);
     const T one = filled<T>(1.0);
     motion.direction = rotates ? copysign(one, at.omega) : one;
-    // The initial phase times the amplitude; the cosine is negative on the way back.
+    // Sine and cosine of the initial phase, times the amplitude; the cosine is negative on the way
+    // back.
     const T sin = motion.direction * at.sin;
     const T cos = rotates ? at.cos : at.omega * factor;
     motion.amplitude = sqrt(sin * sin + cos * cos);
-    // A body at rest on the upper side is at its turning point and counts as being on the way back.
+    // A body released from rest with sin > 0 is at its turning point and counts as being on the way
+    // back.
     const auto rests_beyond = (cos == 0) & (sin > 0) & negated(rotates);
     motion.on_way_back = (cos < 0) | rests_beyond;
     motion.start_phase = {motion.on_way_back ? -sin : sin, abs(cos)};
@@ -99,11 +102,11 @@ void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     motion.phase.quarter_path = T{};
 }
 
-// Whether a move is so short that it needs no quarter. As dt/dy falls at most like e^(-2y), it then
-// ends within 0.81, and half a quarter is 0.87 or more.
+// Whether a move is so short that it does not need the time of a quarter. Since dt/dy falls no
+// faster than e^(-2y), such a move is shorter than 0.81 in y, and half a quarter is 0.87 or more.
 template <class T>
 inline Mask<T> is_short(const PhaseMotion<T>& motion, T t) {
-    constexpr double at_first_speed = 0.4;  // its distance in y if dt/dy did not change
+    constexpr double at_first_speed = 0.4;  // distance of the move in y if dt/dy did not change
     return abs(t) < at_first_speed * motion.start_slope;
 }
 
@@ -115,7 +118,8 @@ struct MotionPoint {
     T omega;
 };
 
-// The point of a motion at a phase, on the way up, from the energy integral, physics (30).
+// The point of a motion at a given phase on the way up, computed from the energy integral, physics
+// (30).
 template <class C, class T>
 inline MotionPoint<T> motion_point(const PhaseIntegrand<C>& integrand, C amplitude,
                                    const PhasePoint<T>& at) {
@@ -127,15 +131,15 @@ inline MotionPoint<T> motion_point(const PhaseIntegrand<C>& integrand, C amplitu
             (integrand.rotates ? root : amplitude * at.cos) / factor};
 }
 
-// Sign of the motion at its start, for angles and for omega: +1 or -1.
+// The sign, +1 or -1, by which angles and angular velocities differ from those on the way up.
 template <class T>
 inline T heading_of(const PhaseMotion<T>& motion) {
     const T libration = motion.on_way_back ? filled<T>(-1.0) : filled<T>(1.0);
     return motion.phase.integrand.rotates ? motion.direction : libration;
 }
 
-// The state at a time; x is the path from the start. The quarter must be set unless the move is
-// short.
+// The state at a time; x is the path from the start. The quarter of the phase must be set unless
+// the move is short.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
@@ -165,7 +169,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
     const auto is_endless = rotates & negated(near) & (phase.half_turn.high == infinity);
-    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body creeping to the tip
+    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body, which creeps to the tip
         const PhasePoint<T>& first = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(first.sin, first.cos);
         turned = two_sum(filled<T>(half_pi_exact.high), -rest);
@@ -174,8 +178,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
-    // In a libration, a point beyond a turning point mirrors one before it. The path between the
-    // two omits the way to the turning point and back, which cancels.
+    // In a libration, a point beyond a turning point mirrors one before it. The path is integrated
+    // between these two points only, since the way to the turning point and back cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {

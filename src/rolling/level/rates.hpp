@@ -1,5 +1,5 @@
-// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path in it. In terms
-// of theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
+// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path with respect to
+// y. In terms of theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
 //     sc = C sinh(y) B(c)/A(c),   sc(Y - y) = 1/(k' sc(y)),
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
 // whose second factor cancels the root in the integrand. The path of the centre grows by h dphi.
@@ -78,7 +78,8 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     const T cos = abs(phase.cos);
     const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
     const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
-    // Newton's method for x = sinh y with sc(y) = ratio, from the root for B = 1, A = A_0 - 2 q c.
+    // Newton's method for x = sinh y with sc(y) = ratio, starting at the root for B = 1, A = A_0 -
+    // 2 q c.
     const T complement = map.kappa * map.grade;
     const T q2 = -map.a[1];
     T x = 2 * ratio * (1 - q2) /
@@ -123,10 +124,10 @@ PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distanc
             is_beyond ? from.offset - quarters * map.quarter + distance : offset};
 }
 
-// The rates at y = quarters Y + offset, |quarters| <= 1. The constants C belong to one motion for
-// all points T, or to one motion for each point. The phase is expressed by sin^2/q and cos^2/q, and
-// h^2 = N/q, so that all factors share one quotient. Terms without the offset are computed once for
-// all points of a loop.
+// The rates at y = quarters Y + offset, |quarters| <= 1. The constants, of type C, belong to one
+// motion for all points, or to a separate motion for each point. The phase is expressed by sin^2/q
+// and cos^2/q, and h^2 = N/q, so that all factors share one quotient. Terms without the offset are
+// computed once for all points of a loop.
 template <class C, class T>
 inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
                                        C quarters, T offset) {

@@ -1,11 +1,11 @@
 // Time as a function of the phase of an exact rolling motion, and its inverse, from integrals of
 // the rates of rolling/level/rates.hpp.
 //
-// The rates are even about the flat position and the tip and analytic for |Im y| < pi/2. So the
-// trapezoidal rule gives the time of a quarter with an error that falls like exp(-pi^2/step) (L. N.
-// Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated from
-// its start by Gauss-Legendre quadrature, so that a short interval has the same relative accuracy
-// as a long one.
+// The rates are even about the flat position and the tip and analytic for |Im y| < pi/2. Therefore,
+// the trapezoidal rule gives the time of a quarter with an error that falls like exp(-pi^2/step)
+// (L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated
+// from its start by Gauss-Legendre quadrature, so that a short interval has the same relative
+// accuracy as a long one.
 #pragma once
 
 #include <array>
@@ -28,9 +28,10 @@ constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
 // The longest intervals on which the tabulated rules have full double precision, in units of twice
-// the distance to the nearest complex singularity. The error falls like rho^(-2n), with rho the sum
-// of the semi-axes of the ellipse whose foci are the ends and whose height is that distance (L. N.
-// Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5): rho = exp(asinh(1/length)).
+// the distance to the nearest complex singularity. The error falls like rho^(-2n). Here rho is the
+// sum of the semi-axes, in units of half the interval, of the ellipse whose foci are the ends of
+// the interval and whose minor semi-axis is that distance (L. N. Trefethen, SIAM Rev. 50 (2008) 67,
+// theorem 4.5): rho = exp(asinh(1/length)).
 constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17), for a relative error of 3e-17
     std::array<double, std::size(gauss_rules)> lengths{};
@@ -44,8 +45,8 @@ constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     return lengths;
 }();
 
-// Gauss-Legendre rules as pairs of nodes -x and +x. Zeros pad a rule with fewer nodes than that of
-// another lane.
+// Gauss-Legendre rules as pairs of nodes -x and +x. A rule with fewer nodes than that of another
+// lane is padded with zeros.
 template <class T>
 struct NodePairs {
     int count;
@@ -53,7 +54,8 @@ struct NodePairs {
     T weights[most_pairs];
 };
 
-// The smallest rules with full double precision for panels of this length, or else the largest.
+// The smallest rules with full double precision for panels of this length, or the largest rule if
+// none has it.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -120,8 +122,9 @@ inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarte
     return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// Integrates from one offset to another. Around a distant tip only the elapsed time changes, at a
-// constant rate: the body stays there for minutes near the separatrix, and never leaves on it.
+// Integrates from one offset to another. Around a tip that is distant in y, only the elapsed time
+// changes, at a constant rate: near the separatrix the body stays on the tip for minutes, and on
+// the separatrix for ever.
 inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
                                          double begin, double end) {
     constexpr double long_interval = 12.0;
@@ -147,7 +150,7 @@ inline Integral<double> integral_between(const PhaseTime<double>& phase, double 
     return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
 }
 
-// dt/dy and the time, from a cubic for dt/dy in a step and its integral.
+// dt/dy and the time, from a cubic for dt/dy within a step and from its integral.
 template <class T>
 struct Cubic {
     T slope;
@@ -183,7 +186,7 @@ inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
                                                     : element(phase.time, i) + at.time};
 }
 
-// The point y at a time from the flat position, accurate to a few digits.
+// The point y at a time since the flat position, accurate to a few digits.
 template <class T>
 inline T rough_place(const PhaseTime<T>& phase, T time) {
     const PhaseMap<T>& map = phase.map;
@@ -203,7 +206,7 @@ inline T rough_place(const PhaseTime<T>& phase, T time) {
                      : map.step * (i + s) + (time - begin - at.time) / at.slope;
 }
 
-// The distance in y covered in a time, accurate to a few digits.
+// The distance in y covered in a given time, accurate to a few digits.
 template <class T>
 inline T rough_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) {
     const T quarter = phase.map.quarter;
@@ -219,7 +222,7 @@ inline T rough_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T 
                : place + (some ? 2 * half_turns * quarter : T{}) - y;
 }
 
-// Sets dt/dy at the steps, and integrates the quarter by the trapezoidal rule.
+// Sets dt/dy at the steps, and integrates over the quarter by the trapezoidal rule.
 template <class T>
 void set_quarter(PhaseTime<T>& phase) {
     const PhaseMap<T>& map = phase.map;
@@ -268,8 +271,8 @@ void set_quarter(PhaseTime<T>& phase) {
     }
 }
 
-// The distance in y covered in a short time, accurate to a few digits, from dt/dy at its start: one
-// step of Halley's method, with the time by Simpson's rule.
+// The distance in y covered in a short time, accurate to a few digits, given dt/dy at the start.
+// Takes one step of Halley's method, with the time from Simpson's rule.
 template <class T>
 inline T short_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T start, T time) {
     const auto slope_at = [&](T distance) {
@@ -291,15 +294,15 @@ struct PhaseMove {
     PhaseIncrement<T> sum;
 };
 
-// Uses Newton's method: integrates up to a guess of the distance, then extends the interval by the
-// missing time. Ends with a step so small that its square is below rounding or the point no longer
-// moves.
+// Uses Newton's method: integrates up to a guess of the distance, then repeatedly extends the
+// interval to make up the missing time. The last step is so small that its square is below
+// rounding, or that it no longer moves the point.
 template <class T>
 PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T guess, T time) {
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
     constexpr int most_steps = 60;
-    // Ends of intervals are doubles, so that the integral ends exactly at the point.
+    // The ends of intervals are rounded to doubles, so that the integral ends exactly at the point.
     const auto to_double = [&](T distance) { return (from.offset + distance) - from.offset; };
     T distance = to_double(guess);
     auto [sum, slope] = integral_between(phase, from.quarters, from.offset, from.offset + distance);

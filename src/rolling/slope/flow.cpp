@@ -12,29 +12,29 @@ const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// The swing of a body that rocks; null if it is followed by series, or not yet known.
+// The swing of a body that rocks; null if the motion is followed by series, or is not known yet.
 const Swing* swing_of(const SlopeFlow& flow) {
     return flow.stretches.empty() ? nullptr : std::get_if<Swing>(&flow.stretches.back().law);
 }
 
-// Whether the body turns by less than an angle in a time from the start. Near the start only series
-// keep the path accurate.
+// Whether the body turns by less than `angle` within `time` of the start. Only series keep the path
+// accurate near the start.
 bool is_near(const SlopeFlow& flow, double time, double angle) {
     const double speed = std::abs(flow.start.omega) + 0.5 * std::abs(flow.acceleration) * time;
     return time * speed < angle;
 }
 constexpr double near_in_sum = 0.1;    // [rad]
-constexpr double near_in_swing = 0.2;  // series are faster up to here
+constexpr double near_in_swing = 0.2;  // [rad]; series are faster up to here
 
 // --------------------------------------------------------------------------------- points
 
-// Computes points of the motion of a body, each from its stretch.
+// Computes points of a motion, each from the stretch to which it belongs.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
 
-    // Computes the point at the first of n times [s] and, in a sum, those at later times that come
-    // at no extra cost. Returns the number of points computed.
+    // Computes the point at the first of n times [s] and, in a sum or a swing, the points at those
+    // of the next times that come at no extra cost. Returns the number of points computed.
     std::size_t operator()(const double* times, std::size_t n, SlopePlace* places) {
         const auto time = [&](std::size_t i) { return times[i] / flow_.body.time; };
         const Swing* const swing = swing_of(flow_);
@@ -74,8 +74,7 @@ class SlopeReader {
         return std::visit([&](const auto& law) { return place(law, here, time); }, here.law);
     }
 
-    // The point at a time in the series before a stretch; side is -1 for motion in the other
-    // direction.
+    // The point at a time in the series that precede a stretch; `side` is -1 to reverse the motion.
     SlopePlace place_before(const SlopeStretch& here, DoubleDouble time, double side) {
         const SlopeStretch* const first = flow_.stretches.data() + (first_sum(flow_) ? 1 : 0);
         SlopePlace found = place(stretch_at(first, &here, double(time)), time);
@@ -103,7 +102,7 @@ class SlopeReader {
         return place_in(*near_, double(time));
     }
 
-    // Used for times near the start; series are faster there.
+    // Used for times near the start, where series are faster.
     SlopePlace place(const Swing&, const SlopeStretch&, DoubleDouble time) {
         if (!followed_) followed_ = by_series(flow_);
         const double t = double(time) * flow_.body.time;
@@ -126,7 +125,7 @@ class SlopeReader {
                                            : place_before(here, swing.first + rest, 1.0);
     }
 
-    // Whether to evaluate a time by a series about the start although the motion starts with a sum.
+    // Whether to use a series about the start at this time although the motion starts with a sum.
     bool is_near_start(double time) {
         if (!first_sum(flow_) || !is_near(flow_, time, near_in_sum)) return false;
         if (!near_) near_ = piece_from(flow_.body, flow_.start);
@@ -143,9 +142,9 @@ class SlopeReader {
 
 // --------------------------------------------------------------------------------- growth
 
-// Appends the stretches after a turning point, which itself belongs to the series: after the first
-// one the motion is mirrored, after the second one it repeats itself. Near the rim of a well,
-// further series would miss the reversed start.
+// Appends the stretches after a turning point; the turning point itself belongs to the series.
+// After the first turning point the motion is mirrored, and after the second it repeats. Near the
+// rim of a well, further series in place of the mirror image would miss the reversed start.
 void append_turning(SlopeFlow& flow, DoubleDouble turning) {
     const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
     if (flow.turning) {
@@ -179,7 +178,8 @@ void append_sum(SlopeFlow& flow, const SlopePlace& from, const Datum& here, doub
     flow.stretches.emplace_back(double(from.time), end, std::move(sum));
 }
 
-// Whether a motion that is to be known up to a time may be a swing but has not been tried as one.
+// Whether a motion that must be known up to a time may be a swing and has not yet been tried as
+// one.
 bool may_swing(const SlopeFlow& flow, double until) {
     return !flow.by_series && !swing_of(flow) && !is_near(flow, until, near_in_swing);
 }
@@ -214,7 +214,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
     }
     flow.rests =
-        omega == 0 && (is_circle ? !(flow.acceleration > 0)  // it underflows to 0
+        omega == 0 && (is_circle ? !(flow.acceleration > 0)  // it may underflow to 0
                                  : is_equilibrium(geometry(body.axes(), theta), std::tan(slope)));
     if (flow.rests) flow.acceleration = 0.0;
     if (omega == 0) flow.turning = flow.start.time;

@@ -14,7 +14,7 @@
 
 namespace rolling_ellipse {
 
-// Constant forces: a body at rest, or a circle, which accelerates evenly.
+// A body at rest, or a circle, which accelerates evenly: the forces are constant.
 struct Even {};
 
 // Many half turns at once: uphill to `end`, near the top of the climb, or downhill forever, in
@@ -24,13 +24,14 @@ struct Sum {
     SlopePlace end;
 };
 
-// The motion before its first turning point, in reverse, back to the reversed start of the series.
+// The motion before the first turning point, run in reverse until it is back at the start of the
+// series.
 struct Mirror {
     DoubleDouble turning;
     SlopePlace end;
 };
 
-// Rocking forever between two turning points; repeats the motion between the two.
+// Rocking forever: repeats the motion between two turning points.
 struct Repeat {
     DoubleDouble first;
     DoubleDouble last;
@@ -56,25 +57,25 @@ struct SlopeFlow {
     bool rests;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;  // initial angular acceleration; a circle keeps it
+    double acceleration;  // initial angular acceleration; constant for a circle
     SlopePlace start;
-    Datum datum;  // the start
+    Datum datum;  // the start as a datum
     std::vector<SlopeStretch> stretches;
     std::optional<DoubleDouble> turning;  // time of the first turning point, once known
-    bool by_series = false;               // whether the motion is no swing, or not treated as one
+    bool by_series = false;               // whether the motion is not treated as a swing
 };
 
 // The flow of a body that rolls on a nonzero slope.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
-// The start of a flow whose swings are followed by series.
+// The start of a flow, copied so that its swings are followed by series.
 SlopeFlow by_series(const SlopeFlow& flow);
 
 // Extends the stretches until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Appends at least one stretch; false if the last one never ends. Up to a time `until` in units of
-// the body near the start, a swing is followed by series.
+// Appends at least one stretch; false if the last stretch never ends. A swing is followed by series
+// if the body is still near its start at the time `until`, which is in units of the body.
 bool grow(SlopeFlow& flow, double until = infinity);
 
 // The state at a time in [0, longest_time] up to which the flow is prepared; or at n such times,
@@ -83,11 +84,12 @@ FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
-// Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many, or if a
-// given time t is far below it, which is quicker to determine.
+// Time of 1e15 half turns or swings [s]. Infinite if the motion was not prepared for that many, or
+// if the time t is far below it, which is quicker to determine.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
-// Time between two turning points of a body that rocks; empty for all others.
+// Time between two turning points of a body that rocks, in units of the body; empty for other
+// motions.
 std::optional<DoubleDouble> half_period(const SlopeFlow& prepared);
 
 // Time of a full swing [s]; empty if the motion does not repeat, infinite at rest.

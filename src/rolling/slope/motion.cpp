@@ -26,7 +26,7 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
 }
 
 // With D h^2 = I = d0 + d1 sin^2 phi, u = h^2, p = h h' = c2 sin phi cos phi, lambda = omega/h and
-// S = d1/c2 physics (18) becomes, with I as the only divisor,
+// S = d1/c2, physics (18) becomes, with I as the only divisor,
 //     I lambda' = g_along u - g_into p - S p omega lambda,   omega = h lambda,   h' = p lambda
 //     u' = 2 p omega,   I' = S u',   p' = q omega,   q' = -4 p omega
 // Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
@@ -39,8 +39,8 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     LongSeries& w = motion.omega;
     LongSeries& path = motion.path;
     LongSeries& h = motion.height;
-    // Factors of products computed side by side, coefficient by coefficient: (h, p, p, q) by
-    // (lambda, lambda, omega, omega), and late in a step (h, p omega, I) by (omega, lambda,
+    // Factors of products computed side by side, coefficient by coefficient: (h, p, p, q) times
+    // (lambda, lambda, omega, omega) and, late in a step, (h, p omega, I) times (omega, lambda,
     // lambda').
     Factors left, right, late_left, late_right;
     const double sin2 = square(sin);
@@ -102,7 +102,7 @@ ROLLING_ELLIPSE_WIDE SlopeSeries slope_series(const SlopeBody& body, const Groun
     return motion;
 }
 
-// The time from the start of the piece at which it turns back; infinite if it does not.
+// The time since the start of the piece at which the body turns back; infinite if it does not.
 double turning_in(const SlopePiece& piece) {
     const double side = std::copysign(1.0, piece.from.omega);
     const auto onwards = [&](double since) {
@@ -235,7 +235,7 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePiece& piece) {
-    constexpr double accurate = 0.1;  // least fraction of W in its terms for omega from W
+    constexpr double accurate = 0.1;  // above this fraction of its terms, W is accurate enough
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, start, place, here);

@@ -1,5 +1,5 @@
 // Rolling on a slope as power series in time, each about a point of the motion. A series passes a
-// turning point like any other point; the next series starts where the accuracy of this one ends.
+// turning point like any other point; each series starts where the previous one loses accuracy.
 #pragma once
 
 #include <cmath>
@@ -12,14 +12,14 @@
 
 namespace rolling_ellipse {
 
-// The equilibria of a body on a slope that falls towards growing angles, h' = h tan(slope), physics
-// (62): a stable one near the flat position, an unstable one near the tip.
+// The equilibria of a body on a slope that falls towards growing angles, where h' = h tan(slope),
+// physics (62). The one near the flat position is stable, the one near the tip unstable.
 struct Equilibria {
     double lying;    // angle from the flat position, 0 or more
     double upright;  // angle from the tip, 0 or less
 };
 
-// The equilibria, empty where the slope is too steep. `incline` is the tangent of the slope.
+// The equilibria; empty if the slope is too steep. `incline` is the tangent of the slope.
 std::optional<Equilibria> equilibria(const Axes& lying, double incline);
 
 // Body and ground in natural units, powers of two. The slope falls towards growing angles; one that
@@ -40,8 +40,8 @@ struct SlopeBody {
     std::optional<Equilibria> equilibria;
     double pull;          // gravity times c2, the factor of physics (62)
     double slowest;       // rate at which gravity moves a body that starts at rest
-    double quarter_path;  // path of the centre in a quarter turn, once measured
-    double gain;          // and gain of W = D omega^2/2 in half a turn downhill, physics (58)
+    double quarter_path;  // path of the centre in a quarter turn, set by measure_quarter
+    double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
 
     Axes lying() const { return {long_axis, short_axis}; }
 };
@@ -72,9 +72,9 @@ Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 
 // A point from which physics (58) gives the energy W = D omega^2/2 at other points.
 struct Datum {
-    double energy;  // W there
+    double energy;  // W at this point
     Geometry at;
-    double path = 0.0;  // path to it from the start of a motion, or path ahead in a run
+    double path = 0.0;  // its path from the start of a motion, or its path ahead in a run
 };
 
 // The start of a motion as a datum.
@@ -114,9 +114,9 @@ inline SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
 // The point at a time after the start of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
 
-// The time at which the body turns back in the piece, and the time before that at which it passes
-// the tip, both from the start of the motion; infinite if it does not. Neither counts at the start
-// of a piece.
+// The time at which the body turns back within the piece, and the first time before that at which
+// it passes the tip, both measured from the start of the motion; infinite if there is none. The
+// start of the piece does not count.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 
@@ -126,8 +126,7 @@ SlopePlace place_after(const SlopeBody& body, const Datum& start, const SlopePie
 // The angular acceleration at a position with this angular velocity.
 double acceleration_at(const SlopeBody& body, const Geometry& at, double omega);
 
-// The force of the ground on a body of unit mass, in units of the body; x points as seen with the
-// slope falling towards growing angles.
+// The force of the ground on a body of unit mass, in units of the body; x points down the slope.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& at);
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,5 @@
-// Points on panels of the angle, and the inverse of time on their parts, in several lanes at once.
+// Points on panels of the angle, and the position as a function of time on parts of panels, in
+// several lanes at once.
 #pragma once
 
 #include "numerics/part.hpp"
@@ -15,9 +16,9 @@ inline double grade_at_flat(const SlopeBody& body) {
     return std::sqrt(body.d0 / (body.d0 + body.d1));
 }
 
-// Positions of the ellipse: sines and cosines of their angles from a flat position, both with a
-// common factor, and the square of its inverse; the squares of both without that factor; and the
-// height of the centre.
+// Positions of the ellipse. `sin` and `cos` are the sine and cosine of the angle from a flat
+// position, both times a common factor, and `over` is the inverse square of this factor. `sin2` and
+// `cos2` are squares without the factor; h is the height of the centre.
 struct Positions {
     Pack sin;
     Pack cos;
@@ -37,14 +38,14 @@ struct Positions {
 }
 
 // Points on a part: the tangents of their angles from the centre of the panel, the derivatives of
-// these with respect to v, and the fall of the centre from the datum of the run.
+// the tangents with respect to v, and the fall of the body's centre since the datum of the run.
 struct PanelPlaces : Positions {
     Pack tan;
     Pack tan_rate;
     Pack fall;
 };
 
-// The points x in -1 ... 1 of a part.
+// The points of a part at the positions x in -1 ... 1.
 [[gnu::always_inline]] inline PanelPlaces places_at(const SlopeRun& run, const RunPart& part,
                                                     Pack x) {
     const RunPanel& panel = run.panels[part.panel];
@@ -64,7 +65,7 @@ struct PanelPlaces : Positions {
     return at;
 }
 
-// N and F at the nodes of a part after W has grown, as in `node_forces`.
+// N and F at the nodes of a part after W has grown by `gained`, as in `node_forces`.
 template <class PositionsAt>
 [[gnu::always_inline]] inline PartForces forces_at(const SlopeBody& body, const RunPart& part,
                                                    double heading, double gained,
@@ -91,8 +92,8 @@ template <class PositionsAt>
     return forces;
 }
 
-// The polynomial through values at the nodes. The coefficients of the Legendre polynomials P_k fall
-// by a factor of 5.4 per degree, and those of P_k itself rise by 2.4, so that there is hardly any
+// The polynomial through values at the nodes. Its Legendre coefficients fall by a factor of 5.4 per
+// degree, while the power coefficients of P_k grow by only 2.4, so that there is hardly any
 // cancellation between the powers.
 ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
@@ -108,8 +109,8 @@ ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& v
     return polynomial;
 }
 
-// The position in a part from the fraction of its time: the cubic with the values and slopes of the
-// inverse function at both ends.
+// The position in a part as a function of the elapsed fraction of its time: the cubic with the
+// values and slopes of the inverse function at both ends.
 inline std::array<double, 5> inverse_about(const PartPolynomial& time) {
     const double lasts = value(time.integral, 1.0);
     const double first = lasts / value(time.value, -1.0);
@@ -125,10 +126,10 @@ inline PartReading reading_of(const RunPart& part, double half_turns, double las
     return reading;
 }
 
-// The positions in a part, -1 ... 1, at times from its start, by Newton's method.
+// The positions in a part, -1 ... 1, at times since its start, by Newton's method.
 [[gnu::always_inline]] inline Pack places_in_part(const PartReading& of, Pack times) {
     constexpr int most_steps = 8;       // four suffice from the worst guess, 0.2 away
-    constexpr double converged = 1e-8;  // the next step would be its square
+    constexpr double converged = 1e-8;  // the next step would be about its square
     const Pack guess = value(of.about_place, times / of.lasts);
     Pack x = max(min(guess, pack(1.0)), pack(-1.0));
     Mask<Pack> moving = x == x;

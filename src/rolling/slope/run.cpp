@@ -14,14 +14,15 @@ constexpr double few = 4;               // fewer half turns than this are cheape
 constexpr std::size_t most_begins = 1 + std::size_t(asymptotic_from + few);
 constexpr std::size_t usual_panels = 12;
 
-// The remainder sqrt(w) R(W/w) of physics (60), from w/W and 1/sqrt(W).
+// The remainder R(W/w)/sqrt(w) of physics (60), from w/W and 1/sqrt(W).
 [[gnu::always_inline]] inline Pack remainder(Pack ratio, Pack over_root) {
     return ratio * over_root *
            horner(ratio * ratio, -0.00354755719503, 0.00140508015951, -143.0 / 163840, 1.0 / 1024,
                   -1.0 / 384, 1.0 / 24);
 }
 
-// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1 by the Euler-Maclaurin formula, W = level.
+// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1 by the Euler-Maclaurin formula, with W = level
+// and w = gain.
 [[gnu::always_inline]] inline Pack sum_of_rates(Pack level, double gain, double n) {
     const Pack end = level + n * gain;
     const Pack a = sqrt(level);
@@ -38,7 +39,8 @@ constexpr std::size_t usual_panels = 12;
 // polynomial of a part fall by a factor of 5.4.
 constexpr double widest_part = 1.2;
 
-// Centre of two panels: a flat position, or the point near a tip where W is least.
+// Centre of two panels: a flat position, the point near a tip where W is least, or the middle of a
+// wide gap between two such points.
 struct Centre {
     double quarters;
     double angle;
@@ -46,8 +48,8 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Appends the panel from low to high, as far as it lies in the half turn from the start of the run.
-// The ends of the half turn stay accurate near a tip.
+// Appends that part of the panel from low to high which lies in the half turn from the start of the
+// run. The ends of the half turn are accurate even near a tip.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     const double quarters = run.from.quarters - run.turns;
     const double angle = run.heading * double(run.from.angle);
@@ -79,9 +81,9 @@ double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
     return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
 }
 
-// The point where a run starts, or the nearest tip if W at the tip, computed from that point, would
-// be a small difference. W at the tip is computed from the start of the motion, which is accurate
-// even if the start is near another tip.
+// The datum of a run: the point where it starts or, if W at the nearest tip would be a small
+// difference when computed from that point, the tip. W at the tip is then computed from the start
+// of the motion, which is accurate even if the start is near another tip.
 Datum datum_of(const SlopeRun& run, const Datum& start) {
     constexpr double small = 0.0625;  // fraction of W that is left at the tip
     const SlopeBody& body = run.body;
@@ -138,7 +140,8 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, const S
     double least = over_tip(body, energy, at);
     if (least < -body.gain) return 0.0;  // half a turn downhill gains at most this
     if (from.omega > 0) {
-        // The path to the next unstable equilibrium is at least its angle times the short axis.
+        // The path to the next unstable equilibrium is at least the angle to it times the short
+        // semi-axis.
         const double hill = body.equilibria ? body.equilibria->upright : 0.0;
         const double ahead = (is_odd(from.quarters) ? hill : half_pi + hill) - double(from.angle);
         const double angle = ahead < 0 ? ahead + pi : ahead;
@@ -163,7 +166,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     run.parts.reserve(usual_parts);
 
     // Uphill, W falls by the gain in each half turn. Within a half turn it is least at the unstable
-    // equilibrium, or at the tip without one.
+    // equilibrium, or at the tip if there is none.
     const double lost = run.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
     const double hill = body.equilibria ? body.equilibria->upright : 0.0;
     const Geometry top = geometry(body, 1.0, hill);
@@ -173,7 +176,8 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
         std::max(run.datum.energy - lost + body.gravity.into * fallen, least_levels * body.gain);
     // A grade is about the tanh of the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = grade_at_flat(body);
-    // The singularities of the flat position may be closer to the hill than the hill's own.
+    // The singularities near the flat position may be closer to the unstable equilibrium (the hill)
+    // than its own.
     const double to_flat = half_pi - std::abs(hill);
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
     const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));
@@ -187,7 +191,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
         add_panel(run, left, left.at(), split);
         add_panel(run, right, split, right.at());
     };
-    constexpr double widest_gap = 2.0;  // an angle farther from its centre is mapped too far
+    constexpr double widest_gap = 2.0;  // beyond it, v would be too large
     for (int i = -3; i < 5; ++i) {
         const Centre left = centre(i);
         const Centre right = centre(i + 1);
@@ -271,7 +275,7 @@ DoubleDouble RunTimes::operator()(double half_turns) {
     return sum;
 }
 
-// N and F as in `contact_force`.
+// Computes N and F as `contact_force` does.
 ROLLING_ELLIPSE_WIDE PartForces node_forces(const SlopeRun& run, const RunPart& part,
                                             double half_turns) {
     const auto positions_at = [&](Pack x) __attribute__((always_inline)) {

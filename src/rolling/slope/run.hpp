@@ -5,10 +5,10 @@
 //     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn.
 // The sum is a difference of Hurwitz zeta functions, computed by the Euler-Maclaurin formula. The
 // integrand has complex singularities near the flat position, where D = 0, and near the point of
-// the least W; panels are graded towards both as in physics (31).
+// least W; the panels are graded towards both as in physics (31).
 //
-// Angles and paths ahead are measured in the direction of the motion: a climb is a motion to
-// growing angles whose W falls by w.
+// Angles and paths ahead are measured in the direction of the motion: a climb is treated as a
+// motion towards growing angles whose W falls by w per half turn.
 #pragma once
 
 #include <array>
@@ -21,29 +21,29 @@
 namespace rolling_ellipse {
 
 // The coordinate v of a panel: tan(phi - centre) = grade sinh(v), first <= v <= last. The centre is
-// a flat position, or the point near a tip where W is least.
+// a flat position, the point near a tip where W is least, or a point between them.
 struct RunPanel {
-    double quarters;  // quarters of the flat position or tip
-    double angle;     // angle of the centre from there
+    double quarters;  // quarter turns to a flat position or tip
+    double angle;     // angle of the centre from that position
     double sin;       // sine and cosine of the centre's angle from a flat position, both
     double cos;       // possibly negated
     double grade;
-    double first;  // v at the ends; their angles from the centre until the first part is added
+    double first;  // v at the ends; until the first part is added, angles from the centre
     double last;
 };
 
 // A part of a panel.
 struct RunPart {
-    std::size_t panel;  // its index
+    std::size_t panel;  // index of the panel
     double middle;      // v at the middle of the part
     double half;        // half of its width in v
-    double path;        // path ahead at its start
-    PartArray advance;  // at the nodes: d(path)/ds, where s in [-1, 1] is the position in the part,
-    PartArray mass;     // d/ds of the integral of sqrt(D/2),
-    PartArray level;    // and W in the first half turn
+    double path;        // path ahead at the start of the part
+    PartArray advance;  // d(path)/ds at the nodes, where s in [-1, 1] is the position
+    PartArray mass;     // d/ds of the integral of sqrt(D/2) at the nodes
+    PartArray level;    // W at the nodes in the first half turn
     double lasts;       // time of the part in the first half turn
 
-    bool turns() const { return middle == half; }  // of a swing: starts at a turning point
+    bool turns() const { return middle == half; }  // in a swing: if it starts at a turning point
 };
 
 struct SlopeRun {
@@ -52,13 +52,13 @@ struct SlopeRun {
     double turns;                  // whole half turns before `from`, counted in quarter turns
     double heading;                // +1 downhill, -1 uphill
     Datum start;                   // `from` as a datum
-    Datum datum;                   // the same, or a tip at which hardly any W is left
+    Datum datum;                   // `start`, or a tip at which hardly any W is left
     double half_turns;             // largest number of half turns of the run
     std::vector<RunPanel> panels;  // panels of one half turn, in the direction of motion
     std::vector<RunPart> parts;    // parts of the panels added so far by `extend`
     double path_ahead;             // path from `from` to the end of the last part
-    double known;                  // time in the first half turn up to there
-    double mass;                   // int sqrt(D/2) dphi up to there
+    double known;                  // time in the first half turn up to that end
+    double mass;                   // int sqrt(D/2) dphi up to that end
     std::size_t next_panel;        // indices of the next panel, and of the next part in it
     int next_part;
 
@@ -67,7 +67,7 @@ struct SlopeRun {
 };
 
 // The run from a point of a motion: uphill for as many half turns as `may_run` allows, downhill for
-// any number. `start` is the start of the motion, `here` the point.
+// any number. `start` is the start of the motion, `here` the point where the run starts.
 SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& from,
                    const Datum& here, double half_turns);
 
@@ -81,13 +81,15 @@ inline constexpr double most_half_turns = 1e15;
 // relative to w for the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from);
 
-// d(time)/ds at the nodes of a part after W has grown; s in [-1, 1] is the position in the part.
+// d(time)/ds at the nodes of a part after W has grown by `gained`; s in [-1, 1] is the position in
+// the part.
 PartArray node_times(const RunPart& part, double gained);
 
-// The approximate number of half turns in a time after `from`, as if W grew linearly with it.
+// The approximate number of half turns in a time after `from`, as if W grew linearly with the
+// angle.
 double about(const SlopeRun& run, double since);
 
-// Durations of n half turns of a complete run. The first terms of a sum are kept for later sums.
+// Durations of n half turns of a complete run. The first terms of a sum are stored for later sums.
 class RunTimes {
   public:
     explicit RunTimes(const SlopeRun& run) : run_(run) {}
@@ -98,10 +100,10 @@ class RunTimes {
 
     const SlopeRun& run_;
     double lowest_ = infinity;          // least W of the first half turn
-    std::vector<DoubleDouble> begins_;  // starts of the first half turns (uphill: the last)
+    std::vector<DoubleDouble> begins_;  // start times of the first half turns (uphill: of the last)
 };
 
-// Forces at the nodes of a part after n half turns, per unit mass, x pointing in the direction of
+// Forces at the nodes of a part after n half turns, per unit mass; x points in the direction of
 // motion.
 struct PartForces {
     PartArray normal;
@@ -109,13 +111,13 @@ struct PartForces {
 };
 PartForces node_forces(const SlopeRun& run, const RunPart& part, double half_turns);
 
-// The coefficients of the Legendre polynomials of a function on a part.
+// The Legendre coefficients of a function on a part, from its values at the nodes.
 PartArray legendre_coefficients(const PartArray& at_nodes);
 
 // The point after n half turns of a complete run.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
 
-// A part in a half turn, prepared for computing points.
+// A part in a given half turn, prepared for the computation of points.
 struct PartReading {
     const RunPart* part;
     double half_turns;    // number of half turns before this one
@@ -126,8 +128,8 @@ struct PartReading {
 };
 
 // Computes points at times after `from` that `extend` has reached. Integrals over the current half
-// turn are kept for the next times in it; the bits of an answer depend neither on earlier calls nor
-// on the other times.
+// turn are stored for later times in the same half turn; the bits of a point depend neither on
+// earlier calls nor on the other times.
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);

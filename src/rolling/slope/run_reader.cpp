@@ -7,7 +7,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The points at times from the start of the part.
+// The points at times since the start of the part.
 ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of,
                                       const std::array<double, lanes>& times,
                                       PlacesOnPart& places) {
@@ -29,7 +29,7 @@ ROLLING_ELLIPSE_WIDE void read_places(const SlopeRun& run, const PartReading& of
 RunReader::RunReader(const SlopeRun& run)
     : run_(run), run_times_(run), part_times_(run.parts.size()) {}
 
-// A single time fills all lanes.
+// Unused lanes repeat the first time.
 std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace* places) {
     static_assert(lanes == most);
     const auto time = [&](std::size_t i) { return times[i] / run_.body.time; };
@@ -64,12 +64,12 @@ std::size_t RunReader::operator()(const double* times, std::size_t n, SlopePlace
     return count;
 }
 
-// The time from the start of the current half turn.
+// The time since the start of the current half turn.
 double RunReader::since_begin(double time) const {
     return double(DoubleDouble{time, 0.0} - run_.from.time - begin_);
 }
 
-// Whether a time from the start of the half turn is well inside it, so that the answer does not
+// Whether a time since the start of the half turn is well inside it, so that the result does not
 // depend on earlier calls.
 bool RunReader::is_well_inside(double since) const {
     constexpr double margin = 1e-9;  // fraction of a half turn, far above rounding

@@ -19,20 +19,20 @@ WellPanel flat_panel(const SlopeBody& body, double angle, const SineCosine& at,
     return {angle, at, grade, value, root_of_squares(1.0, value), {0.0, 1.0}, from_rim};
 }
 
-// A well: the angle of its bottom from the flat position, and the angles from there to its rims,
-// uphill and downhill.
+// A well: the angle of its bottom from the flat position, and the angles from the bottom to the
+// uphill and the downhill rim.
 struct Well {
     double bottom;
     std::array<double, 2> to_rim;
     SineCosine at_bottom;
-    SineCosine downhill;  // of to_rim[1]
+    SineCosine downhill;  // sine and cosine of to_rim[1]
 };
 
-// The direction from the bottom to a side of a well.
+// The sign of the angles from the bottom on a side of a well: uphill (0) or downhill (1).
 double outwards(std::size_t side) { return side == 0 ? -1.0 : 1.0; }
 
-// The panel about the bottom, seen along one of its sides, outwards (+1) or towards the bottom
-// (-1).
+// The panel about the bottom with angles measured along a side of the well, outwards (+1) or
+// towards the bottom (-1).
 WellPanel bottom_panel(const SlopeBody& body, const Well& well, std::size_t side,
                        double direction) {
     const double seen = outwards(side) * direction;
@@ -42,8 +42,8 @@ WellPanel bottom_panel(const SlopeBody& body, const Well& well, std::size_t side
                       {-direction * rim_s, outwards(side) * rim_c});
 }
 
-// Points of a panel: sine and cosine of their angles from its centre, with the factor of the sine
-// and cosine from the flat position; and the derivative of the angle with respect to v.
+// Points of a panel: sine and cosine of their angles ahead of its centre, times the same factor as
+// `sin` and `cos`, and the derivative of the angle with respect to v.
 struct WellPlaces : Positions {
     Pack ahead_sin;
     Pack ahead_cos;
@@ -72,8 +72,8 @@ struct WellPlaces : Positions {
     return at;
 }
 
-// The coordinate of a point from its angle from the centre, accurate even if the angle is small;
-// NaN beyond the reach of the panel.
+// The coordinate v of a point, given its angle ahead of the centre; accurate even for a small
+// angle. NaN beyond the reach of the panel.
 double coordinate(const WellPanel& panel, double ahead) {
     const double tan = std::tan(ahead);
     const double centre = panel.grade * panel.value;
@@ -96,8 +96,8 @@ double coordinate(const WellPanel& panel, double ahead) {
 }
 
 struct Reached {
-    double angle;   // ahead of the centre
-    double turned;  // its derivative with respect to v
+    double angle;   // angle ahead of the centre
+    double turned;  // derivative of the angle with respect to v
 };
 
 Reached reached(const SlopeBody& body, const WellPanel& panel, double v) {
@@ -107,14 +107,15 @@ Reached reached(const SlopeBody& body, const WellPanel& panel, double v) {
 
 // ------------------------------------------------------------------------- turning points
 
-// The change of W from the centre of a panel to a coordinate, and its derivatives there.
+// The change of W from the centre of a panel to a coordinate, and its two derivatives with respect
+// to the coordinate.
 struct Change {
     double energy;
     double rate;
     double bend;
 };
 
-// Complex zeros of D and h are pi/2 away, so the rule errs by 1e-17.
+// The complex zeros of D and h are pi/2 away, so that the error of the rule is 1e-17.
 ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPanel& panel,
                                              double to) {
     static_assert(lanes == 4);
@@ -142,12 +143,12 @@ ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPa
     return {half * total, lane_of(rates, 0), (lane_of(rates, 2) - lane_of(rates, 1)) / (2 * near)};
 }
 
-// Estimates the coordinate between 0 and `most` up to which W changes by an energy from the bottom,
-// from a cubic through four points of the moment over the coordinate.
+// Estimates the coordinate between 0 and `most` at which W has changed by `energy` since the
+// bottom, from a cubic through four values of the moment divided by the coordinate.
 ROLLING_ELLIPSE_WIDE double estimate(const SlopeBody& body, const WellPanel& panel, double energy,
                                      double most) {
     constexpr int steps = 3;
-    constexpr double beyond = 1.25;  // mostly the moment grows more slowly than at the bottom
+    constexpr double beyond = 1.25;  // usually the moment grows more slowly than at the bottom
     const double height = std::sqrt(body.short_axis2 + body.c2 * square(panel.at.sine));
     const double turned = panel.grade * panel.rate * square(panel.at.cosine);
     const double bend = body.pull * panel.from_rim.sine * square(turned) / height;
@@ -168,12 +169,12 @@ ROLLING_ELLIPSE_WIDE double estimate(const SlopeBody& body, const WellPanel& pan
     return unit * root;
 }
 
-// The coordinate between 0 and `most` up to which W changes by an energy, by Halley's method for
-// the root of the change, which is almost linear; infinite if W changes less.
+// The coordinate between 0 and `most` at which W has changed by `energy`; infinite if W changes by
+// less. Uses Halley's method for the square root of the change, which is almost linear.
 double coordinate_of(const SlopeBody& body, const WellPanel& panel, double energy, double guess,
                      double most) {
     constexpr int most_steps = 60;
-    constexpr double converged = 3e-6;  // the next step would be its cube
+    constexpr double converged = 3e-6;  // the next step would be about its cube
     double low = 0.0;
     double high = infinity;
     double v = guess;
@@ -191,13 +192,14 @@ double coordinate_of(const SlopeBody& body, const WellPanel& panel, double energ
     return v;
 }
 
-// The angles of the turning points from the bottom, and of the start from the nearer one.
+// The angles from the turning points to the bottom, and the angle between the start and the turning
+// point on the same side.
 struct TurningPoints {
     std::array<double, 2> to_bottom;
     double ahead;
 };
 
-// The turning points of a motion from a place in a well; empty if one is near its rim.
+// The turning points of a motion that starts in a well; empty if a turning point is near the rim.
 std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& well, double angle,
                                             double from_bottom, double energy) {
     constexpr double inside = 0.8;    // largest share of the way from the bottom to a rim
@@ -224,7 +226,7 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
             if (i == here) found.ahead = found.to_bottom[i] - away;
             continue;
         }
-        if (energy > 0) {  // from the start, as it may be near the turning point
+        if (energy > 0) {  // computed from the start, which may be near the turning point
             const double seen = outwards(i) * angle;
             WellPanel local =
                 flat_panel(body, seen, sine_cosine(seen), sine_cosine(away - well.to_rim[i]));
@@ -243,7 +245,7 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
 // ---------------------------------------------------------------------------------- sides
 
 // Appends the part of a panel between two coordinates, given W at the first one; returns W at the
-// last one. At the turning point W is 0, and the moment of gravity in the part is a multiple of v.
+// last one. At the turning point, W is 0, and dW/dv has a factor v.
 ROLLING_ELLIPSE_WIDE double add_part(const SlopeBody& body, WellSide& side, std::size_t panel,
                                      double first, double last, double energy) {
     const PartRule& rule = part_rule();
@@ -254,7 +256,7 @@ ROLLING_ELLIPSE_WIDE double add_part(const SlopeBody& body, WellSide& side, std:
     part.middle = first + part.half;
     part.path = side.path_ahead;
     PartArray moment;
-    PartArray from_start;  // the moment, at a turning point over the distance from there
+    PartArray from_start;  // the moment; at a turning point, divided by 1 + x
     for (int i = 0; i < part_order; i += lanes) {
         const Pack x = load(&rule.places[i]);
         const WellPlaces at = places_at(body, side.panels[panel], part.middle + part.half * x);
@@ -280,7 +282,7 @@ WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
                       const std::array<double, 2>& to_bottoms) {
     constexpr double widest_gap = 0.6;   // beyond it the rim has no effect on the turning point
     constexpr double widest_part = 1.0;  // the complex zeros of D and h are at least pi/2 away
-    constexpr double safe = 1.5;         // width of a part over its distance from a singularity
+    constexpr double safe = 1.5;         // largest ratio of width to distance from a singularity
     const double to_bottom = to_bottoms[i];
     const double from_rim = well.to_rim[i] - to_bottom;
     const WellPanel flat = bottom_panel(body, well, i, -1.0);
@@ -304,7 +306,7 @@ WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
     double energy = 0.0;
     const auto add = [&](std::size_t panel, double from, double width, double turned,
                          double to_singularity) {
-        // in v the distance of a singularity grows like the logarithm of its angle
+        // in v, the distance from a singularity grows like the logarithm of the angle to it
         const double over_distance = turned / to_singularity + 0.5;
         const int count =
             static_cast<int>(std::ceil(width * std::max(over_distance / safe, 1 / widest_part)));
@@ -318,13 +320,13 @@ WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
     return side;
 }
 
-// Times and paths from the turning point of a side.
+// Time and path since the turning point of a side.
 struct Ahead {
     double time;
     double path;
 };
 
-// The time and path at an angle from the turning point.
+// The time and path to a point, given its angle from the turning point.
 Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
     const double start[] = {angle, angle - to_bottom};
     std::optional<double> v[2];
@@ -346,8 +348,8 @@ Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
 
 // -------------------------------------------------------------------------------- reading
 
-// Where a time belongs: the side, its part, the time between it and the end of that part nearer the
-// turning point, and the direction of motion, +1 ahead.
+// The side and the part in which the body is at a given time, the time between then and the end of
+// the part nearer the turning point, and the direction of motion: +1 towards the bottom.
 struct Phase {
     std::size_t side;
     std::size_t part;
@@ -362,7 +364,7 @@ Phase phase_at(const Swing& swing, double time) {
     const DoubleDouble rest = since - lasts * swings;
     const std::size_t from = std::fmod(swings, 2.0) != 0 ? 1 : 0;
     const bool leaves = double(rest) <= double(swing.sides[from].lasts);
-    const double after = double(leaves ? rest : lasts - rest);  // negative by rounding alone
+    const double after = double(leaves ? rest : lasts - rest);  // negative only by rounding
     Phase found{leaves ? from : 1 - from, 0, std::abs(after), leaves == (after >= 0) ? 1.0 : -1.0};
     const auto& parts = swing.sides[found.side].parts;
     for (; found.part + 1 < parts.size() && found.since > parts[found.part].lasts; ++found.part) {
@@ -372,7 +374,7 @@ Phase phase_at(const Swing& swing, double time) {
     return found;
 }
 
-// Prepares a part for computing points.
+// Prepares a part for the computation of points.
 ROLLING_ELLIPSE_WIDE WellReading well_reading(const RunPart& part) {
     PartArray level = part.level;
     for (int i = 0; i < part_order; ++i) {
@@ -382,7 +384,7 @@ ROLLING_ELLIPSE_WIDE WellReading well_reading(const RunPart& part) {
             polynomial_through(level).value};
 }
 
-// The points at times from the start of a part.
+// The points at times since the start of a part.
 ROLLING_ELLIPSE_WIDE void read_places(const SlopeBody& body, const WellPanel& panel,
                                       const WellReading& of, const std::array<double, lanes>& times,
                                       PlacesOnPart& places) {

@@ -21,15 +21,15 @@ struct SpecificEnergy {
     double total() const { return kinetic + potential; }
 };
 
-// The energy of a state, with x = 0 at the start of its motion, and its largest constraint
-// residual: |f2| or |f3| over the long semi-axis, or |f4|.
+// The energy of a state, with x = 0 at the start of the motion, and the largest constraint
+// residual: |f2| or |f3| divided by the long semi-axis, or |f4|.
 struct Invariants {
     SpecificEnergy energy;
     double residual;
 };
 
 // The equation of rolling D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0, physics
-// (18), for y = (theta, omega), alpha the slope, D = k^2 + h^2 + h'^2.
+// (18), for y = (theta, omega), with the slope alpha and D = k^2 + h^2 + h'^2.
 class RollingEquation {
   public:
     static constexpr int size = 2;
@@ -99,8 +99,8 @@ class RollingEquation {
     }
 
     // The acceleration with a normal force that acts `lever` ahead of the contact. The couple
-    // changes the angular acceleration by -s, s = lever N/(m M), where N is the force without it
-    // and M = D + lever h': physics (64).
+    // changes the angular acceleration by -s, s = lever N/(m M), where N is the normal force
+    // without the couple and M = D + lever h': physics (64).
     double acceleration(const Geometry& at, double omega, double lever) const {
         const double slowing = lever * force(1.0, at, omega).normal / inertia(at, lever);
         return acceleration(at.sin, at.cos, omega) - slowing;
@@ -133,8 +133,8 @@ class RollingEquation {
         double c2;  // a^2 - b^2
     };
 
-    // The acceleration from physics (18) times h^4, with one root, and one division that need not
-    // wait for the root. With u = h^2, p = h h',
+    // The acceleration from physics (18) times h^4, with one square root and one division, which
+    // does not depend on the root. With u = h^2, p = h h',
     //     theta'' (u^2 (k^2 + u) + u p^2)
     //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
     [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,
@@ -154,12 +154,13 @@ class RollingEquation {
     double long_axis_;
 };
 
-// The lever of the normal force while the body rolls. From rest the body turns the way it falls.
+// The lever of the normal force while the body rolls. A body at rest starts to turn in the
+// direction in which it falls.
 inline double rolling_lever(const Scene& scene, const Geometry& at, double omega) {
     return lever_against(scene, omega == 0 ? at.h * std::tan(scene.slope) - at.dh : omega);
 }
 
-// The contact force of a rolling body, or of one at rest.
+// The contact force of a rolling body, or of a body at rest.
 inline ContactForce rolling_force(const Scene& scene, const Geometry& at, double omega) {
     const RollingEquation rolling(scene.body(), scene.slope);
     if (scene.rolling_resistance == 0) return rolling.force(scene.mass, at, omega);

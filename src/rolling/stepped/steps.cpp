@@ -43,7 +43,7 @@ ROLLING_ELLIPSE_WIDE void four_values(const Series& series, double middle, const
 
 // The path of the centre at many angles, each usually close to the previous one, by Taylor series
 // of the integral of h, physics (9), about the middles of intervals. A body that rolls over passes
-// through the same intervals in each half turn, so they are kept.
+// through the same intervals in each half turn, so the intervals are stored.
 class PathSeries {
   public:
     explicit PathSeries(const Axes& axes)
@@ -51,13 +51,14 @@ class PathSeries {
           c2_(axes.c2()),
           off_axis_(std::atanh(std::fmin(axes.a, axes.b) / std::fmax(axes.a, axes.b))) {}
 
-    // centre_path(theta) to 2 ulp. The bits depend neither on earlier calls nor on the sign.
+    // centre_path(theta) to within 2 ulp. The bits depend neither on earlier calls nor on the sign
+    // of theta.
     double operator()(double theta) {
         if (!here_.is_inside(theta)) move_to(theta);
         return value(here_.path, theta - here_.middle);
     }
 
-    // The same at n angles, four side by side where they share an interval.
+    // The paths at n angles, computed four at a time where the angles share an interval.
     void operator()(const double* thetas, std::size_t n, double* paths) {
         const auto is_here = [this](double theta) { return here_.is_inside(theta); };
         for (std::size_t i = 0; i < n;) {
@@ -81,7 +82,7 @@ class PathSeries {
         // False at the ends, which are left to `move_to`.
         bool is_inside(double theta) const { return low < theta && theta < high; }
 
-        // The path at the opposite angles.
+        // The mirrored interval, for angles of the opposite sign.
         Interval mirrored() const {
             Interval found{-high, -low, -middle, path};
             for (int k = 0; k <= series_order; k += 2) found.path[k] = -path[k];
@@ -95,7 +96,7 @@ class PathSeries {
     }
 
     Interval around(double angle) {
-        constexpr std::size_t most_known = 256;  // intervals kept; thin bodies use 100 a half turn
+        constexpr std::size_t most_known = 256;  // stored intervals; a thin body needs 100
         if (!(angle <= largest_in_quarters)) {
             return {angle, angle, angle, {centre_path(axes_, angle)}};
         }
@@ -113,8 +114,9 @@ class PathSeries {
         return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
     }
 
-    // An interval about an angle, from halving [n, n + 1) until it is at most 1/3.5 as wide as its
-    // distance from a root of h, so that 17 terms omit less than 1e-17 of h times the interval.
+    // An interval that contains an angle, obtained by halving [n, n + 1) until the width is at most
+    // 1/3.5 of the distance from a root of h, so that 17 terms omit less than 1e-17 of h times the
+    // width.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval interval;
@@ -126,7 +128,8 @@ class PathSeries {
         } while (share * width > distance(interval.middle));
         interval.high = interval.low + width;
 
-        // Series of u = h^2 by u'' = -4 u + constant, then of h and of the path, its integral
+        // The series of u = h^2 from u'' = -4 u + constant, then that of h and of its integral, the
+        // path
         const double s = std::sin(interval.middle);
         const double c = std::cos(interval.middle);
         Series u;

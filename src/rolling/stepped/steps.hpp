@@ -40,7 +40,8 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
-// Energies at points along a motion that took this many `evaluations`; constraint residuals are 0.
+// Energies at points along a motion; `evaluations` is the number of evaluations that it took. The
+// constraint residuals are 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse
