@@ -1,8 +1,8 @@
 """Pack files for the package into an archive: python notebooks/pack.py examples.zip
 
-examples.zip has the notebooks, without outputs, and the tables of reference states, for `examples`;
-course.zip the sheets and their pictures, for `course.sheet`. CMake runs this with a plain Python;
-the same sources give the same bits.
+examples.zip contains the notebooks, without outputs, and the tables of reference states, for
+`examples`; course.zip contains the sheets and their pictures, for `course.sheet`. CMake runs this
+script with a Python without packages. The same sources give identical archives.
 """
 
 import json

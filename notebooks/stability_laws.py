@@ -1,6 +1,6 @@
 """Measurements of notebook 07, section by section; tests/stability asserts their laws.
 
-A measurement is one short run or a few and returns numbers; it draws and judges nothing.
+Each measurement makes one or a few short runs and returns numbers; it does not draw or judge them.
 """
 
 import math
@@ -17,7 +17,7 @@ from rolling_ellipse import Scene, Trajectory, _core
 Floats = NDArray[np.float64]
 How = dict[str, Any]  # arguments of `simulate`
 
-# The 2:1 disc; a^2, b^2 and k^2 are doubles, so that the equation itself is not rounded.
+# The 2:1 disc; a^2, b^2 and k^2 are exact in double precision, so that the equation is not rounded.
 A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81
 EXPLICIT = ("rk4", "dopri5", "dop853")
 
@@ -32,12 +32,12 @@ def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
 
 
 def kept_by(stabilization: str, **how: Any) -> How:
-    """Settings of the five coordinates with a stabilization of their constraints."""
+    """Settings of the model in five coordinates with a stabilization of its constraints."""
     return {"model": "multipliers", "stabilization": stabilization} | how
 
 
 def half_turn(scene: Scene) -> float:
-    """Time from theta to theta + pi, or of half a swing [s]."""
+    """Time from theta to theta + pi, or the duration of half a swing [s]."""
     return rl.period(scene) / 2
 
 
@@ -50,14 +50,14 @@ def exponent(x: ArrayLike, y: ArrayLike) -> float:
 
 
 def spread(first: int, last: int, count: int = 25) -> NDArray[np.intp]:
-    """Whole numbers with even spacing of their logarithms."""
+    """Integers with evenly spaced logarithms."""
     return np.unique(np.geomspace(first, last, count).astype(np.intp))
 
 
 def growth(errors: Floats) -> float:
-    """Exponent of the rms change of evenly sampled errors over 1 to all intervals.
+    """Exponent of the growth of the rms change of evenly sampled errors with the time lag.
 
-    The mean is taken over runs and over all intervals of one length.
+    The mean square is over all runs and all pairs of samples with the same lag.
     """
     from_start = np.concatenate([np.zeros((*errors.shape[:-1], 1)), errors], axis=-1)
     lags = spread(1, errors.shape[-1])
@@ -66,7 +66,7 @@ def growth(errors: Floats) -> float:
 
 
 def largest(holds: Callable[[float], bool], low: float, high: float, width: float = 1e-12) -> float:
-    """Largest value at which a property holds, by bisection; it holds at low and not at high."""
+    """Largest value with a property, by bisection; the property holds at low and not at high."""
     assert holds(low) and not holds(high), (low, high)
     while high - low > width * high:
         middle = (low + high) / 2
@@ -151,7 +151,7 @@ def fed_back(gain: float) -> tuple[float, float]:
 
 
 def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) -> float:
-    """Largest constraint error in 600 steps of a rocking motion; inf if the motion is given up."""
+    """Largest constraint error in 600 steps of rocking; inf if the run was abandoned."""
     how = kept_by("baumgarte", method=method, step=step, baumgarte=gains)
     found = run(SLOW, np.arange(601) * step, **how)
     held = found.constraint_residuals()
@@ -160,7 +160,7 @@ def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) 
 
 
 def reach(method: str, step: float = 2.0**-7) -> float:
-    """Largest 2 alpha h at which runs with equal gains are not lost."""
+    """Largest 2 alpha h at which runs with equal gains do not diverge."""
 
     def holds(reached: float) -> bool:
         gain = reached / (2 * step)
@@ -176,9 +176,9 @@ STEP = 1 / 16  # step [s] of powers of two: the times of all steps are doubles
 
 
 class Rhythm(NamedTuple):
-    """A rocking motion for which a number of half swings takes a number of steps.
+    """A rocking motion in which a whole number of half swings takes a whole number of steps.
 
-    Samples after each of these are at knots, and at one phase of the bounded truncation error.
+    Samples at multiples of this time are at knots, with the same phase of the truncation error.
     """
 
     half_swings: int
@@ -210,8 +210,8 @@ def _speed(half_swing: float) -> float:
 
 
 def energy_error(theta: ArrayLike, omega: ArrayLike, start: float) -> Floats:
-    """Energy error relative to the energy at the start, flat with speed `start`; in long double,
-    and above the energy of lying flat, so that nothing cancels."""
+    """Energy error relative to the energy at the start, flat with speed `start`. Long double, and
+    energies above that of lying flat, avoid cancellation."""
     theta, omega = np.asarray(theta, np.longdouble), np.asarray(omega, np.longdouble)
     sine2 = np.sin(theta) ** 2
     h = np.sqrt(B * B + (A * A - B * B) * sine2)
@@ -230,7 +230,7 @@ class Errors(NamedTuple):
 
 
 def errors(rhythm: Rhythm, samples: int, runs: Sequence[How]) -> Errors:
-    """Errors of runs over the motion of a rhythm, at a number of samples."""
+    """Errors of runs of the motion of `rhythm`, at a number of samples."""
     half_swings = np.arange(1.0, samples + 1) * rhythm.half_swings
     times, start = half_swings * rhythm.half_swing, rhythm.omega
     theta, omega, _ = rl.flow(times, a=A, b=B, theta=0.0, omega=start)
@@ -251,8 +251,8 @@ DRIFTING: dict[str, How] = {
 
 
 def gauss_runs(count: int) -> list[How]:
-    """Steps that differ by parts in 2^40: enough for independent roundings, too little for any
-    other difference."""
+    """Gauss's method with steps that differ by parts in 2^40: enough for independent rounding
+    errors, too little for any other difference."""
     return [{"method": "gauss", "step": STEP * (1 + k * 2.0**-40)} for k in range(count)]
 
 
@@ -306,14 +306,14 @@ RATIOS = (1.5, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
 
 
 def swing(ratio: float) -> Scene:
-    """A swing with half the energy of the barrier, which ground and friction can hold."""
+    """A swing with half the energy of the barrier, at which rolling is valid."""
     gyration2 = (ratio * ratio + 1) / 4
     return Scene(ratio, 1.0, omega=math.sqrt(GRAVITY * (ratio - 1) / (gyration2 + 1)))
 
 
 def steps_needed(ratio: float, method: str) -> float:
-    """Fewest equal steps in a swing, by factors of 2^(1/4), with an error below 1e-6 rad, if twice
-    as many steps have such an error too."""
+    """Smallest number of equal steps in a swing, in factors of 2^(1/4), with an error below 1e-6
+    rad, if twice as many steps also have such an error."""
     scene = swing(ratio)
     once = rl.period(scene)
 
@@ -328,7 +328,7 @@ def steps_needed(ratio: float, method: str) -> float:
 
 
 def steps_taken(ratio: float, **how: Any) -> int:
-    """Number of all steps tried in a swing at rtol 1e-9."""
+    """Number of accepted and rejected steps in a swing at rtol 1e-9."""
     scene = swing(ratio)
     stats = run(scene, [rl.period(scene)], rtol=1e-9, atol=1e-11, **how).stats
     return int(stats["steps"] + stats["rejected_steps"])
@@ -387,8 +387,8 @@ GRAZING = Scene(A, B, omega=4.5)
 
 
 def shortfall(samples: int, places: ArrayLike) -> Floats:
-    """Relative error of the largest friction needed, taken from samples of a quarter turn, for each
-    place of the first sample [samples]."""
+    """Relative error of the largest friction needed, estimated from samples of a quarter turn, for
+    each offset of the first sample [samples]."""
     apart = half_turn(GRAZING) / 2 / samples
     need = rl.certify(GRAZING).largest_friction_needed
     assert need is not None
@@ -403,7 +403,7 @@ def shortfall(samples: int, places: ArrayLike) -> Floats:
 
 
 def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
-    """Loop over impacts: the first event at which the clock stands still, and its time."""
+    """Loop over impacts: the first event at which the clock no longer advances, and its time."""
     clock, speed, stands = v / GRAVITY, v * e, 0
     for event in range(1, events):
         later = clock + 2 * speed / GRAVITY
@@ -413,8 +413,8 @@ def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
 
 
 def sinking(v: float, e: float, step: float, t_end: float) -> tuple[Floats, Floats]:
-    """Times and heights of symplectic Euler steps, with an impact wherever the body is in the
-    ground and falls."""
+    """Times and heights from symplectic Euler steps, with an impact whenever the body is below the
+    ground and moves down."""
     heights, z, u = [], v * v / (2 * GRAVITY), 0.0
     for _ in range(round(t_end / step)):
         u -= GRAVITY * step
@@ -446,7 +446,7 @@ def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
 
 
 def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4) -> Floats:
-    """Rows of t, N/m, omega and x_dot from (theta, omega, x_dot), by classical steps without a
+    """Rows of t, N/m, omega and x_dot from (theta, omega, x_dot), by Runge-Kutta steps without a
     check of B, until numbers overflow: (steps, 4)."""
 
     def rates(y: Floats) -> Floats:
@@ -516,7 +516,7 @@ class Loose(NamedTuple):
 
     motion: Trajectory
     missed: Floats  # constraint errors at each sample, in long semi-axes and rad
-    energy: Floats  # change of the energy at each sample / its largest size
+    energy: Floats  # change of the energy at each sample over its largest magnitude
     phase: float  # largest error of the last ten seconds [rad]: at one time two swings may meet
     texts: list[str]  # texts of the warnings
 
@@ -532,7 +532,7 @@ def loose(scene: Scene, how: How) -> Loose:
     return Loose(motion, missed.max(1), changed, float(phase), [str(w.message) for w in heard])
 
 
-# ---------------------------------------------------------------------------- o. vain work
+# ------------------------------------------------------------------------- o. useless work
 
 SPAN = 2.0  # span [s]; steps of powers of two end on it
 _random = np.random.default_rng(1)

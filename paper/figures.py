@@ -17,7 +17,7 @@ MARKS = {"MuJoCo": ("o", BLUE), "Drake": ("s", ORANGE), "pymunk": ("^", PLUM)}
 
 
 def motion() -> Figure:
-    """One motion through all modes, over its forces."""
+    """Positions of one motion through all modes, and below them its forces."""
     scene = rl.Scene(2.0, 1.0, omega=5.2, friction=1.0, restitution=0.3)
     figure, axes = plt.subplots(2, 1, figsize=(7, 4.6), layout="constrained")
     known = rl.simulate(scene, np.linspace(0, 3, 1501))
@@ -27,7 +27,7 @@ def motion() -> Figure:
 
 
 def conditions() -> Figure:
-    """Condition numbers of four problems, and the errors of three engines in all problems."""
+    """Condition numbers of four problems, and errors of three engines on all problems."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.4), layout="constrained")
     for name, colour in CURVES.items():
         one = benchmark.problem(name)

@@ -1,7 +1,7 @@
 """Split the copy of a notebook into chapters: the site calls `split`, since one page is too long.
 
-The notebook itself stays one file. Its page on the site keeps what is before the first chapter and
-the last section, and lists the chapters in between, each a page of its own.
+The notebook itself stays one file. On the site, its page has the cells before the first chapter, a
+list of the chapters, each with its own page, and the last section.
 """
 
 import json

@@ -3,7 +3,7 @@
     pictures   01.png to 10.png, and 07b.png
     tasks      the marked parts of the sheets, from the questions and data of `course`
 
-With steps named, only these are made.
+Arguments select steps; without arguments both steps run.
 """
 
 import math
@@ -233,7 +233,7 @@ def slip() -> Figure:
 
 
 def first_events(ax: Axes) -> None:
-    """The proved outcome of rolling at each point, and the ends of the windows that slip."""
+    """Draw the proved outcome of rolling at each point, and the bounds of the slip windows."""
     mu, speed = np.linspace(0.1, 0.8, 281), np.linspace(0.02, 12.4, 310)
     outcomes = rl.classify(**BODY, omega=speed[:, None], friction=mu)
     kinds = [rl.Outcome.ROCKS, rl.Outcome.ROLLS_OVER, rl.Outcome.SLIPS]
@@ -410,7 +410,7 @@ PICTURES: dict[str, Callable[[], Figure]] = {
 
 
 def pictures() -> None:
-    from pictures import save  # beside this file, which tests load from elsewhere
+    from pictures import save  # imported here because tests load this file from another folder
 
     for name, draw in PICTURES.items():
         save(draw(), f"course/{name}.png")

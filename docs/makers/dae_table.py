@@ -1,6 +1,6 @@
 """The tables of benchmark_dae.md: SUNDIALS IDA and solve_dae on all forms, and the reference.
 
-make.py has the folder of `common` on the path.
+make.py adds the folder of `common` to the path.
 """
 
 import re
@@ -25,7 +25,7 @@ RUNS = [  # form, tolerance, entries in the test of local errors
 
 
 def scored(problem: benchmark.Problem) -> np.ndarray:
-    """Given times at which states are scored, after the start."""
+    """The given times after the start at which states are scored."""
     times = problem.times[problem.times > 0]
     return times[(times < problem.horizon) | (problem.horizon == problem.t_end)]
 
@@ -46,7 +46,7 @@ def solver(library: str):
 
 
 def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tuple[str, str]:
-    """The largest error of a solution that reached its end, and how its run ended."""
+    """The largest error, if the solution reached the end, and how the run ended."""
     if not found.success:
         reached = max(found.t, default=0.0)  # of the given times
         return "", f"t = {reached:.2g} s: {found.message}"
@@ -55,7 +55,7 @@ def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tu
 
 
 def ida() -> str:
-    """Table of all runs."""
+    """Table of the runs of IDA."""
     lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
     lines += ["|---|---|---|---|---|---|---|---|---|"]
     solve = solver("sksundae")

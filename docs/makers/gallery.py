@@ -1,7 +1,8 @@
 """Draw the pictures of the gallery by the code on its page: python docs/makers/gallery.py [folder]
 
 Each block of docs/gallery.md continues those before it. The value of its last statement, a picture
-or a film, is written to the file that the page shows below the block; a film as one frame.
+or an animation, is written to the file that the page shows below the block; an animation is written
+as a single frame.
 """
 
 import ast
@@ -19,7 +20,7 @@ from PIL import Image
 
 DOCS = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n!\[[^\]]+\]\(gallery/(\w+\.png)\))?", re.DOTALL)
-MOMENT = 0.45  # of a film, as a share of it
+MOMENT = 0.45  # time of the frame of an animation, as a fraction of its length
 
 
 def blocks() -> list[tuple[str, str]]:
@@ -28,7 +29,7 @@ def blocks() -> list[tuple[str, str]]:
 
 
 def drawn() -> Iterator[tuple[str, Any]]:
-    """Name of each picture, and what the last statement of its block made."""
+    """Name of each picture, and the value of the last statement of its block."""
     known: dict[str, Any] = {}
     for code, name in blocks():
         *before, last = ast.parse(code).body
@@ -43,7 +44,7 @@ def drawn() -> Iterator[tuple[str, Any]]:
 def main(folder: Path = DOCS / "gallery") -> None:
     folder.mkdir(exist_ok=True)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.StabilityWarning)  # a picture shows what it means
+        warnings.simplefilter("ignore", rl.StabilityWarning)  # some pictures show unstable methods
         for name, made in drawn():
             picture = BytesIO()
             if hasattr(made, "frame"):

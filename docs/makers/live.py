@@ -1,4 +1,4 @@
-"""Write the page with the core itself: python docs/makers/live.py [page.html]
+"""Write the live page, which contains the core: python docs/makers/live.py [page.html]
 
 It is the page of `explore(scenes.report)` with sliders for the whole scene, a map of half turns and
 the energies, from the files of docs/live. The page needs no other file and no network.
@@ -42,7 +42,7 @@ def page(explorer: Explorer) -> str:
 
 
 def numbers(explorer: Explorer) -> dict[str, Any]:
-    """The numbers that a reader can change or a link contains; infinite friction is None."""
+    """The numbers that a user can change or a link can contain; infinite friction is None."""
     scene, start = explorer.scene, explorer.scene.replace(impulse=None).initial_state
     height = geometry.support(scene.theta, a=scene.a, b=scene.b)
     flies = start.z > height
@@ -63,7 +63,7 @@ def numbers(explorer: Explorer) -> dict[str, Any]:
 
 
 def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
-    """Group, name, unit, range and step of each slider, relative to the size of the body."""
+    """Group, name, unit, range and step of each slider; ranges scale with the body's size."""
     size = max(given["a"], given["b"])
     rate = math.sqrt(given["gravity"] / size)
     _, strength = axes(explorer.scene)
@@ -84,7 +84,7 @@ def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def row(group: str, name: str, unit: str, least: float, most: float) -> dict[str, Any]:
-    """A slider of some 100 steps of 1, 2 or 5 times a power of ten."""
+    """A slider of about 100 steps, each 1, 2 or 5 times a power of ten."""
     rough = (most - least) / 100
     power = 10.0 ** math.floor(math.log10(rough))
     step = power * min((1, 2, 5), key=lambda n: abs(n * power - rough))

@@ -89,7 +89,7 @@ def engines(quick: bool) -> None:
 
 
 def added(quick: bool) -> None:
-    """Run the engines on problems without a score. A missing engine may refuse them."""
+    """Run the engines on problems without a score; a missing engine may only refuse them."""
     from pictures import restored
 
     path = DATA / "engines.json"
@@ -115,7 +115,7 @@ def added(quick: bool) -> None:
 
 
 def refuses(scene: Scene, step: float) -> Any:
-    """Refuse, like any engine, a scene that its file cannot express."""
+    """Refuse a scene that an engine's file format cannot express, as every engine does."""
     scene.to_sdf()
     raise ModuleNotFoundError("the engine must be installed for a problem that it may support")
 
@@ -152,7 +152,7 @@ def run(*command: str | Path) -> None:
 
 
 def notebooks(quick: bool) -> None:
-    """Run each notebook in a temporary folder, and keep its outputs."""
+    """Run each notebook in a temporary folder, and store its outputs."""
     os.environ["ROLLING_ELLIPSE_PEERS"] = str(BENCHMARKS)
     os.environ["ROLLING_ELLIPSE_SECONDS"] = "2" if quick else "60"
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
@@ -165,7 +165,7 @@ def notebooks(quick: bool) -> None:
             resources = {"metadata": {"path": folder}}
             NotebookClient(notebook, None, resources=resources, timeout=None).execute()
         notebook.metadata = metadata
-        for cell in notebook.cells:  # tags say what the site folds
+        for cell in notebook.cells:  # keep the tags of cells that the site folds
             cell.metadata = {"tags": cell.metadata.tags} if "tags" in cell.metadata else {}
         nbformat.write(notebook, path)
 
@@ -191,7 +191,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 
 def quoted(page: str) -> str:
-    """A page with its marked parts made again."""
+    """A page with its marked parts recomputed."""
     parts = {"speed": speed, "batches": throughput, "engines": engine_table, "others": others,
              "lead": lead}  # fmt: skip
     found = [name for name in parts if f"<!-- {name}: made by docs/makers/make.py -->\n" in page]
@@ -236,14 +236,14 @@ def speed() -> str:
     head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     if any("*" in line for line in lines[2:]):
-        lines.append("\n\\* of those that were run: for others no time was left")
+        lines.append("\n\\* relative to the peers that were run; for the others no time was left")
     on = drawn.machine
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     first, *leaders = [line for line in drawn.verdict().splitlines() if line[0] != " "]
     verdict = fill(f"{first.replace('_', ' ')} {' '.join(leaders).rstrip(';')}.", 130)
     if behind:
-        lines += ["\nBehind are:\n", *behind]
+        lines += ["\nThe package is behind in these races:\n", *behind]
     table = "\n".join([*lines, *calls()])
     return f"{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
 
@@ -262,40 +262,38 @@ def calls() -> list[str]:
 
 
 def lead() -> str:
-    """The number of the first page: the time of the best peer over that of the package."""
+    """The figure on the first page: the time of the best peer over that of the package."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     peers = {run.name for run in race.runs if "peer" in run.tags}
     ratio = min(least[name] for name in peers & least.keys()) / least["flow"]
     return (
         f"**{ratio:.3g} × as fast** as the best of {len(peers)} other integrators: ten half turns, "
-        "to within 1e-8. A million turns\ncost what one costs.\n"
+        "to within 1e-8. A million turns\ncost no more than one.\n"
     )
 
 
 def others() -> str:
-    """Table of the answers of other programs, with a figure for each."""
+    """Table that compares other programs with the package, with a figure for each."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
-    rows = [["others", "what they do", "beside this package"]]
+    rows = [["program", "what it does", "compared with this package"]]
     for name in ("SciPy", "heyoka"):
         best = min(time for contender, time in least.items() if contender.startswith(name))
         ratio = float(f"{best / least['flow']:.3g}")
-        figure = f"ten half turns within 1e-8: {ratio:g} × the time"
+        figure = f"ten half turns to within 1e-8 take {ratio:g} × the time"
         rows.append([name, "integrates; no contact", figure])
     for name in ("MuJoCo", "Drake"):
         scores = json.loads((DATA / "engines.json").read_text(encoding="utf-8"))["engines"][name]
         finest = min(score["setting"] for score in scores["scores"])
         passed = [score["passed"] for score in scores["scores"] if score["setting"] == finest]
         figure = f"passes {sum(passed)} of {len(passed)} known answers at steps of {finest:g} s"
-        rows.append([name, "contact, by steps", figure])
+        rows.append([name, "contact, in time steps", figure])
     mass, radius = 0.170097, 0.028575
     how = {"mass": mass, "inertia": 0.4 * mass * radius**2, "friction": 0.2}
     ball = Scene(radius, radius, x_dot=1.0, omega=0.0, **how)
     off = abs(simulate(ball, 1.0).events[0].t - POOLTOOL)
-    figure = (
-        f"its ball slips for {POOLTOOL:.6f} s, and a circle here as long, to within {off:.0e} s"
-    )
+    figure = f"its ball slips for {POOLTOOL:.6f} s; a circle here agrees to within {off:.0e} s"
     rows.append(["pooltool", "circles (balls), exactly", figure])
     return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], ["---"] * 3, *rows[1:])) + "\n"
 
@@ -306,18 +304,19 @@ def half_turns(path: Path) -> float:
 
 
 def throughput() -> str:
-    """Sentences with the figures for planning a large run, if they were measured."""
+    """Sentences with the figures for planning a large run, if there are measurements."""
     path = DATA / "batches.json"
     if not path.exists():
         return ""
     known = json.loads(path.read_text(encoding="utf-8"))
     exact, contact, pool = known["exact"], known["contact"], known["pool"]
     return (
-        f"For planning (measured on {known['machine']['processor']}): with `out=` an exact motion "
-        f"with one sample takes\n{1e6 * exact['seconds']:.2g} µs of one core and "
-        f"{exact['bytes']:.0f} bytes, and {exact['bytes a sample']:.0f} for each further sample; "
-        f"one with slips and jumps\n{1e3 * contact['seconds']:.2g} ms, {contact['bytes']:.0f} "
-        f"bytes, and {contact['bytes a sample']:.0f}. A pool of {pool['processes']} processes "
+        f"For planning (measured on {known['machine']['processor']}): with `out=`, an exact motion "
+        f"with one sample takes\n{1e6 * exact['seconds']:.2g} µs on one core and "
+        f"{exact['bytes']:.0f} bytes, and {exact['bytes a sample']:.0f} bytes for each further "
+        f"sample. A motion with slips\nand jumps takes {1e3 * contact['seconds']:.2g} ms, "
+        f"{contact['bytes']:.0f} bytes, and {contact['bytes a sample']:.0f} bytes for each further "
+        f"sample. A pool of {pool['processes']} processes\n"
         f"wrote {round(pool['motions a second'], -3):,.0f} exact motions a second.\n"
     )
 
@@ -338,14 +337,14 @@ def engine_table() -> str:
     rows = [[f"`{problem}`", *row] for problem, row in cells.items()]
     table = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     stamp = (
-        f"{seconds:.0f} s for all of it on {on['processor']}, {on['date']}; every score is in "
-        "[`engines.json`](data/engines.json)."
+        f"All runs together took {seconds:.0f} s on {on['processor']}, {on['date']}. "
+        "[`engines.json`](data/engines.json) has every score."
     )
     return "\n".join([*table, "", *lines, "", stamp]) + "\n"
 
 
 def engine_cell(score: dict[str, Any]) -> str:
-    """Error over condition, in bold if it passes; or why there is none."""
+    """Error over condition, in bold if the answer passes; or a dash if there is none."""
     if score["over_condition"] is None:
         return "–"
     error = f"{score['over_condition']:.0e}"

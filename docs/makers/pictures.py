@@ -1,6 +1,6 @@
-"""Make the pictures of README and site; a step of `make.py`.
+"""Make the pictures of the README and the site; a step of `make.py`.
 
-The chart of speed against accuracy is drawn from `peers_R_10.37.json`, whose digest it carries.
+The chart of speed against accuracy is drawn from `peers_R_10.37.json` and contains its digest.
 """
 
 import hashlib
@@ -29,7 +29,7 @@ METHODS = {
     "gauss, 0.02 s": {"method": "gauss", "step": 0.02},
     "exact": {"method": "exact"},
 }
-DRIFTS = {  # stabilizations of the classical method in five coordinates, with their line styles
+DRIFTS = {  # line styles of the stabilizations of the classical method in five coordinates
     "none": (PLUM, "-"),
     "baumgarte": (ORANGE, "--"),
     "projection": (BLUE, "-."),
@@ -51,14 +51,14 @@ def main() -> None:
 
 
 def friction() -> None:
-    """Film of three motions: the same blow on three floors."""
+    """Animation of three motions: the same blow on ground with three values of friction."""
     motions = [rl.simulate(replace(rl.scenes.report, friction=mu), 4.0) for mu in (1.0, 0.1, 0.0)]
     labels = ["friction 1", "friction 0.1", "no friction"]
     rl.animate(motions, DOCS / "friction.gif", labels=labels, fps=25, width=560)
 
 
 def methods() -> Figure:
-    """Energy errors of the methods over 200 s; the fixed steps end at the samples."""
+    """Energy errors of the methods over 200 s; the samples are at the ends of fixed steps."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     t = np.linspace(0.0, 200.0, 501)
     motions = [
@@ -69,7 +69,7 @@ def methods() -> Figure:
 
 
 def speed() -> Figure:
-    """Work-precision chart of the package and its peers, small enough for the screen of a phone."""
+    """Work-precision chart of the package and its peers, small enough for a phone screen."""
     race = rl.WorkPrecision.load(RACE)
     figure = Figure(figsize=(4.0, 4.0), layout="constrained")
     fronts = race.plot(ax=figure.add_subplot()).fronts
@@ -92,7 +92,7 @@ def engines() -> dict[str, Figure]:
 
 
 def restored(rows: list[dict[str, Any]]) -> Scores:
-    """Scores from their records; missing numbers are None in files."""
+    """Scores from their records, in which missing numbers are None."""
     scores = []
     for row in rows:
         known = {key: np.nan if value is None else value for key, value in row.items()}
@@ -127,7 +127,7 @@ def stability() -> Figure:
 
 
 def name_line(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str) -> None:
-    """Write a name at the end of a line, and the exponent of its growth if it grows."""
+    """Label the end of a line with its name and, if it grows, with the exponent of its growth."""
     late = x >= 20
     power = np.polyfit(np.log(x[late]), np.log(y[late]), 1)[0]
     grows = f" $t^{{{power:.2f}}}$" if y[-1] > 1e-9 and power > 0.5 else ""
@@ -193,7 +193,7 @@ def save(figure: Figure, name: str, source: Path | None = None, dpi: int = 120) 
         facts.add_text("Source", hashlib.sha256(source.read_bytes()).hexdigest())
     picture = BytesIO()
     figure.savefig(picture, dpi=dpi)
-    colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the size
+    colours = Image.open(picture).convert("RGB").quantize(128)  # reduces the file to a third
     colours.save(DOCS / name, optimize=True, pnginfo=facts)
 
 

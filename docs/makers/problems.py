@@ -1,7 +1,7 @@
 """Make a page for each problem of `benchmark`, and their table; a step of `make.py`.
 
 Pages are docs/problems/<id>.md with a picture each; `listed` is a marked part of benchmark.md.
-All numbers are copied digit by digit from python/rolling_ellipse/benchmark/problems.
+All numbers are copied with all their digits from python/rolling_ellipse/benchmark/problems.
 """
 
 import json
@@ -36,7 +36,7 @@ ORDER = ("roll", "brink", "slide", "leave", "hit", "law", "rest", "jam")
 
 
 def main() -> None:
-    from pictures import save  # beside this file, which tests load from elsewhere
+    from pictures import save  # imported here because tests load this file from another folder
 
     FOLDER.mkdir(exist_ok=True)
     for name, text in pages().items():
@@ -84,7 +84,7 @@ def worst(data: Any) -> str:
 def page(data: Any) -> str:
     name, scene = data["id"], data["scene"]
     given = [(f"`{field}`", scene[field], unit) for field, unit in FIELDS.items() if field in scene]
-    seen = "angular velocity over angle" if name in PHASE else "the body at even times"
+    seen = "angular velocity over angle" if name in PHASE else "the body at equally spaced times"
     seen = "its forces over time" if name in FORCES else seen
     parts = [
         f"# `{name}`: {data['title']}\n\n**{data['question']}**\n\n"
@@ -92,12 +92,12 @@ def page(data: Any) -> str:
     ]
     if name in ALONG:
         parts.append(
-            f"(Drawn moving along at {ALONG[name]:g} m/s, which changes nothing else: the ground\n"
-            "has no friction. The problem itself has x_dot = 0.)\n"
+            f"(In the picture the body also moves along the ground at {ALONG[name]:g} m/s, which\n"
+            "changes nothing else, since there is no friction. In the problem x_dot = 0.)\n"
         )
     parts += [
-        "Frame, units and file format are those of [the benchmark](../benchmark.md);"
-        " all numbers are in\n"
+        "[The benchmark](../benchmark.md) defines frame, units and file format. All numbers"
+        " are in\n"
         f"`python/rolling_ellipse/benchmark/problems/{name}.json`.\n",
         f"## Data\n\n{table(('given', 'value', 'unit'), given)}",
         f"A simulator needs: {', '.join(data['tags'])}. The motion ends at {data['t_end']} s.\n",
@@ -124,47 +124,54 @@ def answer(data: Any) -> str:
     """The answer in words."""
     right = data["answer"]
     if "over" in right:
-        turned = "exceeds" if right["over"] else "never exceeds"
-        word = "It passes over the tip" if right["over"] else "It never passes over the tip"
-        return f"{word}. A simulator is right if abs(theta) {turned} pi/2.\n"
+        passes, turned = (
+            ("passes", "exceeds") if right["over"] else ("does not pass", "stays below")
+        )
+        return (
+            f"The body {passes} over the tip. A simulator is right if abs(theta) {turned} pi/2.\n"
+        )
     if "half_swings" in right:
         return (
-            f"It rests at x = {right['last']['x']} m, theta = {right['last']['theta']} rad, after\n"
+            f"The body comes to rest at x = {right['last']['x']} m, "
+            f"theta = {right['last']['theta']} rad, after\n"
             f"{right['half_swings']} swings from one side to the other. A simulator is right if it "
-            "ends there, to 0.01 L and\n0.01 rad, has swung as often, and has these events, in "
-            "this order, each at its\n[time](../benchmark.md#a-score):\n"
+            "ends there, to within\n0.01 L and 0.01 rad, after the same number of swings, and has "
+            "these events in this order,\neach at its [time](../benchmark.md#the-score):\n"
         )
     if "last" in right:
         return (
-            f"It has: x = {right['last']['x']} m at the end. A simulator is right if its last x is "
-            "this to 0.01 L.\n"
+            f"At the end x = {right['last']['x']} m. A simulator is right if its last x is this "
+            "value to within 0.01 L.\n"
         )
     if "always" in right:
-        return "It stays. A simulator is right if x stays 0 to 0.01 L, and theta to 0.01.\n"
+        return (
+            "The body stays. A simulator is right if x stays within 0.01 L of 0, and theta within "
+            "0.01 rad.\n"
+        )
     if "law" in right:
         return (
-            f"Any of {', '.join(right['law'])} is right; the score names the law whose states are\n"
-            "nearest, and by which factor, which has to be above 3. States below are by Stronge's\n"
-            "law, the package's own.\n"
+            f"Any of the laws {', '.join(right['law'])} is right. The score names the law whose\n"
+            "states are nearest, and how many times as far away those of the next law are: this\n"
+            "factor must be above 3. The states below follow Stronge's law, as in the package.\n"
         )
     if "status" in right:
         return (
-            "Neither sliding nor flight can go on, and rolling would need another velocity: the\n"
-            "package ends the motion with the status JAMMED. This problem is shown, not scored.\n"
+            "Neither sliding nor flight can continue, and rolling would need another velocity.\n"
+            "The package ends the motion with the status JAMMED. This problem is not scored.\n"
         )
     if "end" in right:
         return (
-            f"They end at {right['end']} s. A simulator is right if it has the first "
+            f"The bounces end at {right['end']} s. A simulator is right if it has the first "
             f"{len(right['events'])} of these events,\n"
             "which follow flights higher than 0.002 L, and if its last event, IMPACT or STICK, is\n"
-            "at the time of the last one: impacts between may be as many as it resolves. A\n"
-            "[time](../benchmark.md#a-score) has a tolerance.\n"
+            "at the time of the last event below. The number of impacts in between is not judged.\n"
+            "[Times](../benchmark.md#the-score) have a tolerance.\n"
         )
     if not right["events"]:
-        return "No event takes place. A simulator is right if it has none.\n"
+        return "There is no event. A simulator is right if it has none.\n"
     return (
         "A simulator is right if it has these events, in this order, each at its\n"
-        "[time](../benchmark.md#a-score):\n"
+        "[time](../benchmark.md#the-score):\n"
     )
 
 
@@ -176,10 +183,10 @@ def compared(data: Any) -> list[tuple[Any, float]]:
 
 
 def last_state(data: Any) -> str:
-    """The last compared state, to all digits."""
+    """The last compared state, with all digits."""
     (row, _), count = compared(data)[-1], len(compared(data))
     named = zip((f"`{name}`" for name in data["columns"][1:]), row[1:], strict=True)
-    said = f"The state at t = {row[0]} s, the last of {count} that are compared:"
+    said = f"State at t = {row[0]} s, the last of {count} states that are compared:"
     return f"{said}\n\n{table(('variable', 'value'), list(named))}"
 
 
@@ -196,13 +203,13 @@ def error(data: Any) -> str:
     ]  # fmt: skip
     early = (
         "to the end" if data["horizon"] == data["t_end"] else
-        f"before the horizon, {data['horizon']} s, from which on the condition number is above 1000"
+        f"before the horizon, {data['horizon']} s, at which the condition number first exceeds 1000"
     )  # fmt: skip
     return (
-        f"## Error\n\nStates are compared {early},\nat times further than {near:.3g} s from all "
-        "events. The error of a state is its largest difference by\nthe scales below; the score "
-        f"divides it by the condition number of its time, here {early_worst:.3g} at most.\n\n"
-        + table(("variables", "scale", "here"), scales)
+        f"## Error\n\nStates are compared {early},\nat times more than {near:.3g} s away from all "
+        "events. The error of a state is its largest deviation,\nin units of the scales below. The "
+        f"score divides it by the condition number at that time, which\nis {early_worst:.3g} at "
+        "most.\n\n" + table(("variables", "scale", "here"), scales)
     )
 
 
@@ -210,7 +217,7 @@ def error(data: Any) -> str:
 
 
 def picture(name: str) -> Figure:
-    """The motion in the phase plane, by its forces, or as positions over the ground."""
+    """A chart of the motion: phase plane, forces, or positions over the ground."""
     one = benchmark.problem(name)
     motion = one.trajectory
     chart: Any

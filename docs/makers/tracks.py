@@ -1,10 +1,10 @@
-"""Write the tracks of docs/data as trackers export them.
+"""Write the tracks of docs/data in the formats that trackers export.
 
     python docs/makers/tracks.py
 
-track_tracker.txt   like Tracker's: two lines of names, tabs, decimal commas, degrees; its clock
-                    began long before the drop, and the origin is off the ground
-track_points.csv    like those of two markers followed by OpenCV: pixels, frames, y down, gaps
+track_tracker.txt   in the format of Tracker: two lines of names, tabs, decimal commas, degrees; the
+                    clock started long before the drop, and the origin is not on the ground
+track_points.csv    two markers tracked by OpenCV: pixels, frame numbers, y downwards, gaps
 """
 
 from pathlib import Path
