@@ -25,12 +25,11 @@ from rolling_ellipse import (
 
 REPORT = rl.scenes.report
 
-# ----------------------------------------------------------------------------------------- outcome
-
 
 def test_the_reports_blow_rolls_the_body_over() -> None:
-    """A press 1.5 m from the centre rolls the body over from F = m (k^2 + b^2) omega_R/d = 44.3 N s
-    on. The blow needs a friction of 2/3, and N vanishes from 4.8432 rad/s, 72.65 N s, on."""
+    """A press 1.5 m from the centre rolls the body over if F is at least m (k^2 + b^2) omega_R/d =
+    44.3 N s. The blow needs a friction of 2/3. N vanishes at speeds above 4.8432 rad/s, after more
+    than 72.65 N s."""
     assert outcome(REPORT) is Outcome.ROLLS_OVER
     assert outcome(replace(REPORT, impulse=None)) is Outcome.RESTS
     F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
@@ -62,10 +61,10 @@ def test_starts_without_rolling_have_the_expected_outcome() -> None:
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_outcomes_on_a_slope_agree_with_closed_forms(side: int) -> None:
-    """A circle rolls down the slope or, against it, turns back after a path of omega^2 (a^2 +
-    k^2)/(2 g sin(slope)): more than half a turn or not. A body in equilibrium, h' = h tan(slope),
-    rests with the friction tan(slope). On a slope of 0.1 the 2:1 disc rocks, and rolls over from
-    flat at 3 rad/s downhill."""
+    """A circle rolls down the slope. Against the slope it turns back after a path of omega^2 (a^2 +
+    k^2)/(2 g sin(slope)), which may be longer or shorter than half a turn. A body in equilibrium,
+    h' = h tan(slope), rests with the friction tan(slope). On a slope of 0.1 the 2:1 disc rocks, and
+    rolls over from flat at 3 rad/s downhill."""
     round_one = Scene(1.0, 1.0, slope=0.1 * side)
     assert outcome(round_one) is Outcome.ROLLS_OVER
     half_turn = math.sqrt(2 * 9.81 * math.sin(0.1) * math.pi / 1.5)
@@ -107,15 +106,10 @@ def test_impulses_broadcast_and_replace_the_scenes_own() -> None:
         assert isinstance(empty, np.ndarray) and empty.shape == (0,) and empty.dtype == np.int8
 
 
-# ------------------------------------------------------------------------------- required friction
-
-
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 1.5), (1.0, 1.0)])
-def test_to_lie_still_a_body_needs_friction_equal_to_the_tangent_of_the_slope(
-    a: float, b: float
-) -> None:
-    """The weight acts through the contact if that leads the centre by h tan(slope). The maximum of
-    lead/h is flat, so that the largest of 1e5 angles misses it by some 1e-9."""
+def test_a_body_at_rest_needs_the_friction_tan_slope(a: float, b: float) -> None:
+    """The weight acts through the contact if the contact leads the centre by h tan(slope). The
+    maximum of lead/h is flat, so that the largest of 1e5 angles misses it by some 1e-9."""
     theta = np.linspace(0.0, math.pi, 100_001)
     leads = rl.geometry.support_slope(theta, a=a, b=b) / rl.geometry.support(theta, a=a, b=b)
     steepest = math.atan(leads.max())
@@ -128,8 +122,9 @@ def test_to_lie_still_a_body_needs_friction_equal_to_the_tangent_of_the_slope(
 
 def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
     """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
-    (1e-12 of the forces). With less friction the certificate states where rolling ends, with a
-    little more it proves rolling: its squared polynomials leave some 1e-6 in between undecided."""
+    (1e-12 of the forces). With less friction the certificate states where rolling ends, and with
+    slightly more it proves rolling. Its polynomials are squared, so about 1e-6 in between remains
+    undecided."""
     by_the_blow = by_the_motion = never = 0
     for scene in random_scenes(400, 11, struck=0.8, slope=0.0):
         found = required_friction(scene)
@@ -159,7 +154,8 @@ def test_required_friction_is_what_the_blow_and_the_motion_need() -> None:
 
 @pytest.mark.parametrize("to", ["roll", "rest"])
 def test_required_friction_of_arrays_equals_that_of_scenes_bit_for_bit(to: Any) -> None:
-    """Bodies roll, slide or fly, struck or not, on slopes or not; in any layout, by any workers."""
+    """The bodies roll, slide or fly, with and without a blow or a slope. Neither the layout of the
+    arrays nor the workers change a bit."""
     rng = np.random.default_rng(4)
     for start in ({}, {"x_dot": rng.normal(size=7)}, {"z": 4.0}, {"impulse": 1}):
         given: dict[str, Any] = {
@@ -207,8 +203,8 @@ def test_required_friction_equals_known_values() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> None:
-    """A body that rocks on a slope rolls on with this friction in the computed motion, and slips
-    with 1e-8 less. A body whose required friction is infinite rolls down and away."""
+    """A body that rocks on a slope keeps rolling with this friction in the computed motion, and
+    slips with 1e-8 less. A body whose required friction is infinite rolls down and away."""
     rng = np.random.default_rng(seed)
     finite = 0
     while finite < 5:
@@ -229,14 +225,11 @@ def test_required_friction_is_just_enough_for_rocking_on_a_slope(seed: int) -> N
         assert slips.mode[0] == Mode.SLIDING or slips.events, scene
 
 
-# ----------------------------------------------------------------------------------------- blow to
-
-
 @pytest.mark.parametrize("before", [0.0, -1.0, 0.7])
 @pytest.mark.parametrize("distance", [1.2, -0.4])
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
 def test_a_blow_gives_the_requested_speed(theta: float, distance: float, before: float) -> None:
-    """The blow law gives omega from F within the rounding of the gain and of both speeds."""
+    """The blow law gives omega from F to within the rounding of the gain and of both speeds."""
     scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(jx=3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
     wanted = before + math.copysign(0.9, distance - lead)
@@ -255,11 +248,11 @@ def test_a_blow_can_stop_a_body() -> None:
 
 @pytest.mark.parametrize("distance", [1.5, -1.5, 0.6])
 @pytest.mark.parametrize("theta", [0.0, 0.25])
-def test_blow_to_gives_the_weakest_press_that_rolls_the_body_over(
+def test_blow_to_is_the_weakest_press_that_rolls_the_body_over(
     theta: float, distance: float
 ) -> None:
-    """A press at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion passes
-    the tip with 1e-12 more, and turns back with 1e-12 less."""
+    """The press on a body at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The
+    motion passes the tip with 1e-12 more, and turns back with 1e-12 less."""
     scene = replace(REPORT, theta=theta)
     blow = blow_to(scene, distance)
     h = math.hypot(2.0 * math.sin(theta), math.cos(theta))
@@ -289,8 +282,8 @@ def test_a_harder_press_may_need_less_friction() -> None:
 
 
 def test_blow_to_allows_presses_up_to_their_limit() -> None:
-    """A lever a thousand times shorter would need a larger press than allowed; F d gives the speed,
-    as with a longer lever."""
+    """A lever a thousand times shorter would need a press above the limit. The product F d
+    determines the speed for either lever."""
     usual, huge = (
         -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 2e-6)
     )

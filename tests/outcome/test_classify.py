@@ -1,4 +1,4 @@
-"""`classify` gives known answers: edges, shapes of arrays, arguments."""
+"""`classify` gives known answers at edges, for arrays and by default."""
 
 import math
 from typing import Any
@@ -12,28 +12,6 @@ from oracles.crowd import Sample, random_sample
 from oracles.numbers import DIGITS
 from rolling_ellipse import Outcome, Scene, certify, classify, thresholds
 
-# -------------------------------------------------------------------------------------- exact edges
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.3, math.inf])
-@pytest.mark.parametrize(
-    ("a", "b", "theta"),
-    [
-        (2.0, 1.0, 0.0),
-        (1.0, 2.0, math.pi / 2),
-        (2.0, 1.0, -3 * math.pi),
-        (2.0, 1.0, math.pi / 2),
-        (1.0, 2.0, 0.0),
-        (1.3, 1.3, 0.0),
-        (1.3, 1.3, 1.0),
-    ],
-    ids=["flat", "flat standing", "flat turned", "tip", "tip standing", "circle", "circle turned"],
-)
-def test_a_body_at_rest_in_equilibrium_rests(
-    a: float, b: float, theta: float, friction: float
-) -> None:
-    assert classify(a=a, b=b, omega=0.0, theta=theta, friction=friction) is Outcome.RESTS
-
 
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
 @pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
@@ -44,23 +22,17 @@ def test_a_circle_rolls_forever_with_any_friction(omega: float, friction: float)
         assert found is (Outcome.ROLLS_OVER if friction else Outcome.SLIPS)
 
 
-def separatrix_speed(a: float, b: float, gravity: float) -> Any:
-    """Speed of the separatrix at the flat position, of a disc whose k^2 is rounded to a double."""
-    longer, shorter = mp.mpf(max(a, b)), mp.mpf(min(a, b))
-    gyration2 = mp.mpf((a * a + b * b) / 4)
-    return mp.sqrt(2 * mp.mpf(gravity) * (longer - shorter) / (gyration2 + shorter**2))
-
-
 @pytest.mark.parametrize("gravity", [9.81, 1.62])
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.5, 1.0), (0.3, 0.9), (9.5, 1.0), (1.0, 9.5)])
-def test_starts_near_the_separatrix_are_called_edge_or_judged_correctly(
-    a: float, b: float, gravity: float
-) -> None:
-    """Friction is infinite, and the shape (below 9.75) keeps N > 0 a little beyond the separatrix.
-    A few ulp off the separatrix the answer is EDGE or the truth; at the nearest double, EDGE. Every
-    start is flat: theta = pi/2 is off by 6e-17, whose square has no effect."""
+def test_starts_near_the_separatrix_are_edge_or_correct(a: float, b: float, gravity: float) -> None:
+    """Friction is infinite, and a ratio of axes below 9.75 keeps N > 0 slightly beyond the
+    separatrix. At the double nearest to the separatrix the answer is EDGE; a few ulp away it is
+    EDGE or correct. Every start is flat: theta = pi/2 is off by 6e-17, whose square has no
+    effect."""
     mp.mp.dps = DIGITS
-    exact = separatrix_speed(a, b, gravity)
+    longer, shorter = mp.mpf(max(a, b)), mp.mpf(min(a, b))
+    gyration2 = mp.mpf((a * a + b * b) / 4)  # as the package rounds it
+    exact = mp.sqrt(2 * mp.mpf(gravity) * (longer - shorter) / (gyration2 + shorter**2))
     theta = 0.0 if a > b else math.pi / 2
 
     def found(omega: float) -> Any:
@@ -82,11 +54,10 @@ def test_starts_near_the_separatrix_are_called_edge_or_judged_correctly(
     ("a", "b", "omega"),
     [(2.0, 1.0, 2.5), (2.0, 1.0, 3.2), (2.0, 1.0, 4.5), (0.7, 1.9, 1.0), (20.0, 1.0, 1.0)],
 )
-def test_the_outcome_changes_at_the_friction_of_the_certificate(
-    a: float, b: float, omega: float
-) -> None:
-    """A motion up from flat passes every height. |F|/N is known to about 1e-13, as the forces are
-    rounded to about 1e-14 of the weight, and N is at least a tenth of it."""
+def test_the_outcome_changes_at_the_certified_friction(a: float, b: float, omega: float) -> None:
+    """A motion that rises from the flat position passes every height. |F|/N is known to about
+    1e-13, because the forces are rounded to about 1e-14 of the weight and N is at least a tenth of
+    the weight."""
     theta = 0.0 if a > b else math.pi / 2
     needed = certify(Scene(a, b, omega=omega, theta=theta)).largest_friction_needed
     assert needed is not None
@@ -99,9 +70,9 @@ def test_the_outcome_changes_at_the_friction_of_the_certificate(
 
 
 def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
-    """The 2:1 disc at 4.5 rad/s when flat needs 0.647 at 48.6 degrees and hardly any friction near
-    the tip. A start of the same motion above that angle passes the tip if it rises, and slips if it
-    falls."""
+    """The 2:1 disc that turns at 4.5 rad/s when flat needs a friction of 0.647 at 48.6 degrees, and
+    hardly any near the tip. If the same motion starts above that angle, it passes the tip when
+    rising and slips when falling."""
     friction = 0.5
     moving = oracles.rolling.motion([2.0], [1.0], [1.25], [9.81], [0.0], [4.5])
     for angle, up, down in (
@@ -109,9 +80,8 @@ def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
         (0.5, Outcome.SLIPS, Outcome.SLIPS),
         (1.45, Outcome.ROLLS_OVER, Outcome.SLIPS),
     ):
-        omega = float(
-            oracles.rolling.speed(moving, *oracles.geometry.reduced([angle], [2.0], [1.0]))[0]
-        )
+        sides = oracles.geometry.reduced([angle], [2.0], [1.0])
+        omega = float(oracles.rolling.speed(moving, *sides)[0])
         at: dict[str, Any] = {"a": 2.0, "b": 1.0, "friction": friction}
         assert classify(**at, theta=angle, omega=omega) is up
         assert classify(**at, theta=angle, omega=-omega) is down
@@ -121,9 +91,10 @@ def test_a_rising_body_beyond_the_slip_angle_rolls_over_first() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
 def test_a_body_turning_too_fast_to_stay_on_the_ground_loses_contact(friction: float) -> None:
-    """The free body on its tip leaves the ground from omega^2 = g L/(L^2 - S^2) on. At 1:1.5, below
-    root three, N of rolling first vanishes there, too: at lower speeds the body rolls over if
-    friction is infinite. A change of 1e-11 in speed, 2e-11 in c, is far above rounding."""
+    """A free body on its tip leaves the ground if omega^2 exceeds g L/(L^2 - S^2). For axes of
+    1:1.5, a ratio below root three, N of rolling also vanishes first at this speed: a slower body
+    rolls over if friction is infinite. A change of 1e-11 in speed, 2e-11 in c, is far above
+    rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))
     at: dict[str, Any] = {"a": 1.0, "b": 1.5, "friction": friction}
     below = Outcome.ROLLS_OVER if math.isinf(friction) else Outcome.SLIPS
@@ -150,22 +121,11 @@ def test_the_thinnest_body_rocks_if_slow_and_slips_if_fast(a: float, b: float) -
     assert classify(**at, theta=tip, omega=0.0) is Outcome.RESTS
 
 
-# ----------------------------------------------------------------------------- arrays and arguments
-
-
 def test_the_default_is_a_disc_on_earth_with_unlimited_friction_lying_on_its_side() -> None:
     a, b = np.array([2.0, 0.5, 5.0])[:, None], 1.0
     omega = np.linspace(-8, 8, 101)
-    explicit = classify(
-        a=a,
-        b=b,
-        omega=omega,
-        theta=0.0,
-        friction=math.inf,
-        gravity=9.81,
-        gyration2=(a * a + b * b) / 4,
-        workers=1,
-    )
+    usual: dict[str, Any] = {"theta": 0.0, "friction": math.inf, "gravity": 9.81, "workers": 1}
+    explicit = classify(a=a, b=b, omega=omega, gyration2=(a * a + b * b) / 4, **usual)
     assert np.array_equal(classify(a=a, b=b, omega=omega), explicit)
     assert len(np.unique(explicit)) >= 3
 

@@ -1,8 +1,7 @@
 """`classify` on random scenes agrees with a search along the angles, and with `certify`.
 
-The search is brute force in long double: Newton's law (oracles/rolling.py) at thousands of angles
-from the start on, through the flat position if the body falls first, to the tip or the turning
-point.
+The search evaluates Newton's law (oracles/rolling.py) in long double at thousands of angles: from
+the start, through the flat position if the body falls first, to the tip or the turning point.
 """
 
 from collections import Counter
@@ -23,13 +22,10 @@ Codes = NDArray[np.int8]
 CLEAR = 1e-6  # share of forces, energy and gravity; a margin nearer to zero decides nothing
 
 
-# ------------------------------------------------------------------------------------------- search
-
-
 class Start(NamedTuple):
-    """Direction of a start, and its reduced angle in that direction: rising from flat at 0 to the
-    tip at pi/2. Exactly on the tip it is -pi/2, because the half turn lies ahead in either
-    direction."""
+    """Direction of a start, and its reduced angle in that direction, which rises from 0 when flat
+    to pi/2 on the tip. The angle exactly on the tip is -pi/2, because a half turn lies ahead in
+    either direction."""
 
     direction: Long
     angle: Long
@@ -43,25 +39,18 @@ def start_of(sample: Sample) -> Start:
     return Start(direction, ahead)
 
 
-def at_rest(sample: Sample) -> NDArray[np.bool_]:
-    """True for a body without motion, exactly on an axis (no other sample is near to one)."""
-    offset = sample.theta - np.where(sample.a < sample.b, PI / 2, np.longdouble(0))
-    resting: NDArray[np.bool_] = (sample.omega == 0) & (2 * offset / PI % 1 == 0)
-    return resting
-
-
 def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
-    """Margin of rolling at a tangent of the reduced angle: 1 if all forces had to vanish. The
-    oracle's errors are 1e-12 of their terms, and more where the energy, or a - b, consists of
-    rounding."""
+    """Margin of rolling at a tangent of the reduced angle; a margin of 1 means that all forces
+    would have to vanish. The oracle's errors are 1e-12 of their terms, and more where the energy,
+    or a - b, consists of rounding."""
     cosine = 1 / np.sqrt(1 + tangent**2)
     found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
     return 1e-12 * np.minimum(*found.margins(friction))
 
 
 def least_slack(sample: Sample) -> Long:
-    """Smallest margin from the start up to the tip or the turning point: steps even in v, tan =
-    waist sinh v, finer near flat and tip; dips towards zero are refined by golden section."""
+    """Smallest margin between the start and the tip or the turning point. The steps are even in v,
+    tan = waist sinh v, and so finer near flat and tip; golden section refines dips towards zero."""
     moving, angle = sample.motion(), start_of(sample).angle
     on = oracles.rolling.chart(moving)
     highest = on.waist * np.sinh(on.top)
@@ -103,7 +92,7 @@ def walk(sample: Sample) -> Walk:
     barrier = moving.gravity * np.abs(moving.a - moving.b)
     over = (moving.lift - barrier) / (moving.lift + barrier)
     rolls = least_slack(sample)
-    rests = at_rest(sample)
+    rests = (sample.omega == 0) & (2 * sample.theta / PI % 1 == 0)  # no other start is near an axis
     slips = (rolls < 0) | (sample.friction == 0)
     outcome = np.select(
         [rests, pressed < 0, slips, over < 0],
@@ -121,8 +110,8 @@ class Walked(NamedTuple):
 
 @pytest.fixture(scope="module")
 def walked() -> list[Walked]:
-    """The answers of 800 scenes, a fifth of them undecided near a threshold, in chunks: 100 scenes
-    x 4001 angles of long double are 6.4 MB per intermediate array."""
+    """800 scenes and their answers, without the fifth that lies too close to a threshold, in
+    chunks: 100 scenes x 4001 angles of long double take 6.4 MB per array."""
     chunks = []
     for seed in range(8):
         sample, _ = random_sample(CHUNK, seed)
@@ -166,15 +155,12 @@ def test_classify_gives_the_first_event_as_the_angle_advances(walked: list[Walke
 
 
 def test_a_wrong_direction_is_detected(walked: list[Walked]) -> None:
-    """The opposite direction changes the first event of some scenes, so the test above is sharp."""
+    """The opposite direction changes the first event of some scenes, so the test above can fail."""
     differ = 0
     for sample, truth in walked:
         back = sample._replace(omega=-sample.omega)
         differ += int((np.asarray(classify(**back.arguments())) != truth).sum())
     assert differ >= 5
-
-
-# -------------------------------------------------------------------------------------- many scenes
 
 
 def test_random_scenes_never_jam_and_are_rarely_undecided() -> None:

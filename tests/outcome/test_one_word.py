@@ -38,12 +38,7 @@ AT_ONCE = {
 }
 ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES_CONTACT}
 HELD = (Outcome.RESTS, Outcome.ROCKS, Outcome.ROLLS_OVER)
-DOES = {
-    Mode.ROLLING: "rolls",
-    Mode.SLIDING: "slides",
-    Mode.FLIGHT: "flies",
-    Mode.REST: "rests",
-}
+DOES = {Mode.ROLLING: "rolls", Mode.SLIDING: "slides", Mode.FLIGHT: "flies", Mode.REST: "rests"}
 
 
 def tips_passed(scene: Scene, theta: float) -> int:
@@ -53,7 +48,7 @@ def tips_passed(scene: Scene, theta: float) -> int:
 
 
 def met_first(scene: Scene) -> Outcome | None:
-    """The first outcome in samples of the model "contact"; None if there is none."""
+    """The first outcome in samples of the model "contact", or None."""
     span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
     for _ in range(SPANS):
         times = np.linspace(0, span, SAMPLES)
@@ -204,8 +199,8 @@ def test_scenes_that_once_had_contradictory_outcomes_have_only_one() -> None:
 
 
 def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
-    """Starts without slip with c < 0 < N, and the friction that rolling needs: h'' < 0 as on the
-    tip, a speed that gives the chosen c, N and F by Newton's law."""
+    """Starts without slip for which c < 0 < N, and the friction that rolling needs. As on the tip
+    h'' < 0; the speed gives the chosen c, and Newton's law gives N and F."""
     rng = np.random.default_rng(3)
     while count:
         a, b = 10 ** rng.uniform(-0.4, 0.4, 2)
@@ -229,8 +224,8 @@ def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
 
 
 def test_both_motions_are_reported_where_a_body_may_roll_or_fly() -> None:
-    """The body rolls with enough friction, and flies with less; the message says that both are
-    possible."""
+    """The body rolls with enough friction and flies with less; the message states that both motions
+    are possible."""
     told = "Two motions are possible"
     for scene, needed in wedged_scenes(300):
         for friction in (1.01 * needed, 10 * needed, math.inf):

@@ -1,4 +1,4 @@
-"""The recipe for the least speed over the tip with slip finds known speeds and says the truth."""
+"""The recipe for the least speed at which a slipping body passes the tip gives known speeds."""
 
 import re
 from typing import Any
@@ -29,8 +29,8 @@ def recipe() -> dict[str, Any]:
     ],
 )
 def test_the_least_speed_is_the_known_one(recipe: Any, friction: float, speed: float) -> None:
-    """To the digits known. A whole motion passes the tip just above it, and never just below: 1e-9
-    is a thousand times what 20 s of following it may cost near the tip, where changes grow most."""
+    """The speed agrees to all known digits. A simulated motion passes the tip just above it and not
+    just below: 1e-9 is a thousand times the error of 20 s near the tip, where changes grow most."""
     assert recipe["least_speed"](friction) == pytest.approx(speed, abs=1e-12)
     for change, times in ((1e-9, 1), (-1e-9, 0)):
         scene = Scene(2.0, 1.0, omega=speed + change, friction=friction)
@@ -38,7 +38,8 @@ def test_the_least_speed_is_the_known_one(recipe: Any, friction: float, speed: f
 
 
 def test_with_enough_friction_it_is_the_speed_of_rolling(recipe: Any) -> None:
-    """The bisection ends between two neighbours; the proof of rolling is exact to rounding."""
+    """The bisection ends between two neighbouring doubles; the proof of rolling is exact to within
+    rounding."""
     assert recipe["least_speed"](1.0) == pytest.approx(
         thresholds(2.0, 1.0).roll_over_speed, rel=4e-16
     )

@@ -1,8 +1,7 @@
-"""`slip_windows` are all the speeds at which rolling needs more than the given friction, and no
-others.
+"""`slip_windows` contain exactly the speeds at which rolling needs more than the given friction.
 
-The oracle samples |F|/N over the angles in long doubles; the package takes ends of windows from a
-scan over the angles at which the law is linear in omega^2, and proves them by polynomials.
+The oracle samples |F|/N over the angle in long double. The package finds the ends of windows by a
+scan over the angle, where the law is linear in omega^2, and proves them with polynomials.
 """
 
 import math
@@ -31,7 +30,7 @@ class Body(NamedTuple):
         assert found.slip_speed == windows[0][0] and windows[-1][1] == math.inf
         edges = [end for window in windows for end in window]
         assert len(windows) <= 2 and edges == sorted({*edges})
-        # only a body that slips when released from rest has two
+        # only a body that slips when released from rest has two windows
         assert len(windows) < 2 or friction < friction_at_rest(a, b, gyration2) * (1 + 1e-5)
         return windows
 
@@ -73,7 +72,8 @@ def is_inside(windows: Windows, omega: Any) -> Any:
 
 
 def test_windows_agree_with_samples_of_the_needed_friction() -> None:
-    """At 150 speeds, to 1e-8 from the ends, rolling needs too much friction only inside windows."""
+    """At 150 speeds, some only 1e-8 from an end, rolling needs too much friction only inside
+    windows."""
     two = 0
     for body in bodies(60, 11, decades=1.5):
         windows = body.windows()

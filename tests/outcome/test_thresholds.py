@@ -55,7 +55,7 @@ inertias = pytest.mark.parametrize("kind", ["disc", "hoop", "core"])
 @both
 @inertias
 def test_thresholds_agree_with_closed_forms(shape: Shape, kind: str) -> None:
-    """The potential g h alone gives the closed forms: its barrier and its curvatures."""
+    """The barrier and the curvatures of the potential g h give the closed forms."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
@@ -79,8 +79,8 @@ def test_the_defaults_are_a_disc_on_earth_with_unlimited_friction() -> None:
 @both
 @inertias
 def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str) -> None:
-    """Below the speed N stays positive in the whole turn, just above it N does not; at the speed N
-    vanishes at the stated angle."""
+    """Below the speed N stays positive during the whole turn, and just above it N does not. At the
+    speed N vanishes at the stated angle."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     speed = found.contact_loss_speed
@@ -97,7 +97,8 @@ def test_the_speed_of_contact_loss_meets_its_definition(shape: Shape, kind: str)
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
 def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: float) -> None:
-    """The slip speed is the smallest speed at flat with which motion needs the friction."""
+    """The slip speed is the smallest speed in the flat position at which rolling needs the
+    friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     speed = found.slip_speed
@@ -112,10 +113,9 @@ def test_the_slip_speed_meets_its_definition(shape: Shape, kind: str, friction: 
 
 @both
 @inertias
-def test_friction_to_roll_over_is_the_largest_needed_while_rolling_over(
-    shape: Shape, kind: str
-) -> None:
-    """It is the largest friction needed at the energy of the barrier; inf if N vanishes before."""
+def test_friction_to_roll_over_is_the_largest_that_is_needed(shape: Shape, kind: str) -> None:
+    """The value is the largest friction needed at the energy of the barrier, or inf if N vanishes
+    first."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     rise = GRAVITY * np.array([abs(np.longdouble(shape[0]) - np.longdouble(shape[1]))])
@@ -152,12 +152,8 @@ def test_painleves_friction_agrees_with_its_definition(shape: Shape, kind: str) 
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     friction, angle = painleve(shape, gyration2)
     assert found.painleve_friction == pytest.approx(friction, rel=1e-13)
-    reduced = (
-        known(found.painleve_angle)
-        if shape[0] > shape[1]
-        else math.pi / 2 - known(found.painleve_angle)
-    )
-    assert reduced == pytest.approx(angle, rel=1e-6)
+    at = known(found.painleve_angle)
+    assert (at if shape[0] > shape[1] else math.pi / 2 - at) == pytest.approx(angle, rel=1e-6)
 
 
 def test_a_circle_has_no_thresholds() -> None:
@@ -180,22 +176,16 @@ def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
     return found.lift_off_speed
 
 
-def tip_speed2(shape: Shape) -> float:
-    """omega^2 = g L/(L^2 - S^2): with h'' = S^2/L - L the free body just leaves the ground."""
-    long, short = max(shape), min(shape)
-    return GRAVITY * long / ((long - short) * (long + short))
-
-
 @pytest.mark.parametrize(
     ("shape", "kind"),
     [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
 )
 def test_the_lift_off_speed_is_exact_with_infinite_friction(shape: Shape, kind: str) -> None:
-    """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre falls freely, with
-    contact, and just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations give the
-    angle and the speed at which the slide starts, to 30 digits. The package solves the first by the
-    root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces that cancel to
-    N = 0 a hundredfold."""
+    """Rolling ends where N = 0, and N = 0 in the following slide as well: the centre falls freely,
+    in contact, and just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations give
+    the angle and the speed at which the slide starts, to 30 digits. The package solves the first by
+    the root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces that cancel
+    to N = 0 a hundredfold."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
@@ -238,8 +228,10 @@ def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -
     the tip. The package integrates to 1e-13 per step; one slide from flat to tip takes some ten
     steps, whose errors do not grow here, so the bound is 1e-12."""
     gyration2 = gyration2_of(shape, kind)
-    rise = GRAVITY * abs(shape[0] - shape[1])
-    exact = math.sqrt(tip_speed2(shape) + 2 * rise / gyration2)
+    long, short = max(shape), min(shape)
+    # h'' = S^2/L - L on the tip, so the free body just leaves the ground there
+    tip_speed2 = GRAVITY * long / ((long - short) * (long + short))
+    exact = math.sqrt(tip_speed2 + 2 * GRAVITY * (long - short) / gyration2)
     assert lift_off(shape, gyration2, 0.0) == pytest.approx(exact, rel=1e-12)
 
 
@@ -251,33 +243,21 @@ def test_the_lift_off_speed_is_exact_without_friction(shape: Shape, kind: str) -
         ((9.0, 1.0), "disc"), ((1.0, 1.05), "disc"),
     ],
 )  # fmt: skip
-def test_a_body_leaves_the_ground_only_above_the_lift_off_speed(
-    shape: Shape, kind: str, friction: float
-) -> None:
-    """A slower body stays on the ground up to the tip; a faster body leaves it before. This holds
-    near the threshold, where 1e-10 of the speed moves the zero of c from the tip by some 1e-5 rad,
-    and far from it. test_contact_reference.py judges slides in 30 digits."""
+def test_only_faster_bodies_lift_off(shape: Shape, kind: str, friction: float) -> None:
+    """A slower body stays on the ground up to the tip; a faster body leaves the ground before. This
+    holds close to the threshold, where 1e-10 of the speed moves the zero of c from the tip by some
+    1e-5 rad, and far from it. test_contact_reference.py judges slides in 30 digits."""
     gyration2 = gyration2_of(shape, kind)
     speed = lift_off(shape, gyration2, friction)
     flat = flat_of(shape)
     tip = flat + math.pi / 2
     for share in (0.5, 0.8, 0.95, 0.99, 1 - 1e-10, 1 + 1e-10, 1.01, 1.05, 1.3, 3.0):
-        scene = Scene(
-            *shape,
-            gravity=GRAVITY,
-            inertia=gyration2,
-            friction=friction,
-            theta=flat,
-            omega=share * speed,
-        )
+        scene = Scene(*shape, gravity=GRAVITY, inertia=gyration2, friction=friction, theta=flat,
+                      omega=share * speed)  # fmt: skip
         span = 8 * math.sqrt(max(shape) / GRAVITY)
         motion = simulate(scene, span, model="contact", max_events=4, raise_on_failure=False)
-        left = [
-            event.state_before.theta < tip
-            for event in motion.events
-            if event.kind is EventKind.LIFT_OFF
-        ]
-        assert any(left) == (share > 1), share
+        leaves = (event for event in motion.events if event.kind is EventKind.LIFT_OFF)
+        assert any(event.state_before.theta < tip for event in leaves) == (share > 1), share
 
 
 def on_its_way_up(event: Event) -> bool:
@@ -347,14 +327,12 @@ def test_nearly_round_bodies_slip_and_lift_off_together_with_infinite_friction()
 
 
 def test_slow_fields_are_computed_on_first_access() -> None:
-    """Slow fields are computed on first access, then act like any other field, in copies and
-    comparisons, too."""
+    """After the first access slow fields act like any other field, also in copies and
+    comparisons."""
     found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
     assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)
     assert found.lift_off_speed is found.lift_off_speed is vars(found)["lift_off_speed"]
     assert "lift_off_speed" not in vars(again)
     assert found == again and hash(found) == hash(again)
-    assert (
-        replace(thresholds(2.0, 1.0), slip_speed=1.0).lift_off_speed
-        == thresholds(2.0, 1.0).lift_off_speed
-    )
+    copy = replace(found, slip_speed=1.0)
+    assert copy.lift_off_speed == found.lift_off_speed

@@ -1,4 +1,4 @@
-"""Motions to draw; a picture drawn into given axes leaves pyplot alone."""
+"""Motions to draw, and a check that pictures leave no pyplot figure open."""
 
 import warnings
 from collections.abc import Callable, Iterator
@@ -32,7 +32,7 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    """Rolling, and two simulations in coordinates whose steps lose the constraints."""
+    """A rolling motion, and two simulations in coordinates whose steps violate the constraints."""
     how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.StabilityWarning)

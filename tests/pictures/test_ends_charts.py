@@ -12,10 +12,6 @@ from oracles.curves import Array, data, new_axes
 BODY = {"a": 2.0, "b": 1.0}
 
 
-def colours_of(chart: Any) -> Array:
-    return np.asarray(chart.values.get_array())
-
-
 def points(chart: Any) -> tuple[Array, Array]:
     return data(chart.values)
 
@@ -34,12 +30,10 @@ def test_a_map_has_the_last_axis_across_and_its_colours_are_the_ends() -> None:
     omega, friction = np.array([[1.0], [5.0]]), [0.9, 0.1, 0.5]
     last = rl.ends(BODY | {"omega": omega, "friction": friction}, 1.0)
     figure = Figure()
-    chart = last.plot(ax=figure.add_subplot())
-    assert np.array_equal(colours_of(chart), last.theta[:, [1, 2, 0]])
+    chart: Any = last.plot(ax=figure.add_subplot())
+    assert np.array_equal(chart.values.get_array(), last.theta[:, [1, 2, 0]])
     assert (chart.ax.get_xlabel(), chart.ax.get_ylabel()) == ("friction", "omega0 [rad/s]")
-    assert chart.ax.get_xlim() == pytest.approx(
-        (-0.1, 1.1)
-    )  # cells have their values in the middle
+    assert chart.ax.get_xlim() == pytest.approx((-0.1, 1.1))  # a value is the middle of its cell
     assert [ax.get_ylabel() for ax in figure.axes] == ["omega0 [rad/s]", "θ [rad]"]
 
 
@@ -64,7 +58,7 @@ def test_infinite_friction_is_beside_the_largest_number() -> None:
 
 
 def test_a_motion_that_ended_early_has_no_dot(tmp_path: Path) -> None:
-    """A list is numbered; a path, as elsewhere, is text or an os.PathLike."""
+    """The scenes of a list are numbered on the axis."""
     jam = rl.Scene(2.0, 0.2, theta=-1.2, x_dot=-3.0, omega=0.0, friction=1.5)
     last = rl.ends([rl.scenes.report, jam], 2.0)
     chart = last.plot("z", tmp_path / "z.png")

@@ -44,7 +44,7 @@ def test_a_failing_drawing_closes_its_figure(draw: Any, monkeypatch: Any) -> Non
 
 @pytest.mark.parametrize("units", [1, 512, 749])
 def test_an_extremely_short_motion_is_animated(units: int) -> None:
-    """No frame is after the end, though its share of the last frame is rounded up."""
+    """No frame lies after the end, although the number of frames is rounded up."""
     end = units * 5e-324
     assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
     motion = rl.simulate(rl.scenes.rocking, [0.0, end])
@@ -58,9 +58,7 @@ def test_an_extremely_short_motion_is_animated(units: int) -> None:
 @pytest.mark.parametrize(
     "name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "file:ß.gif", "ä.html"]
 )
-def test_file_names_with_a_special_meaning_to_ffmpeg_are_taken_literally(
-    tmp_path: Path, name: str, monkeypatch: Any
-) -> None:
+def test_file_names_are_taken_literally(tmp_path: Path, name: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
     rl.animate(MOTION, name, **SMALL)
     assert [path.name for path in tmp_path.iterdir()] == [name]
@@ -81,7 +79,7 @@ def test_an_old_film_stays_until_the_new_one_is_complete(
 
     def stops(i: int) -> Any:
         drawn.append(i)
-        if len(drawn) > 7:  # background and three samples of colours come first
+        if len(drawn) > 7:  # the background and three samples of colours are drawn first
             raise error
         return draw(i)
 

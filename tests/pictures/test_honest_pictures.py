@@ -50,7 +50,8 @@ def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Traje
 
 
 def test_a_uniform_grid_of_as_many_points_would_miss_spikes() -> None:
-    """A uniform grid of as many points misses a thin body's spikes: the check above is sharp."""
+    """A uniform grid with as many points misses the spikes of a thin body, so the check above can
+    fail."""
     motion = MOTIONS["very thin"]
     values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
     even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force
@@ -71,7 +72,7 @@ def test_the_phase_curve_of_1000_turns_follows_its_energy() -> None:
     off = np.abs(omega - expected)[keep] * inches(ax, 1)
     assert np.max(off) < 0.1 * WIDTH
     steps = np.hypot(np.diff(theta) * inches(ax, 0), np.diff(omega) * inches(ax, 1))
-    assert np.nanmax(steps) < 10 * WIDTH  # the line between the points follows the curve as well
+    assert np.nanmax(steps) < 10 * WIDTH  # the lines between the points follow the curve as well
     assert ax.get_title(loc="left") == "one turn of 1\u202f000, all alike"
 
 
@@ -111,9 +112,7 @@ def test_a_long_downhill_path_is_drawn_only_as_far_as_its_title_says() -> None:
 
 
 @pytest.mark.parametrize("draw", [rl.plot_phase, rl.plot_forces, rl.plot_paths, rl.plot_strobe])
-def test_user_samples_are_drawn_unchanged_with_a_warning(
-    draw: Callable[..., Any],
-) -> None:
+def test_user_samples_are_drawn_unchanged_with_a_warning(draw: Callable[..., Any]) -> None:
     motion = rl.simulate(rl.scenes.report, 6.0)
     own = dataclasses.replace(motion, theta=motion.theta + 0.01 * motion.t)
     with pytest.warns(UserWarning, match="are not those of its scene: they are drawn as they are"):
@@ -130,11 +129,9 @@ def test_user_samples_are_drawn_unchanged_with_a_warning(
 def test_unsorted_samples_are_drawn_in_order_of_time() -> None:
     motion = rl.simulate(rl.scenes.report, 6.0)
     mixed = motion.sol([5.0, 0.0, 6.0, 2.0])
-    for one, other in (
-        (rl.plot_forces(mixed, ax=new_axes()).normal, rl.plot_forces(motion, ax=new_axes()).normal),
-        (rl.plot_phase(mixed, ax=new_axes()).motions, rl.plot_phase(motion, ax=new_axes()).motions),
-    ):
-        assert np.array_equal(np.asarray(one[0].get_xydata()), np.asarray(other[0].get_xydata()))
+    for draw, curve in ((rl.plot_forces, "normal"), (rl.plot_phase, "motions")):
+        one, other = (getattr(draw(each, ax=new_axes()), curve)[0] for each in (mixed, motion))
+        assert np.array_equal(data(one), data(other))
 
 
 def test_the_force_axis_labels_its_logarithmic_part_and_wastes_no_space() -> None:
@@ -143,9 +140,7 @@ def test_the_force_axis_labels_its_logarithmic_part_and_wastes_no_space() -> Non
     assert ax.get_ylabel() == "force [N]\nlog beyond 10"
     scale = ax.yaxis.get_transform()
     bottom, top = scale.transform(ax.get_ylim())
-    low, high = (
-        scale.transform(value) for value in (motion.friction_force.min(), motion.normal_force.max())
-    )
+    low, high = scale.transform([motion.friction_force.min(), motion.normal_force.max()])
     assert high - low > 0.75 * (top - bottom)
 
 
@@ -162,15 +157,13 @@ def test_overlapping_bodies_do_not_add_up_to_an_opaque_blot() -> None:
 
 
 def test_errors_from_rounding_the_angle_lie_below_the_line_for_this_rounding() -> None:
-    """Two roundings are allowed: psi is a sum of two angles, and the energy changes less."""
+    """Two roundings are allowed, because psi is a sum of two angles; the energy changes less."""
     later = rl.plot(ROLLING.sol(np.linspace(50.0, ROLLING.t_end, 99)), figure=Figure())
     panel = figure_of(later.ax).axes[-1]
     (limit,) = (line for line in panel.lines if line.get_label() == "rounding of θ")
-    least = np.spacing(100.0)
+    assert data(limit)[1].min() >= np.spacing(100.0)
     for line in (later.position_error, later.velocity_error, later.energy_error):
-        assert (
-            np.nanmax(data(line)[1]) < 2 * np.max(data(limit)[1]) and data(limit)[1].min() >= least
-        )
+        assert np.nanmax(data(line)[1]) < 2 * np.max(data(limit)[1])
     short = rl.plot(MOTIONS["report"], figure=Figure())
     assert "rounding of θ" not in [line.get_label() for line in figure_of(short.ax).axes[-1].lines]
 

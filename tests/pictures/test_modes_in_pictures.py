@@ -10,10 +10,11 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
-from oracles.curves import Array, legend_of, new_axes, seen, two_axes
+from oracles.curves import data, legend_of, new_axes, seen, two_axes
 from oracles.pictures import figure_of, legend_in, outline, support
 from rolling_ellipse._pictures import sampling
 
@@ -41,7 +42,7 @@ def jump() -> rl.Trajectory:
 
 
 def drawn(ax: Axes) -> Axes:
-    """The axes after the layout of their figure."""
+    """The axes, after a drawing that lays out their figure."""
     FigureCanvasAgg(figure_of(ax)).draw()
     return ax
 
@@ -50,26 +51,20 @@ def event_names(ax: Axes) -> list[Annotation]:
     return [text for text in ax.texts if isinstance(text, Annotation)]
 
 
-def boxes_of(artist: Any) -> list[tuple[float, float, float, float]]:
+def boxes_of(shade: Any) -> list[tuple[float, float, float, float]]:
     """Left, right, bottom and top of the rectangles of a shade."""
-    corners = [path.vertices for path in artist.get_paths()]
-    return [(*v[:, 0][[0, 2]], v[:, 1].min(), v[:, 1].max()) for v in map(ordered, corners)]
-
-
-def ordered(corners: Array) -> Array:
-    left, bottom = corners.min(axis=0)
-    right, top = corners.max(axis=0)
-    return np.array([[left, bottom], [left, top], [right, top], [right, bottom]])
+    ends = ((*path.vertices.min(axis=0), *path.vertices.max(axis=0)) for path in shade.get_paths())
+    return [(left, right, bottom, top) for left, bottom, right, top in ends]
 
 
 def shades_of(marks: tuple[Any, ...]) -> list[Any]:
-    return [mark for mark in marks if type(mark).__name__ != "LineCollection"
-            and hasattr(mark, "get_hatch")]  # fmt: skip
+    return [mark for mark in marks
+            if type(mark) is not LineCollection and hasattr(mark, "get_hatch")]  # fmt: skip
 
 
 def lines_of(marks: tuple[Any, ...]) -> list[list[float]]:
     """Times of the dotted lines of each motion."""
-    found = [mark for mark in marks if type(mark).__name__ == "LineCollection"]
+    found = [mark for mark in marks if type(mark) is LineCollection]
     return [[float(segment[0, 0]) for segment in mark.get_segments()] for mark in found]
 
 
@@ -88,7 +83,7 @@ def test_every_sample_lies_in_the_shading_of_its_mode(motion: rl.Trajectory) -> 
     assert set(looks) - {None} == set(motion.mode) - {rl.Mode.ROLLING}
     shaded = np.zeros(motion.t.size, bool)
     for left, right, *_ in itertools.chain(*map(boxes_of, shades_of(shown.marks))):
-        # both ends: the last sample is the end of the last shade
+        # both ends count: the last sample is the end of the last shade
         shaded |= (left <= motion.t) & (motion.t <= right)
     assert np.array_equal(shaded[motion.mode != rl.Mode.ROLLING], np.ones(shaded.sum(), bool))
     names = [NAMES[mode] for mode in NAMES if mode in looks]
@@ -97,10 +92,8 @@ def test_every_sample_lies_in_the_shading_of_its_mode(motion: rl.Trajectory) -> 
 
 def test_modes_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
     settling = rl.simulate(SCENES["settling"], 6.0)
-    shades = [
-        *shades_of(rl.plot_energy(jump, ax=new_axes()).marks),
-        *shades_of(rl.plot_energy(settling, ax=new_axes()).marks),
-    ]
+    pictures = [rl.plot_energy(motion, ax=new_axes()) for motion in (jump, settling)]
+    shades = [shade for shown in pictures for shade in shades_of(shown.marks)]
     hatches = {shade.get_hatch() for shade in shades}
     assert len(shades) == 4 and len(hatches) == 3  # two flights
     for shade in shades:
@@ -137,14 +130,6 @@ def test_names_overlap_neither_one_another_nor_the_curves(name: str) -> None:
     assert min(box.y0 for box in boxes) > highest
 
 
-def test_many_events_are_marked_without_names() -> None:
-    bouncing = rl.simulate(rl.scenes.bounce, 60.0)
-    shown = rl.plot_energy(bouncing, ax=new_axes())
-    assert len(lines_of(shown.marks)[0]) == len(bouncing.events) > 80
-    assert event_names(shown.ax) == []
-    assert legend_of(shown.ax)[-1] == f"{len(bouncing.events)} impacts"
-
-
 def test_names_are_left_out_where_there_is_no_room(jump: rl.Trajectory) -> None:
     low = rl.plot_energy(jump, ax=Figure(figsize=(3.2, 1.0)).add_subplot()).ax
     assert event_names(low) == [] and len(event_names(rl.plot_energy(jump, ax=new_axes()).ax)) == 3
@@ -160,7 +145,7 @@ def test_only_events_among_the_samples_are_marked(jump: rl.Trajectory) -> None:
     assert boxes_of(flight)[0][:2] == pytest.approx((lift_off, part.t[-1]), abs=1e-15)
 
 
-def test_each_of_several_motions_has_a_row(jump: rl.Trajectory) -> None:
+def test_each_of_several_motions_has_a_row_of_shading(jump: rl.Trajectory) -> None:
     slip = rl.simulate(rl.scenes.slip, 3.0)
     report = rl.simulate(rl.scenes.report, 3.0)
     shown = rl.plot_forces([jump, report, slip], ax=two_axes(), labels=["one", "two", "three"])
@@ -182,13 +167,9 @@ def test_rolling_and_rest_have_no_shading() -> None:
         assert shown.marks == () and legend_of(shown.axes[0]) == ["normal", "friction"]
 
 
-def test_forces_are_zero_in_flight_and_at_the_friction_limit_in_slides(
-    motion: rl.Trajectory,
-) -> None:
+def test_forces_are_zero_in_flight_and_at_their_limit_in_slides(motion: rl.Trajectory) -> None:
     shown = rl.plot_forces(motion, ax=two_axes())
-    normal, friction = (
-        np.asarray(line.get_ydata()) for line in (shown.normal[0], shown.friction[0])
-    )
+    normal, friction = (data(line)[1] for line in (shown.normal[0], shown.friction[0]))
     motion = seen(motion, shown.normal[0])
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     assert np.all(normal[flying] == 0) and np.all(friction[flying] == 0)
@@ -202,9 +183,7 @@ def test_forces_are_zero_in_flight_and_at_the_friction_limit_in_slides(
 
 def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Trajectory) -> None:
     upper, lower = rl.plot_constraints(motion, ax=two_axes()).lines
-    values = {
-        str(line.get_label()).split()[0]: np.asarray(line.get_ydata()) for line in (*upper, *lower)
-    }
+    values = {str(line.get_label()).split()[0]: data(line)[1] for line in (*upper, *lower)}
     motion = seen(motion, upper[0])
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     for name in ("gap", "f2", "df2/dt"):
@@ -213,14 +192,14 @@ def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Tr
         assert np.array_equal(np.isnan(values[name]), flying | sliding)
     for name in ("f3", "f4", "df3/dt", "df4/dt"):
         assert np.all(np.isfinite(values[name]))
-    # each constraint is held to some hundred roundings
+    # constraints hold to within a hundred roundings
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
 def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Trajectory) -> None:
-    """Errors are a few roundings of the energy; the work of friction is no error."""
+    """Errors are a few roundings of the energy; the work of friction does not count."""
     (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
-    error, slides = np.asarray(line.get_ydata()), seen(motion, line).mode == rl.Mode.SLIDING
+    error, slides = data(line)[1], seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
     assert np.nanmax(error, initial=0.0) < 32 * EPS
     if motion.scene != SCENES["bounce"]:  # which is elastic
@@ -232,7 +211,7 @@ def test_a_loss_in_elastic_impacts_counts_as_an_error() -> None:
     elastic = dataclasses.replace(dull, scene=dull.scene.replace(restitution=1.0))
     for motion, least, most in ((dull, 0.0, 32 * EPS), (elastic, 0.19, 1.0)):  # 1 - 0.9^2 at once
         (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
-        assert least <= np.max(np.asarray(line.get_ydata())) <= most
+        assert least <= np.max(data(line)[1]) <= most
 
 
 def test_the_energy_itself_is_drawn_if_any_motion_loses_some(jump: rl.Trajectory) -> None:
@@ -253,15 +232,10 @@ def test_the_overview_marks_changes_of_contact(motion: rl.Trajectory) -> None:
 # ------------------------------------------------------------------------ over the ground
 
 
-def test_the_strobe_shows_the_paths_and_any_contact(
-    motion: rl.Trajectory,
-) -> None:
+def test_the_strobe_shows_the_paths_and_any_contact(motion: rl.Trajectory) -> None:
     shown = rl.plot_strobe(motion, ax=new_axes(), count=37, t_end=3.0)
     at = motion.sol(np.linspace(0.0, 3.0, 37))
-    contacts, slides = (
-        np.asarray(shown.contacts.get_xydata()),
-        np.asarray(shown.slides.get_xydata()),
-    )
+    contacts, slides = (np.asarray(each.get_xydata()) for each in (shown.contacts, shown.slides))
     for i, body in enumerate(shown.bodies):
         x, z = support(body)
         if at.mode[i] == rl.Mode.FLIGHT:
@@ -274,11 +248,8 @@ def test_the_strobe_shows_the_paths_and_any_contact(
             assert np.all(np.isnan(slides[i]))
     assert shown.slides.get_marker() != shown.contacts.get_marker()
     path = sampling.between(motion, 0.0, 3.0, 6.0)
-    skid, contact = (
-        np.asarray(shown.skid_path.get_xdata()),
-        np.asarray(shown.contact_path.get_xdata()),
-    )
-    assert np.array_equal(np.asarray(shown.centre_path.get_data()), [path.x, path.z])
+    skid, contact = data(shown.skid_path)[0], data(shown.contact_path)[0]
+    assert np.array_equal(data(shown.centre_path), [path.x, path.z])
     sliding = path.mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(skid), ~sliding)
     assert np.array_equal(skid[sliding], path.contact_x[sliding])
@@ -308,11 +279,11 @@ def test_paths_mark_events_where_the_body_touches_the_ground(motion: rl.Trajecto
         expected.setdefault(name, []).append(state.x + lead)
     assert list(found) == list(expected)
     for name, places in expected.items():
-        assert np.asarray(found[name].get_xdata()) == pytest.approx(places, abs=1e-9)
-        assert np.all(np.asarray(found[name].get_ydata()) == 0)
+        x, z = data(found[name])
+        assert x == pytest.approx(places, abs=1e-9) and np.all(z == 0)
     assert legend_of(shown.ax)[3:] == list(expected)
     assert len({line.get_marker() for line in lines}) == len(lines)
-    touching = np.isfinite(np.asarray(shown.contacts[0].get_xdata()))
+    touching = np.isfinite(data(shown.contacts[0])[0])
     drawn = sampling.between(motion, 0.0, float(motion.t[-1]), 6.0)
     assert np.array_equal(touching, drawn.mode != rl.Mode.FLIGHT)
 
@@ -344,21 +315,19 @@ def test_every_frame_shows_the_mode_of_the_body(motion: rl.Trajectory) -> None:
         animation.draw(i)
         mode, points = strip.motion.mode[i], outline(strip.body, 4000)
         flies, slides = mode == rl.Mode.FLIGHT, mode == rl.Mode.SLIDING
-        assert np.isfinite(np.asarray(strip.contact.get_xdata())[0]) == (not flies)
-        assert np.isfinite(np.asarray(strip.slip.get_xdata())[0]) == slides
+        contact, slipping = np.ravel(data(strip.contact)), np.ravel(data(strip.slip))
+        assert np.isfinite(contact[0]) == (not flies) and np.isfinite(slipping[0]) == slides
         if slides:
-            assert np.asarray(strip.slip.get_xydata())[0] == pytest.approx(
-                np.asarray(strip.contact.get_xydata())[0]
-            )
+            assert slipping == pytest.approx(contact)
             assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
-        shadow = np.asarray(strip.shadow.get_xdata())
+        shadow = data(strip.shadow)[0]
         if flies:  # width of the body: 4000 points miss its ends by 1e-6 of its size
             ends = [points[:, 0].min(), points[:, 0].max()]
             assert shadow == pytest.approx(ends, abs=4e-6)
         assert len(shadow) == (2 if flies else 0)
         said = strip.caption.get_text()
         assert said == ("flies" if flies else "slides" if slides else "")
-        skidded = np.isfinite(np.asarray(strip.skid_trace.get_xdata()))
+        skidded = np.isfinite(data(strip.skid_trace)[0])
         assert np.array_equal(skidded, strip.motion.mode[: i + 1] == rl.Mode.SLIDING)
 
 
@@ -374,38 +343,33 @@ def test_the_slip_mark_lies_along_the_slope() -> None:
 
 
 def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
-    """Marks are white, black and a grey between: a fifth of the scale is visible at a glance."""
+    """The marks are white, black and a grey between; a fifth of the scale is visible at a
+    glance."""
     (strip,) = rl.animate(jump).strips
-    rolling, sliding, shadow = (
-        float(np.dot(to_rgb(colour), (0.21, 0.72, 0.07)))
-        for colour in (
-            strip.contact.get_markerfacecolor(),
-            strip.slip.get_markerfacecolor(),
-            strip.shadow.get_color(),
-        )
-    )
+    colours = (strip.contact.get_markerfacecolor(), strip.slip.get_markerfacecolor(),
+               strip.shadow.get_color())  # fmt: skip
+    rolling, sliding, shadow = (np.dot(to_rgb(each), (0.21, 0.72, 0.07)) for each in colours)
     assert rolling - shadow > 0.2 and shadow - sliding > 0.2
 
 
 def test_losses_are_split_into_rolling_sliding_and_impacts() -> None:
-    """The three sums are the whole loss; in the air, in slides without a lever and in impacts only
-    one of them grows."""
+    """The three losses add up to the whole loss. The loss in impacts is that of the events, and
+    without a lever no energy is lost in rolling."""
     falls = rl.Scene(
         2.0, 1.0, theta=0.5, z=3.0, omega=2.0, x_dot=1.5, friction=0.25, restitution=0.5,
         rolling_resistance=0.04,
     )  # fmt: skip
     motion = rl.simulate(falls, np.linspace(0.0, 12.0, 1201))
     shown = rl.plot_energy(motion, ax=new_axes(), kind="losses")
-    rolling, sliding, impacts = (np.asarray(line[0].get_ydata())[-1] for line in shown.lost)
+    rolling, sliding, impacts = (data(line[0])[1][-1] for line in shown.lost)
     assert rolling + sliding + impacts == pytest.approx(motion.energy[0] - motion.energy[-1])
     assert min(rolling, sliding, impacts) > 1
     hits = [each for each in motion.events if each.kind is rl.EventKind.IMPACT]
     lost = sum(each.energy_before - each.energy_after for each in hits)
     assert impacts == pytest.approx(lost)
-    plain = rl.plot_energy(
-        rl.simulate(falls.replace(rolling_resistance=0.0), 12.0), ax=new_axes(), kind="losses"
-    )
-    assert np.abs(np.asarray(plain.lost[0][0].get_ydata())).max() < 1e-12 * motion.energy[0]
+    free = rl.simulate(falls.replace(rolling_resistance=0.0), 12.0)
+    plain = rl.plot_energy(free, ax=new_axes(), kind="losses")
+    assert np.abs(data(plain.lost[0][0])[1]).max() < 1e-12 * motion.energy[0]
 
 
 def test_rolling_with_resistance_shows_its_loss_and_no_error_of_energy() -> None:
@@ -413,10 +377,9 @@ def test_rolling_with_resistance_shows_its_loss_and_no_error_of_energy() -> None
     motion = rl.simulate(rocks, 40.0)
     shown = motion.plot(figure=Figure())
     assert shown.lost_energy is not None
-    assert np.asarray(shown.lost_energy.get_ydata())[-1] == pytest.approx(
-        motion.energy[0] - motion.energy[-1]
-    )
-    assert not np.isfinite(np.asarray(shown.energy_error.get_ydata())).any()
+    lost = data(shown.lost_energy)[1][-1]
+    assert lost == pytest.approx(motion.energy[0] - motion.energy[-1])
+    assert not np.isfinite(data(shown.energy_error)[1]).any()
     labels = [line.get_label() for line in rl.plot_phase(motion, ax=new_axes()).separatrices]
     assert labels == ["separatrix without resistance"]
     free = rl.simulate(rocks.replace(rolling_resistance=0.0), 4.0).plot(figure=Figure())

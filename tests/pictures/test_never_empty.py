@@ -88,9 +88,7 @@ def test_impulses_are_drawn_as_mean_forces_over_the_stated_time() -> None:
         assert heights[:2] == pytest.approx([0.0, impulse / float(seconds.removesuffix(" s"))])
 
 
-def test_pictures_name_their_artists_and_have_the_requested_size(
-    tmp_path: Path,
-) -> None:
+def test_pictures_name_their_artists_and_have_the_requested_size(tmp_path: Path) -> None:
     motion = rl.simulate(rl.scenes.jump, 1.0)
     said = {"overview": "7 axes, strobe, phase, .*, 18 marks", "strobe": "ax, 13 bodies, .*",
             "forces": "2 axes, 1 normal, .*", "constraints": "2 axes, 2 lines, .*",

@@ -62,17 +62,10 @@ def constant(values: Array) -> float:
     return float(values[0])
 
 
-def energy_of(found: rl.Thresholds, speed: float) -> float:
-    return (speed / found.roll_over_speed) ** 2
-
-
-# -------------------------------------------------------------------------------- colours
-
-
 @pairs
 @pytest.mark.parametrize("swapped", [False, True], ids=["long axis a", "long axis b"])
 def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: bool) -> None:
-    """Cells agree with `classify` of single discs, also if the axes are swapped."""
+    """`classify` is called for single discs, also with the axes swapped."""
     shown = phase_map(x, y, b=0.7, gravity=3.7)
     columns, rows = (middles_of(n, e) for n, e in zip((x, y), edges_of(shown), strict=True))
     codes = codes_of(shown)
@@ -98,9 +91,7 @@ def test_cells_agree_with_classify_at_their_centres(x: str, y: str, swapped: boo
         ({"y": "friction", "energy": 1.0, "x_range": (1.1, 1.3), "y_range": (1, 2)}, ["edge"]),
     ],
 )
-def test_the_legend_names_only_outcomes_that_occur(
-    options: dict[str, Any], expected: list[str]
-) -> None:
+def test_the_legend_names_only_what_occurs(options: dict[str, Any], expected: list[str]) -> None:
     shown = phase_map(**options)
     assert legend_of(shown.ax) == expected
     present = [rl.Outcome(code) for code in np.unique(codes_of(shown))]
@@ -116,9 +107,6 @@ def test_regions_can_be_told_apart_in_grey() -> None:
     greys = sorted(0.299 * r + 0.587 * g + 0.114 * b for r, g, b in colours)
     reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which no cell reaches
     assert len(reached) == 4 and np.min(np.diff(reached)) > 1 / 6
-
-
-# ---------------------------------------------------------------------------------- marks
 
 
 @pairs
@@ -160,18 +148,15 @@ def test_curves_over_the_aspect_agree_with_thresholds() -> None:
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
     for i in range(3, contact[0].size, 9):
         found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # scale changed
-        loss, lift_off = found.contact_loss_speed, found.lift_off_speed
-        assert contact[1][i] == pytest.approx(energy_of(found, loss), rel=1e-9)
-        assert flight[1][i] == pytest.approx(energy_of(found, known(lift_off)), rel=1e-9)
+        for marked, speed in ((contact, found.contact_loss_speed), (flight, found.lift_off_speed)):
+            energy = (known(speed) / found.roll_over_speed) ** 2
+            assert marked[1][i] == pytest.approx(energy, rel=1e-9)
 
 
 def test_speeds_over_the_friction_agree_with_thresholds() -> None:
     shown = phase_map("friction", "speed", b=2.0, gravity=3.0, aspect=3.0)
-    for key, name in (
-        ("separatrix", "roll_over_speed"),
-        ("contact loss", "contact_loss_speed"),
-        ("lift-off", "lift_off_speed"),
-    ):
+    for key, name in {"separatrix": "roll_over_speed", "contact loss": "contact_loss_speed",
+                      "lift-off": "lift_off_speed"}.items():  # fmt: skip
         frictions, speeds = at(shown, key)
         for i in range(1, frictions.size, 12):
             found = rl.thresholds(6.0, 2.0, gravity=3.0, friction=frictions[i])
@@ -186,15 +171,12 @@ def test_colours_change_at_the_lines() -> None:
     aspects, energies = (
         middles_of(n, e) for n, e in zip(("aspect", "energy"), edges_of(shown), strict=True)
     )
-    limit = np.interp(
-        np.log(aspects), np.log(at(shown, "contact loss")[0]), at(shown, "contact loss")[1]
-    )
+    ends = at(shown, "contact loss")
+    limit = np.interp(np.log(aspects), np.log(ends[0]), ends[1])
     near = np.abs(energies[:, None] - limit) < 0.02 * (1 + limit)
     lost = energies[:, None] > limit
-    over = np.broadcast_to(energies[:, None] > 1, codes.shape)
-    expected = np.where(
-        lost, rl.Outcome.SLIPS, np.where(over, rl.Outcome.ROLLS_OVER, rl.Outcome.ROCKS)
-    )
+    rolls = np.where(energies[:, None] > 1, rl.Outcome.ROLLS_OVER, rl.Outcome.ROCKS)
+    expected = np.where(lost, rl.Outcome.SLIPS, rolls)
     assert np.mean(near) < 0.05 and np.array_equal(codes[~near], expected[~near])
 
 
@@ -206,14 +188,9 @@ def test_only_what_is_in_view_is_marked() -> None:
     assert "Painlevé" not in phase_map("friction", "energy", x_range=(0, 1.35)).marks
 
 
-# ---------------------------------------------------------------------------------- names
-
-
 @pairs
 @pytest.mark.parametrize("size", [(6.4, 4.4), (3.2, 2.6)], ids=["640 px", "320 px"])
-def test_names_lie_within_the_axes_without_overlap(
-    x: str, y: str, size: tuple[float, float]
-) -> None:
+def test_names_lie_in_the_axes_without_overlap(x: str, y: str, size: tuple[float, float]) -> None:
     shown = plot_phase_map(x, y, ax=new_axes(*size), resolution=COARSE)
     FigureCanvasAgg(figure_of(shown.ax)).draw()
     window = shown.ax.get_window_extent()
@@ -222,23 +199,17 @@ def test_names_lie_within_the_axes_without_overlap(
     for box in boxes:
         assert window.x0 - 1 <= box.x0 and box.x1 <= window.x1 + 1
         assert window.y0 - 1 <= box.y0 and box.y1 <= window.y1 + 1
-    upright = [text.get_window_extent() for text in shown.names.values() if is_straight(text)]
+    straight = [text for text in shown.names.values() if abs(text.get_rotation() % 90) < 1e-6]
+    upright = [text.get_window_extent() for text in straight]
     for one, other in itertools.combinations(upright, 2):
         assert not one.overlaps(other)
     legend = legend_in(shown.ax).get_window_extent()
     assert legend.x0 >= 0 and legend.x1 <= shown.ax.figure.bbox.x1 + 1
 
 
-def is_straight(text: Any) -> bool:
-    return abs(text.get_rotation() % 90) < 1e-6
-
-
 def test_no_name_is_written_where_there_is_too_little_room() -> None:
     tiny = plot_phase_map(ax=new_axes(0.9, 0.8), resolution=COARSE)
     assert len(tiny.marks) == 5 and len(tiny.names) <= 2
-
-
-# ----------------------------------------------------------------------------------- axes
 
 
 @pairs

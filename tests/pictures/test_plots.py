@@ -6,11 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -51,9 +49,7 @@ def test_curves_over_time_equal_the_trajectory(name: str, trajectory: rl.Traject
         assert np.array_equal(data(line)[1], getattr(at, quantity)), artist
 
 
-def test_each_quantity_has_a_panel_with_a_curve_of_each_motion(
-    several: list[rl.Trajectory],
-) -> None:
+def test_each_quantity_has_a_panel_with_all_motions(several: list[rl.Trajectory]) -> None:
     names = {"theta": "θ [rad]", "z": "z [m]", "turns": "turns", "normal_force": "N [N]"}
     axes = Figure().subplots(4, sharex=True)
     shown = rl.plot_curves(several, *names, ax=axes, labels=["one", "two", "three"], lw=3)
@@ -70,9 +66,6 @@ def test_lengths_of_a_small_body_have_figures_in_its_unit() -> None:
     coin = rl.simulate(rl.Scene(0.012, 0.01, omega=9.0), 1.0)
     ax = rl.plot_curves(coin, "contact_x", ax=new_axes()).ax
     assert ax.get_ylabel() == "contact [mm]" and ax.yaxis.get_major_formatter()(0.01, 0) == "10"
-
-
-# ------------------------------------------------------------------------------- constraints
 
 
 def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
@@ -92,7 +85,7 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
 
 
 def test_rounding_errors_are_small_on_their_axis(report: rl.Trajectory) -> None:
-    """The axis reaches ten times 1e-13, some hundred roundings."""
+    """The axis ends at ten times 1e-13, which is some hundred roundings."""
     (ax,) = rl.plot_energy(report, ax=new_axes(), kind="error").axes
     assert ax.get_ylim() == pytest.approx((1e-17, 1e-12))
 
@@ -124,17 +117,12 @@ def test_several_motions_show_the_worst_of_their_constraints(report: rl.Trajecto
 
 
 @own_samples
-def test_one_motion_in_one_panel_shows_the_worst_position_and_velocity_errors(
-    report: rl.Trajectory,
-) -> None:
+def test_one_panel_shows_the_worst_position_and_velocity_errors(report: rl.Trajectory) -> None:
     shown = rl.plot_constraints(missing(report, f1=1e-2, f3=1e-3), ax=new_axes())
     assert legend_of(shown.axes[0]) == ["positions", "velocities"]
     position, velocity = (data(line)[1] for line in shown.lines[0])
     speed = 2 * np.abs(report.omega).max()
     assert position.max() == pytest.approx(5e-4) and velocity.max() == pytest.approx(1e-2 / speed)
-
-
-# ------------------------------------------------------------------------------------ energy
 
 
 def test_several_motions_show_the_errors_in_their_energies(several: list[rl.Trajectory]) -> None:
@@ -156,9 +144,6 @@ def test_the_kind_of_energy_picture_can_be_chosen(several: list[rl.Trajectory]) 
     assert len(energies.total) == len(energies.potential) == 3 and energies.error == ()
     assert legend_of(energies.ax)[3:] == ["total", "kinetic", "potential"]
     assert len(rl.plot_energy(several[0], ax=new_axes(), kind="error").error) == 1
-
-
-# ------------------------------------------------------------------------------------ forces
 
 
 def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
@@ -200,16 +185,11 @@ def test_the_friction_band_matches_the_coefficient(report: rl.Trajectory) -> Non
     assert available is not None and list(np.asarray(available.get_ydata())) == [0.7, 0.7]
 
 
-# ------------------------------------------------------------------------------------- paths
-
-
 def test_paths_equal_the_trajectory(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_paths(trajectory, ax=new_axes())
     until = sampling.turned_until(trajectory, 3.0, "x_dot")
     trajectory = sampling.between(trajectory, 0.0, until, 6.0)
-    assert np.array_equal(
-        np.asarray(shown.centres[0].get_xydata()), np.column_stack([trajectory.x, trajectory.z])
-    )
+    assert np.array_equal(data(shown.centres[0]), [trajectory.x, trajectory.z])
     assert np.array_equal(data(shown.contacts[0])[0], trajectory.contact_x)
     assert np.all(data(shown.contacts[0])[1] == 0)
     tips = np.asarray(shown.tips[0].get_xydata())
@@ -254,9 +234,6 @@ def test_paths_on_a_slope_are_tilted() -> None:
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("horizontal [m]", "vertical [m]")
 
 
-# ------------------------------------------------------------------------------------- phase
-
-
 def test_the_phase_curve_equals_the_trajectory(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_phase(trajectory, ax=new_axes(), fold=False)
     theta, omega = data(shown.motions[0])
@@ -270,7 +247,7 @@ def test_the_separatrix_lies_between_rocking_and_rolling_over(a: float, b: float
     shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     flat = 0.0 if a > b else math.pi / 2
-    # nearer to a tip, the rounding of max(a, b) - h is no longer small against this difference
+    # nearer to a tip, the rounding of max(a, b) - h is not small compared with this difference
     ours = (np.abs(theta - flat) < 1.5) & (omega != 0)
     assert np.count_nonzero(ours) > 800
     theta, omega = theta[ours], omega[ours]
@@ -300,9 +277,7 @@ def test_the_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
-def test_each_body_has_a_separatrix_unless_it_is_a_circle_or_on_a_slope(
-    report: rl.Trajectory,
-) -> None:
+def test_only_level_bodies_that_are_not_round_have_a_separatrix(report: rl.Trajectory) -> None:
     for scene in (rl.scenes.circle, rl.scenes.slope):
         shown = rl.plot_phase(rl.simulate(scene, 1.0), ax=new_axes())
         assert shown.separatrices == () and shown.equilibria == ()
@@ -354,16 +329,7 @@ def test_ticks_of_the_phase_plane_are_quarter_turns(report: rl.Trajectory) -> No
     assert texts == ["−π/2", "0", "π/2", "π", "3π/2", "2π", "5π/2", "3π", "7π/2"]
 
 
-def curves(ax: Axes) -> list[matplotlib.lines.Line2D]:
-    return [line for line in ax.lines if not str(line.get_label()).startswith("_")]
-
-
-# ------------------------------------------------------------------------------- plot_strobe
-
-
-def test_strobe_bodies_stand_on_the_ground_at_equally_spaced_times(
-    trajectory: rl.Trajectory,
-) -> None:
+def test_strobe_bodies_touch_the_ground_at_equally_spaced_times(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes(), count=9, t_end=3.0)
     at = trajectory.sol(np.linspace(0.0, 3.0, 9))
     size = max(trajectory.scene.a, trajectory.scene.b)
@@ -387,9 +353,7 @@ def test_strobe_bodies_darken_evenly_from_early_to_late(report: rl.Trajectory) -
     assert np.all(steps > 0.1) and steps.max() < 3 * steps.min()
 
 
-def test_the_strobe_hand_ends_on_the_outline_at_the_end_of_semi_axis_a(
-    trajectory: rl.Trajectory,
-) -> None:
+def test_the_strobe_hand_ends_at_the_end_of_semi_axis_a(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
         end = np.asarray(hand.get_xydata())[1]
@@ -412,7 +376,7 @@ def test_the_strobe_stops_a_long_roll_after_three_turns() -> None:
 def test_the_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
     shown = rl.plot_strobe(rl.simulate(start, 50.0), ax=new_axes(), count=600)
     angles = [body.angle for body in shown.bodies]
-    # one way only, so that no outline lies on another; the angle is stationary at both ends
+    # only one way, so that no outline covers another; the angle is stationary at both ends
     assert angles[-1] == pytest.approx(max(angles), abs=0.05)
     assert max(angles) == pytest.approx(-min(angles), abs=0.05)
     assert (angles[0] == min(angles)) == (start.omega == 0)
@@ -438,19 +402,13 @@ def test_the_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Traje
     assert across == pytest.approx(up, rel=1 / window.width)
 
 
-# -------------------------------------------------------------------------------------- plot
-
-
 def test_overview_errors_equal_those_of_the_single_pictures(trajectory: rl.Trajectory) -> None:
     shown = rl.plot(trajectory, figure=Figure(layout="constrained"))
     ((position, velocity),) = rl.plot_constraints(trajectory, ax=Figure().add_subplot()).lines
     (energy,) = rl.plot_energy(trajectory, ax=Figure().add_subplot(), kind="error").error
-    for line, single in [
-        (shown.position_error, position),
-        (shown.velocity_error, velocity),
-        (shown.energy_error, energy),
-    ]:
-        assert np.array_equal(np.asarray(line.get_xydata()), np.asarray(single.get_xydata()))
+    errors = (shown.position_error, shown.velocity_error, shown.energy_error)
+    for line, single in zip(errors, (position, velocity, energy), strict=True):
+        assert np.array_equal(data(line), data(single))
 
 
 def test_the_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> None:
@@ -466,7 +424,7 @@ def test_the_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> 
 def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> None:
     slippery = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
     figure = rl.plot(slippery, figure=Figure(layout="constrained")).figure
-    panels = [curves(ax) for ax in figure.axes]
+    panels = [[line for line in ax.lines if str(line.get_label())[0] != "_"] for ax in figure.axes]
     assert [len(panel) for panel in panels] == [2, 1, 0, 0, 0, 2, 3, 3]
     for panel in panels:
         for one, other in itertools.combinations(panel, 2):
@@ -488,15 +446,12 @@ def test_the_overview_marks_where_the_model_is_invalid(report: rl.Trajectory) ->
         assert (mark.get_x(), mark.get_x() + mark.get_width()) == (2.5, 6.0)
 
 
-# ---------------------------------------------------------------------------------- errors
-
-
 def test_the_plotted_error_is_the_difference_from_the_exact_motion() -> None:
     scene = rl.scenes.rolling
     coarse = rl.simulate(scene, 6.0, method="rk4", step=0.02)
     exact = rl.simulate(scene, 6.0, method="exact")
     shown = rl.plot_error([coarse, exact], ax=new_axes())
-    t, error = np.asarray(shown.errors[0].get_data())
+    t, error = data(shown.errors[0])
     theta, _, _ = rl.flow(t, a=2.0, b=1.0, theta=0.0, omega=3.2)
     # two exact methods differ by some ulp of an angle of 10 rad
     assert error == pytest.approx(np.abs(coarse.sol(t).theta - theta), abs=1e-14)
@@ -512,12 +467,12 @@ def test_the_plotted_error_has_a_reference_for_every_model() -> None:
     jump = rl.simulate(rl.scenes.jump, 2.0)
     for motion, least, most in ((slope, 1e-12, 1e-4), (ours, 1e-12, 1e-5), (jump, 0.0, 1e-9)):
         line = rl.plot_error(motion, "omega", ax=new_axes()).errors[0]
-        assert least <= np.asarray(line.get_ydata()).max() <= most
+        assert least <= data(line)[1].max() <= most
 
 
 def test_the_reference_of_the_error_can_be_given() -> None:
     one = rl.simulate(rl.scenes.rolling, 2.0)
     other = rl.simulate(rl.Scene(2.0, 1.0, omega=3.3), 2.0)
     shown = rl.plot_error(one, "x", other, ax=new_axes())
-    t, error = np.asarray(shown.errors[0].get_data())
+    t, error = data(shown.errors[0])
     assert error == pytest.approx(np.abs(one.sol(t).x - other.sol(t).x), abs=1e-15)

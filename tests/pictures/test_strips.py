@@ -45,9 +45,7 @@ def frames(animation: RollingAnimation) -> range:
     return range(animation.t.size)
 
 
-def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
-    motions: list[rl.Trajectory],
-) -> None:
+def test_every_strip_shows_its_motion_at_the_clock_time(motions: list[rl.Trajectory]) -> None:
     animation = compared(motions)
     assert len(animation.strips) == len(motions)
     for i in frames(animation)[::7]:
@@ -140,9 +138,7 @@ def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
 
 
 @pytest.mark.parametrize("width", [320, 640])
-def test_texts_overlap_neither_one_another_nor_the_bodies(
-    motions: list[rl.Trajectory], width: int
-) -> None:
+def test_texts_overlap_neither_texts_nor_bodies(motions: list[rl.Trajectory], width: int) -> None:
     animation = compared(motions, width)
     for i in frames(animation)[::9]:
         animation.draw(i)
@@ -160,7 +156,8 @@ def test_texts_overlap_neither_one_another_nor_the_bodies(
 @pytest.mark.parametrize("size", [0.01, 1.0, 1000.0])
 @pytest.mark.parametrize("slope", [0.0, 0.2])
 def test_three_motions_side_by_side_are_readable(size: float, slope: float) -> None:
-    """At 640 pixels no letters are smaller than 7 points, and no text lies on another or is cut."""
+    """At 640 pixels no letter is smaller than 7 points, and no text covers another or is cut
+    off."""
     rate = math.sqrt(9.81 / size)
     scenes = [
         rl.Scene(size, size / 1.5, z=2 * size, omega=omega * rate, friction=0.3, slope=slope)

@@ -1,7 +1,7 @@
 """Pictures follow the style in force and accept matplotlib's usual arguments."""
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import matplotlib
@@ -34,9 +34,7 @@ def contrast(one: Any, other: Any) -> float:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_curves_stand_out_from_the_background(
-    picture: Callable[..., Any], several: list[rl.Trajectory], style: str
-) -> None:
+def test_curves_stand_out(picture: Any, several: list[rl.Trajectory], style: str) -> None:
     with plt.style.context(style):
         ax = new_axes()
         picture(several, ax=ax)
@@ -106,9 +104,7 @@ def curves_of(shown: Any) -> list[Line2D]:
     return [line for lines in found for line in np.ravel(np.array(lines, dtype=object)).tolist()]
 
 
-def test_given_colors_are_used_for_the_motions(
-    picture: Callable[..., Any], several: list[rl.Trajectory]
-) -> None:
+def test_given_colors_are_used(picture: Any, several: list[rl.Trajectory]) -> None:
     colours: list[Any] = ["red", (0.0, 0.5, 0.0), "C4"]
     ax = new_axes()
     shown = picture(several, ax=ax, colors=colours, labels=["a", "b", "c"])
@@ -122,9 +118,7 @@ def test_given_colors_are_used_for_the_motions(
     assert {to_rgb(line.get_color()) for line in curves_of(one)} == {to_rgb("red")}
 
 
-def test_line_properties_are_accepted(
-    picture: Callable[..., Any], several: list[rl.Trajectory]
-) -> None:
+def test_line_properties_are_accepted(picture: Any, several: list[rl.Trajectory]) -> None:
     for motions in (several, several[0]):
         shown = picture(motions, ax=new_axes(), alpha=0.4, lw=3.3)
         for line in curves_of(shown):

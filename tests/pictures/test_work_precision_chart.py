@@ -1,4 +1,5 @@
-"""The work-precision chart: fronts, factors and names agree with made-up runs and are readable."""
+"""Fronts, factors and names of the work-precision chart agree with made-up runs and are
+readable."""
 
 import itertools
 import math
@@ -30,7 +31,8 @@ def run(name: str, error: float, time: float, **how: Any) -> Run:
 
 
 def made(count: int, best: float = 1e-13, kind: str = "ladders") -> WorkPrecision:
-    """A race of `count`: one answer of "flow", own methods and peers of rising order and cost."""
+    """A race of `count` contenders: "flow" with one answer, own methods and peers of increasing
+    order and cost."""
     runs = [run("flow", best / 10, 2e-6, method="exact", setting=math.nan)]
     for i in range(1, count):
         own = i % 4 == 2
@@ -114,7 +116,7 @@ def test_errors_range_from_ten_to_the_attainable_limit_without_piling_up(chart: 
     for line in chart.lines.values():
         x = line.get_xdata()
         assert np.all(np.diff(x) < 0) and np.min(x) >= LIMIT
-        assert np.sum(x == 10.0) <= 1  # an error of 100 stays at 100, out of view
+        assert np.sum(x == 10.0) <= 1  # an error of 100 is not moved into view
     assert {"10 µs", "1 ms"} <= {tick.get_text() for tick in chart.ax.get_yticklabels()}
 
 
@@ -128,13 +130,10 @@ def test_camps_differ_in_grey(chart: Any) -> None:
     assert min(line.get_linewidth() for line in chart.fronts.values()) > 2 * rest.get_linewidth()
 
 
-# -------------------------------------------------------------------------------- texts
-
-
 @pytest.mark.parametrize("found", READ.values(), ids=READ)
 @pytest.mark.parametrize("width", [3.4, 5.0, 8.0, 12.0])
 def test_no_text_overlaps_another(width: float, found: WorkPrecision) -> None:
-    """No text overlaps or leaves the figure, in a column, at 500 px, at 800 px or on a slide."""
+    """The widths are those of a column, of 500 px, of 800 px and of a slide."""
     with plt.rc_context({"figure.figsize": (width, 0.7 * width), "figure.dpi": 100}):
         chart: Any = found.plot()
     figure = chart.ax.figure
@@ -156,9 +155,6 @@ def test_no_text_overlaps_another(width: float, found: WorkPrecision) -> None:
         assert text.get_fontsize() >= 8
     plt.close(figure)
     assert 2 <= len(chart.names) <= 8 and "flow" in chart.names
-
-
-# ------------------------------------------------------------------------------ gaps
 
 
 LOST: dict[str, Any] = {"errors": Errors(), "time": math.nan, "status": "FAILED"}
@@ -183,9 +179,6 @@ def test_a_chart_without_any_result_still_says_why() -> None:
     chart: Any = replace(FOUND, runs=runs).plot(ax=Figure().add_subplot())
     assert not chart.lines and {gap.name for gap in chart.gaps} == set(FOUND.names)
     chart.ax.figure.draw_without_rendering()
-
-
-# ------------------------------------------------------------------- other charts, result
 
 
 def test_each_small_multiple_shows_one_library_on_the_same_axes() -> None:

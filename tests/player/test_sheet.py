@@ -4,11 +4,13 @@ import math
 import random
 import re
 from collections.abc import Callable
+from io import StringIO
 from typing import Any
 
 import pytest
 from oracles.paths import ROOT
 from rolling_ellipse import course
+from rolling_ellipse.course import _marks
 
 SEED = 20261
 MARKS = """answers => answers.map(([task, text]) => {
@@ -21,10 +23,8 @@ MARKS = """answers => answers.map(([task, text]) => {
 
 
 @pytest.mark.parametrize("number", [3, 7, 8])
-def test_marks_in_the_browser_equal_those_of_python(
-    number: int, opened: Callable[..., Any]
-) -> None:
-    """A hundred answers about each end of an interval of marks, and texts that are no numbers."""
+def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[..., Any]) -> None:
+    """The hundred answers lie around each end of an interval of marks, or are not numbers."""
     html = course.sheet(number, seed=SEED).html
     assert "http" not in html.replace("http://www.w3.org", "")
     page = opened(html)
@@ -40,7 +40,8 @@ def test_marks_in_the_browser_equal_those_of_python(
     seen = page.evaluate(MARKS, answers)
     assert len(answers) > 100
     for (number_of, text), (shown, mark) in zip(answers, seen, strict=True):
-        rows = course.mark_table(as_file(number_of, text))
+        table = f'student,seed,task,answer\nx,{SEED},{number_of},"{text}"'
+        rows = course.mark_table(StringIO(table))
         if rows.refused:
             assert mark is None and shown == "This is no number."
         else:
@@ -49,16 +50,8 @@ def test_marks_in_the_browser_equal_those_of_python(
             assert shown.endswith(ours.sentence)
 
 
-def as_file(task: str, text: str) -> Any:
-    from io import StringIO
-
-    return StringIO(f'student,seed,task,answer\nx,{SEED},{task},"{text}"')
-
-
 def known(number: str) -> list[float]:
     """Numbers close to the ends of the intervals of marks."""
-    from rolling_ellipse.course import _marks
-
     ends = _marks.key(number, SEED).ends
     return [v for end in ends for v in (end, math.nextafter(end, 9e9), math.nextafter(end, -9e9))]
 

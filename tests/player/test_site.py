@@ -78,8 +78,7 @@ def test_no_page_shows_the_source_of_a_formula(pages: dict[Path, str]) -> None:
 
 
 def test_no_page_shows_a_path_on_the_build_machine(pages: dict[Path, str]) -> None:
-    told = {page.name for page, html in pages.items() if "site-packages" in html}
-    assert told == set()
+    assert {page.name for page, html in pages.items() if "site-packages" in html} == set()
 
 
 def test_no_line_of_code_or_output_is_cut_off(site: Path, chromium: Any) -> None:
@@ -110,7 +109,7 @@ def test_each_formula_is_in_one_chapter_whose_set_up_is_folded(pages: dict[Path,
     assert all('hide above-input">' in text for text in chapters.values())
 
 
-def test_a_word_leads_first_to_the_page_that_answers(site: Path, chromium: Any) -> None:
+def test_the_search_lists_the_right_page_first(site: Path, chromium: Any) -> None:
     page = chromium.new_page()
     first = "document.querySelector('#search-results li a')?.getAttribute('href')"
     for words, wanted in ASKED.items():
@@ -122,9 +121,7 @@ def test_a_word_leads_first_to_the_page_that_answers(site: Path, chromium: Any) 
 
 
 @pytest.mark.parametrize("width", [390, 1280])
-def test_a_live_frame_takes_the_height_that_its_page_needs(
-    site: Path, chromium: Any, width: int
-) -> None:
+def test_a_live_frame_is_as_high_as_its_page(site: Path, chromium: Any, width: int) -> None:
     page = chromium.new_page(viewport={"width": width, "height": 800})
     page.goto((site / "explore.html").as_uri())
     inner = page.frames[1]

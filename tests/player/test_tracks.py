@@ -1,4 +1,4 @@
-"""The player's data, once unpacked, are as close to the motion as their tolerance promises."""
+"""The unpacked data of the player are within their tolerance of the motion."""
 
 import base64
 import json
@@ -55,12 +55,12 @@ def test_the_motion_between_samples_stays_within_its_tolerance(name: str) -> Non
     tolerance = 2e-3 * size
     found = track(motion, [(0.0, end)], tolerance)
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
-    # the time of an impact is rounded like t: no bound holds as close to it as that
+    # the time of an impact is rounded like t, so no bound holds that close to an impact
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
     for event in motion.events:
         times = times[np.abs(times - event.t) > near]
     at, drawn = motion.sol(np.sort(times)), read_back(found, np.sort(times))
-    # tolerance once for the cubic and once for the packing of x, z, theta, t and of the rates
+    # one tolerance for the cubic, and three for packing x, z, theta, t and the rates
     for column, unit in (("x", 1.0), ("z", 1.0), ("theta", size)):
         missed = np.max(np.abs(drawn[column] - getattr(at, column))) * unit
         assert missed <= 4 * tolerance, column
@@ -80,7 +80,7 @@ def test_an_impact_remains_a_jump() -> None:
 
 
 def test_a_motion_whose_period_divides_the_sample_spacing_is_still_resolved() -> None:
-    """The motion stands at the same angle, modulo half turns, at 17 or 34 evenly spaced times."""
+    """At 17 or 34 evenly spaced times the angle is the same modulo half turns."""
     turn = rl.period(rl.scenes.rolling)
     motion = rl.simulate(rl.scenes.rolling, 34 * turn)
     found = track(motion, [(0.0, motion.t_end)], 1e-3)
@@ -89,10 +89,8 @@ def test_a_motion_whose_period_divides_the_sample_spacing_is_still_resolved() ->
 
 
 def test_parts_of_a_long_motion_are_as_accurate_as_a_short_motion() -> None:
-    motion, parts = (
-        rl.simulate(rl.scenes.rolling, 1e5),
-        [(0.0, 9.0), (5e4, 50_009.0), (99_990.0, 1e5)],
-    )
+    motion = rl.simulate(rl.scenes.rolling, 1e5)
+    parts = [(0.0, 9.0), (5e4, 50_009.0), (99_990.0, 1e5)]
     found = track(motion, parts, 1e-3)
     known = unpacked(found["columns"]["t"])
     assert known[found["starts"]] == pytest.approx([begin for begin, _ in parts], abs=1e-3)
@@ -108,7 +106,7 @@ def test_parts_of_a_long_motion_are_as_accurate_as_a_short_motion() -> None:
 )
 def test_packing_stays_within_its_stated_error(values: list[float], error: float) -> None:
     column = packed(np.array(values), error)
-    # "error" of the numbers, and two roundings of a double in unpacking
+    # the stated error, and two roundings of a double in unpacking
     allowed = error + 4e-16 * np.max(np.abs(values))
     assert np.max(np.abs(unpacked(column) - values)) <= allowed
     assert column == json.loads(json.dumps(column))

@@ -29,8 +29,8 @@ def disassembled(*options: str) -> str:
 def test_only_exact_products_in_vector_lanes_are_fused() -> None:
     """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
 
-    A compiler that fuses a product and a sum by itself would also fuse additions, and single
-    numbers. std::fma is a call.
+    A compiler that fuses products and sums on its own would also fuse additions and scalars.
+    std::fma is a function call.
     """
     if platform.machine() != "x86_64":
         pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")

@@ -1,7 +1,7 @@
 """Code lines of the core and of the package stay within a budget; `pytest -rP` shows the rooms.
 
-A code line is not blank, and neither comment nor docstring. A change that needs a larger sum says
-in its commit what it replaces; one that makes the sum smaller lowers it here.
+A code line is not blank, and neither comment nor docstring. A change that needs a larger budget
+says in its commit what it replaces; a change that shrinks the code lowers the budget here.
 """
 
 import ast

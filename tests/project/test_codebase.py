@@ -1,6 +1,7 @@
 """The sources: linters, formatters, type checker, generated files, one version, order of imports.
 
-All paths start from this file: the suite runs from a source checkout with an installed package.
+All paths are relative to this file: the suite runs from a source checkout with an installed
+package.
 """
 
 import ast
@@ -14,6 +15,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from typing import Any
 
 import pytest
 import rolling_ellipse
@@ -34,7 +36,7 @@ FOLDERS = (
     "rolling/stepped", "proof", "multipliers", "contact", "outcome", "", "bindings",
 )  # fmt: skip
 # Rooms and single modules of the package in the same order; "" is the package itself. Functions may
-# import a later room that is slow to load.
+# import a later room if it is slow to load.
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
     "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "benchmark",
@@ -55,7 +57,7 @@ void many(const double* __restrict x, const double* __restrict y, double* __rest
 
 
 def run(*command: str | Path) -> str:
-    """Output of a command in the checkout, which is also the message if the command fails."""
+    """Output of a command in the checkout; a failure shows the output."""
     done = subprocess.run(
         [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
@@ -70,7 +72,8 @@ SCRIPTS = Path(sysconfig.get_path("scripts"))  # folder of the programs of the t
 
 
 RUFF = [sys.executable, "-m", "ruff"]
-# Checks: newer versions of `ruff format` would format code in Markdown, where comments are aligned.
+# Checks: only the Python folders: newer versions of `ruff format` also format code in Markdown,
+# where comments are aligned.
 CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
     "ruff": ([*RUFF, "check", "--no-cache"], ["."], "unused.py", "import os\n"),
     "ruff format": (
@@ -96,9 +99,7 @@ each_tool = pytest.mark.parametrize(
 
 
 @each_tool
-def test_the_tools_accept_the_sources(
-    command: list[str], sources: list[str], name: str, text: str
-) -> None:
+def test_the_tools_accept_the_sources(command: Any, sources: Any, name: str, text: str) -> None:
     run(*command, *sources)
 
 
@@ -243,7 +244,7 @@ def test_each_folder_includes_only_those_before_it() -> None:
             assert (ROOT / "src" / other).is_file(), f"{name}: {other} is not a path from src"
             assert folder_of(other) <= folder_of(name), f"{name} includes {other}"
             between += folder_of(other) < folder_of(name)
-    assert between > 50  # fewer: the search no longer recognises includes
+    assert between > 50  # fewer if the search no longer recognises includes
 
 
 def statements(body: Sequence[ast.stmt]) -> Iterator[tuple[ast.ImportFrom, bool]]:
@@ -294,7 +295,8 @@ def test_the_architecture_page_names_every_room() -> None:
 
 
 def test_no_files_import_each_other_circularly() -> None:
-    """Imports form no circle at load time or in functions, except for type checkers."""
+    """Neither imports at load time nor those in functions form a circle; those for type checkers
+    may."""
     graph = {
         path.relative_to(PACKAGE).as_posix(): {other for other, _ in imported(path)}
         for path in PACKAGE.rglob("*.py")
@@ -346,8 +348,8 @@ def test_the_compiler_fuses_only_what_is_written_as_fused(
 
 
 def test_the_compiler_fuses_nothing_in_vectorized_sources(fused: Callable[..., list[str]]) -> None:
-    """A compiler would fuse packed numbers; operations fused without vectors are fused in the
-    source."""
+    """The compiler could fuse packed numbers; operations that are also fused without vectors are
+    fused in the source."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     properties = r"set_source_files_properties\(([^)]*)PROPERTIES [^)]*COMPILE_OPTIONS (-f\S+)\)"
     vectorized = [(name, flag) for names, flag in re.findall(properties, build)

@@ -1,4 +1,4 @@
-"""`python -m rolling_ellipse` in a process as users type it, and its parts through `main`."""
+"""`python -m rolling_ellipse` as users type it, in its own process or through `main`."""
 
 import io
 import json
@@ -114,7 +114,8 @@ def test_the_command_without_options_runs_the_report_scene(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
 def test_a_console_of_any_encoding_gets_the_output(encoding: str, tmp_path: Path) -> None:
-    """The output has eleven events, a name unknown to such consoles, an accent, and a refusal."""
+    """The output has eleven events, a name that such consoles cannot show, an accent, and a
+    refusal."""
     told = {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
     falls = ["--theta", "0.4", "--friction", "0.2", "--omega", "4", "--slope", "0.1"]
     code, out, err = typed(tmp_path, *falls, "--time", "9", "--plot", "θ→.png", **told)
@@ -190,7 +191,7 @@ def test_the_blow_of_the_report_is_kept_unless_a_start_is_given(command: Any) ->
 def test_a_scene_is_read_from_a_file_a_link_or_standard_input(
     command: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Other options change this scene as they change the report's."""
+    """Other options change this scene in the same way as the scene of the report."""
     scene = rl.scenes.drop.replace(x=3.0, impulse=rl.Impulse(jx=0.5, jz=-0.5, dx=0.1))
     (tmp_path / "scene.json").write_text(scene.to_json())
     x = rl.simulate(scene, 1.0).x
@@ -256,7 +257,7 @@ def test_the_summary_states_when_the_motion_repeats(command: Any) -> None:
 
 
 def test_written_files_are_listed(command: Any, tmp_path: Path) -> None:
-    """A figure whose path has no suffix is a PNG."""
+    """A figure without a suffix in its path is a PNG."""
     options = ["--plot", "overview", "--save", "roll.gif", "--time", "0.1"]
     lines = command(*options).out.splitlines()
     written = [line[18:] for line in lines if line.startswith("written")]
@@ -338,7 +339,8 @@ def test_a_motion_on_a_slope_has_a_summary(command: Any) -> None:
 
 
 def test_extreme_motions_still_give_standard_json(command: Any) -> None:
-    """JSON has no infinity; unlimited friction, rest, lost contact and the separatrix have one."""
+    """JSON has no infinity, but unlimited friction, rest, lost contact and the separatrix give
+    one."""
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         "--omega 50", f"--theta {math.pi / 2} --omega 0", "--omega 5.2 --friction 0",
@@ -473,15 +475,14 @@ def test_a_failed_write_leaves_the_old_file(
     [("/no/such/ffmpeg", "No such file"), ("/bin/false", "ffmpeg could not write 'roll.mp4'")],
 )
 def test_a_broken_ffmpeg_gives_a_one_line_error(tmp_path: Path, program: str, said: str) -> None:
-    code, out, err = typed(
-        tmp_path, "--save", "roll.mp4", "--time", "0.1", IMAGEIO_FFMPEG_EXE=program
-    )
+    options = ("--save", "roll.mp4", "--time", "0.1")
+    code, out, err = typed(tmp_path, *options, IMAGEIO_FFMPEG_EXE=program)
     assert (code, out) == (2, "") and said in err
     assert len(err.splitlines()) == 1 and list(tmp_path.iterdir()) == []
 
 
 def shell(folder: Path, command: str) -> Answer:
-    """A line of bash in which `roll` is the command; the exit code is the one of `roll`."""
+    """Run a line of bash in which `roll` is the command; the exit code is that of `roll`."""
     roll = f"roll() {{ {shlex.quote(sys.executable)} -m rolling_ellipse --time 1 $*; }}"
     return ran(folder, "bash", "-c", f"{roll}; {command}; exit ${{PIPESTATUS[0]}}")
 

@@ -16,7 +16,7 @@ import pytest
 import rolling_ellipse as rl
 from _pytest.doctest import _get_checker
 
-# `report` has some thirty formulas of one kind, which its own example and docstring explain
+# `report` has some thirty similar formulas, which its own docstring and example explain
 OF_THE_REPORT = ("simulate", "errata", "constraint_matrix", "multipliers")
 FOR_FILES = ("computed",)  # a method for files, pickles and `sol`, not for users
 HEADING = re.compile(r"\n(?:Parameters|Attributes|Returns|Raises|Notes|References|Examples)\n---")
@@ -62,10 +62,8 @@ def test_the_help_of_the_package_places_every_function_at_a_task() -> None:
 
 
 @pytest.mark.parametrize("of", NAMES, ids=NAMES.values())
-def test_an_example_runs_as_it_is_printed(
-    of: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Each example runs in an empty folder, with only `rl` and `np` known."""
+def test_an_example_runs_as_it_is_printed(of: Any, tmp_path: Path, monkeypatch: Any) -> None:
+    """Each example runs in an empty folder and knows only `rl` and `np`."""
     text = inspect.getdoc(of) or ""
     heading, section = text.partition("\nExamples\n--------\n")[1:]
     examples = doctest.DocTestParser().get_examples(text)

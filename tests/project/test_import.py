@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-# State of a process. MXCSR of x86-64 holds the rounding mode, masks and the flushing of subnormal
-# numbers; its six lowest bits record exceptions, which any sum may set.
+# State of a process. MXCSR of x86-64 contains the rounding mode, masks and the flushing of
+# subnormal numbers; its six lowest bits record exceptions, which any sum may set.
 STATE = """
 import ctypes, os, platform, signal, struct, sys, threading, warnings
 import matplotlib, numpy as np

@@ -1,8 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that an addition of a kind needs.
 
-Existing things of that kind show which files: the sources that name all of them must be those on
-the page. A list fails, too, if one of its files moves. PLACES finds the code that depends on a law
-or a processor; these lists may name functions instead of files.
+Existing things of a kind show which files these are: the sources that name all of them must be
+those on the page. A list also fails if one of its files moves. PLACES finds code that depends on a
+law or a processor; these lists may name functions instead of files.
 """
 
 import ast
@@ -174,6 +174,6 @@ def test_every_name_on_the_page_occurs_in_the_sources() -> None:
 
 
 def test_every_list_is_tested() -> None:
-    """The exceptions are lists of things that do not exist yet, and of files that share no word."""
+    """The exceptions are lists for things that do not exist yet, or whose files share no word."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
     assert listed == {*KINDS, *PLACES, *UNTESTED}

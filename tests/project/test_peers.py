@@ -18,14 +18,14 @@ from rolling_ellipse import Mode, Scene, flow, period, simulate
 R = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 T = 1.37 * period(R) / 2
 TOLERANCE = 1e-10
-# The tolerance bounds the error of a step. The errors of a few hundred steps grow tenfold at most
-# over the tip, and their sum stays below 1e4 tolerances.
+# The tolerance bounds the error of one step. Errors of a few hundred steps grow at most tenfold
+# over the tip, so their sum stays below 1e4 tolerances.
 BOUND = 1e4 * TOLERANCE
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[Any], dict[str, str]]]:
-    """The installed and the missing peers; compiled files stay in a folder of the suite."""
+    """The installed and the missing peers; compiled files go to a folder of the suite."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         installed, missing = peers.available()
@@ -51,15 +51,11 @@ def test_every_library_takes_part_or_is_missing_for_a_reason(found: Any) -> None
     assert len({peer.name for peer in installed}) == len(installed)
 
 
-def test_a_broken_installation_is_reported_with_its_message(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_broken_installation_is_reported_with_its_message(monkeypatch: Any) -> None:
     def broken(name: str, package: str | None = None) -> Any:
-        raise (
-            OSError("libsomething.so: not today")
-            if "heyoka" in name
-            else ModuleNotFoundError(f"No module named {name!r}", name=name)
-        )
+        if "heyoka" in name:
+            raise OSError("libsomething.so: not today")
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
     monkeypatch.setattr(importlib, "import_module", broken)
     installed, missing = peers.available()
@@ -127,12 +123,10 @@ def test_a_peer_with_a_wrong_equation_is_detected() -> None:
     assert abs(largest(end, exact_end(T)) - difference) < 2 * BOUND
 
 
-def test_the_quick_benchmark_lists_every_contender(
-    found: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_quick_benchmark_lists_every_contender(found: Any, capsys: Any) -> None:
     """The benchmark's judge is independent of the package, and its table has every contender.
 
-    An hour is allowed, so that the result does not depend on the load of the machine.
+    An hour is allowed so that the load of the machine does not matter.
     """
     ((_, race),) = bench_peers.main(["--quick", "--seconds", "3600"]).items()
     printed = capsys.readouterr().out
@@ -150,7 +144,7 @@ def test_the_quick_benchmark_lists_every_contender(
 
 
 def test_a_peer_that_is_ahead_is_printed_as_such() -> None:
-    """A peer that costs nothing is ahead of the package at the errors that it reaches."""
+    """A peer without any cost is ahead of the package at the errors that it reaches."""
 
     class Lucky:
         name, library = "lucky", "none"

@@ -1,6 +1,6 @@
-"""Physical numbers of the 2:1 disc on Earth, to all known digits, as public functions return them.
+"""Public functions return the known physical numbers of the 2:1 disc on Earth.
 
-The folders of these functions test what the numbers mean: by definition, and in motions.
+The folders of these functions test the numbers against their definitions and in motions.
 """
 
 import math
@@ -34,9 +34,7 @@ NUMBERS: dict[str, tuple[float | None, float, float]] = {  # found, known, relat
 
 
 @pytest.mark.parametrize(("found", "number", "error"), NUMBERS.values(), ids=NUMBERS)
-def test_physical_values_agree_to_all_known_digits(
-    found: float, number: float, error: float
-) -> None:
+def test_physical_values_agree_to_all_digits(found: float, number: float, error: float) -> None:
     assert found == pytest.approx(number, rel=error, abs=0)
 
 

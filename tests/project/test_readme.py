@@ -5,6 +5,7 @@ import re
 import runpy
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import pytest
@@ -28,26 +29,16 @@ PAGES = {  # with the files that their code writes
     "docs/constraints.md": set(),
     "docs/film.md": set(),
     "docs/recipes.md": {
-        "motion.npz",
-        "motion.csv",
-        "plain.csv",
-        "mine.png",
-        "slow.html",
-        "slow.gif",
-        "still.png",
-        "forces.pdf",
-        "strike.html",
-        "motions",
+        "motion.npz", "motion.csv", "plain.csv", "mine.png", "slow.html", "slow.gif", "still.png",
+        "forces.pdf", "strike.html", "motions",
     },
     "docs/embed.md": {"roll.html", "schlag.html", "roll.gif", "motion.png"},
-}
+}  # fmt: skip
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # the guides show it
 @pytest.mark.parametrize("page", PAGES)
-def test_the_code_on_a_page_runs(
-    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_code_on_a_page_runs(page: str, tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
     text = (ROOT / page).read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
@@ -60,10 +51,8 @@ def test_the_code_on_a_page_runs(
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
-def test_the_residuals_in_a_guide_agree_with_its_printed_output(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """A factor of 2 is allowed, by which other C libraries may change a rounding."""
+def test_the_residuals_in_a_guide_agree_with_its_printed_output(capsys: Any) -> None:
+    """A factor of 2 is allowed, because other C libraries may round differently."""
     page = (ROOT / "docs" / "constraints.md").read_text(encoding="utf-8")
     exec("".join(re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)), {})
     plt.close("all")
@@ -109,7 +98,7 @@ def test_the_paper_has_its_sections_a_reference_for_each_name_and_the_scores_of_
 
 
 def test_one_command_writes_the_site_address_everywhere(tmp_path: Path) -> None:
-    """A second address replaces the first, and nothing is left to be filled in."""
+    """A second address replaces the first, and no placeholder is left."""
     names = ("README.md", "pyproject.toml", "CITATION.cff", "recipe/recipe.yaml", "SECURITY.md",
              "CODE_OF_CONDUCT.md")  # fmt: skip
     (tmp_path / "recipe").mkdir()

@@ -1,8 +1,8 @@
 """`certify` against brute force on ten thousand random scenes.
 
 The oracle (oracles/rolling.py) uses Newton's law, the energy and dense samples in long double,
-refined to 1e-16; the package proves signs of polynomials. Every error bound is the oracle's
-allowance for double arithmetic: 1e-12 of the terms, and the effect of a few ulp of the energy.
+refined to 1e-16; the package proves signs of polynomials. Every bound is what the oracle allows for
+double arithmetic: 1e-12 of the terms and the effect of a few ulp of the energy.
 """
 
 import math
@@ -86,8 +86,8 @@ def at_rest(sample: Sample) -> NDArray[np.bool_]:
 
 
 def starts_rolling(chunk: Judged) -> NDArray[np.bool_]:
-    """Whether a start surely rolls: without friction the contact slides, and a body thrown off at
-    once (free gap acceleration >= 0) flies."""
+    """Whether a start certainly rolls. Without friction the contact slides; a body that is thrown
+    off at once (free gap acceleration >= 0) flies."""
     sample = chunk.sample
     *_, curvature = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
     thrown = sample.gravity + curvature * np.asarray(sample.omega, np.longdouble) ** 2 <= 0
@@ -136,7 +136,7 @@ def test_oracle_extremes_do_not_depend_on_the_sampling() -> None:
 
 
 def test_the_random_scenes_cover_every_case(judged: list[Judged]) -> None:
-    """The random scenes contain every case, so that the tests of verdicts are meaningful."""
+    """Without these cases the tests of verdicts would prove little."""
     samples = [chunk.sample for chunk in judged]
     needed = np.concatenate([chunk.truth.needed for chunk in judged])
     friction = np.concatenate([sample.friction for sample in samples])
@@ -160,8 +160,8 @@ def test_the_random_scenes_cover_every_case(judged: list[Judged]) -> None:
 
 
 def test_no_verdict_is_wrong(judged: list[Judged]) -> None:
-    """VALID and INVALID are never wrong; EDGE, for cases that rounding leaves open, occurs only
-    within EDGE_MARGIN of a threshold, and rarely."""
+    """VALID and INVALID are never wrong. EDGE, the verdict where rounding decides, occurs rarely
+    and only within EDGE_MARGIN of a threshold."""
     edges = 0
     for chunk in judged:
         contact, grip = chunk.margins()
@@ -223,8 +223,8 @@ def test_ends_at_is_given_only_where_rolling_ends(judged: list[Judged]) -> None:
 
 
 class Road(NamedTuple):
-    """All angles that a motion passes from its start, each once: signed reduced angle phi (theta =
-    base + phi), forwards, in one leg or, for a swing, in two."""
+    """The angles that a motion passes after its start, each once: the signed reduced angle phi
+    (theta = base + phi) in one leg, or in two for a swing."""
 
     base: np.longdouble
     start: np.longdouble
@@ -312,14 +312,9 @@ def test_ends_at_is_the_first_violation_of_the_law(judged: list[Judged]) -> None
 def test_ends_at_is_right_near_a_nearly_weightless_tip() -> None:
     """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad from the tip, already needs more
     friction than there is: the angle resolves this distance, h does not."""
-    scene = Scene(
-        2.239752036298014,
-        2.87251997990579,
-        gravity=5.632220764118916,
-        friction=0.056465590484008184,
-        theta=851.3716091191411,
-        omega=-2.236362243677252,
-    )
+    scene = Scene(2.239752036298014, 2.87251997990579, gravity=5.632220764118916,
+                  friction=0.056465590484008184, theta=851.3716091191411,
+                  omega=-2.236362243677252)  # fmt: skip
     assert certify(scene).validity is Validity.INVALID
     assert certify(scene).ends_at == scene.theta
 
@@ -339,21 +334,15 @@ def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize(
     ("a", "b", "theta"),
-    [
-        (2.0, 1.0, 0.0),
-        (1.2, 1.0, math.pi / 2),
-        (0.90625, 1.0, 0.0),
-        (1.0, 30.0, math.pi / 2),
-        (2.0, 1.0, 0.9),
-        (1.0, 1.9, 0.8),
-    ],
+    [(2.0, 1.0, 0.0), (1.2, 1.0, math.pi / 2), (0.90625, 1.0, 0.0), (1.0, 30.0, math.pi / 2),
+     (2.0, 1.0, 0.9), (1.0, 1.9, 0.8)],
     ids=["flat", "tip", "standing axes, tip", "standing axes, flat", "F = 0", "standing, F = 0"],
-)
+)  # fmt: skip
 def test_a_little_friction_suffices_for_a_moment_where_none_is_needed(
     a: float, b: float, theta: float, side: int, friction: float
 ) -> None:
-    """Rolling starts flat, on the tip or where F vanishes, and ends after an angle of the order of
-    the friction, far below the resolution of a double root of the squared law."""
+    """Rolling starts in the flat position, on the tip or where F vanishes. It ends after an angle
+    about as large as the friction, far below the resolution of a double root of the squared law."""
     with mp.workdps(DIGITS):
         gyration2 = (mp.mpf(a) ** 2 + mp.mpf(b) ** 2) / 4
         h, slope, _ = oracles.geometry.height_slopes(mp.mpf(theta), a, b)
@@ -379,11 +368,11 @@ def test_a_little_friction_suffices_for_a_moment_where_none_is_needed(
 @pytest.mark.parametrize("beside", [1e-13, 1e-9, 1e-5])
 @pytest.mark.parametrize("speed", [-2.0, -0.9, 0.0, 1.0])
 @pytest.mark.parametrize("b", [1.9, 1.001, 40.0])
-def test_a_fall_from_near_the_tip_stops_rolling_where_the_law_fails(
+def test_a_fall_from_the_tip_rolls_until_the_law_fails(
     b: float, speed: float, beside: float
 ) -> None:
-    """A body that falls, turns back first or crosses the tip stops rolling at the right angle and
-    state, with errors measured relative to the distance from the tip."""
+    """The body falls directly, turns back first or crosses the tip. The angle at which rolling ends
+    is right relative to its distance from the tip."""
     with mp.workdps(DIGITS):
         gyration2 = (1 + mp.mpf(b) ** 2) / 4
         rate = math.sqrt((b * b - 1) / b / (gyration2 + b * b))  # rate of falling
@@ -404,7 +393,7 @@ def test_a_fall_from_near_the_tip_stops_rolling_where_the_law_fails(
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
 def test_a_wrong_end_is_detected(shift: float) -> None:
-    """The judge rejects wrong ends: grip is lost at 0.2488 rad here and nowhere else nearby."""
+    """The check rejects a wrong end: the grip is lost at 0.2488 rad and nowhere else nearby."""
     scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
     moving = oracles.rolling.motion(
         *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
@@ -417,7 +406,8 @@ def test_a_wrong_end_is_detected(shift: float) -> None:
 
 
 def test_a_verdict_very_close_to_the_threshold_is_edge_or_correct() -> None:
-    """Friction off by 1e-13, 1e-14 or 1e-15 from what is needed gives EDGE or the true verdict."""
+    """A friction that differs by 1e-13, 1e-14 or 1e-15 from the one needed gives EDGE or the true
+    verdict."""
     said_edge = 0
     for seed in range(3):
         sample, truth = random_sample(100, 1000 + seed)
@@ -464,7 +454,7 @@ EQUILIBRIA = [
 
 @pytest.mark.parametrize(("a", "b", "theta"), EQUILIBRIA)
 def test_a_body_at_rest_in_equilibrium_is_never_invalid(a: float, b: float, theta: float) -> None:
-    """A body at rest stays there forever, since almost no friction is needed: NO_PROOF is allowed,
+    """A body at rest stays at rest, because it needs almost no friction: NO_PROOF is allowed,
     INVALID is not. The forces of a body lying flat are exact."""
     scene = Scene(a, b, mass=3.0, theta=theta)
     for friction in (math.inf, 0.8):
@@ -485,13 +475,10 @@ def test_a_body_at_rest_in_equilibrium_is_never_invalid(a: float, b: float, thet
     [
         # Rolling over the tip of 2:1 keeps N > 0 up to omega^2 = g a/(a^2 - b^2).
         Scene(2.0, 1.0, theta=math.pi / 2, omega=2 * math.sqrt(9.81 * 2 / 3)),
-        *(
-            Scene(2.0, 1.0, theta=theta, omega=omega, friction=0.0)
-            for theta in (0.4, -2.0)
-            for omega in (0.0, 1.0)
-        ),
+        *(Scene(2.0, 1.0, theta=theta, omega=omega, friction=0.0)
+          for theta in (0.4, -2.0) for omega in (0.0, 1.0)),
     ],
-)
+)  # fmt: skip
 def test_a_body_that_cannot_start_to_roll_is_not_certified(scene: Scene) -> None:
     found = certify(scene)
     assert found.validity in (Validity.INVALID, Validity.NO_PROOF)

@@ -1,7 +1,7 @@
-"""The certificate on slopes, judged by dense scans along the angle and by its own extremes.
+"""The certificate on slopes agrees with dense scans over the angle.
 
-A scan takes W = D omega^2/2 from the energy, one half turn after another, with h integrated by
-Gauss-Legendre quadrature between its angles: it shares no formula with the package's series.
+A scan computes W = D omega^2/2 from the energy, one half turn after another, and integrates h
+between its angles by Gauss-Legendre quadrature: it shares no formula with the package's series.
 """
 
 import math
@@ -85,22 +85,16 @@ def random_scene(rng: np.random.Generator) -> Scene:
     ratio = math.exp(rng.uniform(math.log(0.02), 0)) if rng.random() < 0.8 else 0.99
     a, b = (1.0, ratio) if rng.random() < 0.5 else (ratio, 1.0)
     inertia = (a * a + b * b) / 4 * (1 if rng.random() < 0.6 else math.exp(rng.uniform(-3, 2)))
-    return Scene(
-        a,
-        b,
-        inertia=inertia,
-        slope=float(rng.choice([-1, 1])) * math.exp(rng.uniform(math.log(1e-3), math.log(1.2))),
-        theta=rng.uniform(-4, 4),
-        omega=0.0
-        if rng.random() < 0.2
-        else float(rng.choice([-1, 1])) * 1.5 * math.exp(rng.uniform(-3, 2)),
-        friction=math.inf if rng.random() < 0.3 else math.exp(rng.uniform(-3, 1.5)),
-    )
+    slope = float(rng.choice([-1, 1])) * math.exp(rng.uniform(math.log(1e-3), math.log(1.2)))
+    theta, rests = rng.uniform(-4, 4), rng.random() < 0.2
+    omega = 0.0 if rests else float(rng.choice([-1, 1])) * 1.5 * math.exp(rng.uniform(-3, 2))
+    friction = math.inf if rng.random() < 0.3 else math.exp(rng.uniform(-3, 1.5))
+    return Scene(a, b, inertia=inertia, slope=slope, theta=theta, omega=omega, friction=friction)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_no_verdict_is_wrong(seed: int) -> None:
-    """In 60 scenes per seed VALID is right, and INVALID names the angle of the scan.
+    """In 60 scenes per seed VALID is right, and INVALID states the angle that the scan finds.
 
     A scan misses violations narrower than the spacing of its angles, 1e-3 rad. They are shallower
     than 1e-5 of the forces: these need 0.01 rad or more to change by their own size.
@@ -197,9 +191,10 @@ def test_extremes_are_stated_only_for_rocking() -> None:
 
 @pytest.mark.parametrize("friction", [0.3, 0.8, math.inf])
 def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
-    """The contact motion stops rolling at the certified angle, and forced rolling is invalid then.
+    """The contact motion stops rolling at the certified angle, and forced rolling becomes invalid
+    at the same time.
 
-    Both follow the same exact motion up to a rounded time, and so to a rounded angle.
+    Both follow the same exact motion up to a rounded time, and therefore to a rounded angle.
     """
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-2.5, friction=friction)
     found = certify(scene)
@@ -213,9 +208,7 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
-def test_a_nearly_round_body_on_a_steep_slope_rolls_until_its_normal_force_vanishes(
-    roundness: float,
-) -> None:
+def test_a_nearly_round_body_on_a_steep_slope_rolls_until_n_vanishes(roundness: float) -> None:
     """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself vanishes, not before."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     ended = 0

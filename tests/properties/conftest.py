@@ -1,6 +1,6 @@
 """Number and choice of the examples for each property.
 
-The suite draws the same few examples of each property every time. To draw new ones:
+Every run of the suite draws the same few examples. To draw new ones:
 
     ROLLING_ELLIPSE_EXAMPLES=5000 pytest tests/properties
 

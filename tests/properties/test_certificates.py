@@ -21,8 +21,8 @@ def rolling_scenes(draw: Any) -> Scene:
 
 @given(st.data())
 def test_more_friction_never_ends_rolling_sooner(data: Any) -> None:
-    """The set of states that the ground holds only grows with mu: valid rolling stays valid, and an
-    end of rolling never comes sooner."""
+    """The set of states in which the ground can hold the body only grows with mu: valid rolling
+    stays valid, and rolling never ends sooner."""
     scene = data.draw(rolling_scenes())
     more = scene.friction * (1 + data.draw(powers(-16, 3))) + data.draw(powers(-16, 1))
     less, better = certify(scene), certify(scene.replace(friction=more))
@@ -45,7 +45,7 @@ def test_the_required_friction_is_just_enough(data: Any) -> None:
     assume(1e-200 < needed < 1e5)  # a millionth of less than 1e-200 may be subnormal
     above = certify(scene.replace(friction=needed * (1 + 1e-6)))
     below = certify(scene.replace(friction=needed * (1 - 1e-6)))
-    # Forces are in proportion to a - b, or are the rest of a nearly cancelled weight: then a
+    # The forces may be proportional to a - b, or remain from a nearly cancelled weight; then a
     # millionth of them is close to rounding.
     pressed = above.smallest_normal_force
     lifts = pressed is not None and pressed < 0.01 * scene.mass * scene.gravity

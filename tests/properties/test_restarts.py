@@ -1,4 +1,4 @@
-"""Any state that a motion returns can be a start, in the mode and with the events that follow.
+"""Any state that a motion returns can start a motion with the same mode and later events.
 
 reference/judge_restarts.py draws the motions, and uses their ends, samples, states after events and
 intermediate scenes as starts. Its first lines state the tolerances.
@@ -40,7 +40,7 @@ def test_a_motion_continues_from_what_it_returns(study: str) -> None:
 
 
 def test_only_scenes_from_scene_at_may_start_with_an_impact() -> None:
-    """The same numbers typed by hand move into the ground."""
+    """A scene built from the same numbers would move into the ground."""
     motion = rl.simulate(rl.scenes.bounce, 5.0, max_events=3, raise_on_failure=False)
     due = motion.scene_at(motion.t_end)
     assert due.initial_state.mode is rl.Mode.FLIGHT

@@ -37,10 +37,6 @@ METHODS: list[dict[str, Any]] = [
 ]
 
 
-def rolls(scene: Scene) -> bool:
-    return scene.initial_state.mode in (Mode.ROLLING, Mode.REST)
-
-
 def mirrored(scene: Scene) -> Scene:
     changes: dict[str, Any] = {
         name: -getattr(scene, name) for name in ("theta", "omega", "x", "slope")
@@ -58,7 +54,8 @@ def mirrored(scene: Scene) -> Scene:
 def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
-    how = data.draw(st.sampled_from(METHODS if rolls(scene) else METHODS[:2]))
+    rolls = scene.initial_state.mode in (Mode.ROLLING, Mode.REST)
+    how = data.draw(st.sampled_from(METHODS if rolls else METHODS[:2]))
     if how.get("method") == "gauss":
         how = {**how, "step": span / 50}
     times = np.linspace(0.0, span, 40)
@@ -80,7 +77,7 @@ def test_the_mirror_image_agrees_bit_for_bit(data: Any) -> None:
 
 @given(st.data())
 def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
-    """Units of length, time and mass change no bits, on a slope, too, and through all events."""
+    """Units of length, time and mass change no bit, on slopes and through all events as well."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     units = (*(data.draw(st.integers(-12, 12)) for _ in range(3)),)
@@ -93,7 +90,7 @@ def test_scaling_units_by_powers_of_two_changes_no_bit(data: Any) -> None:
 
 @given(st.data())
 def test_a_shift_along_the_ground_changes_only_x(data: Any) -> None:
-    """A shift along the ground is only added to x, to the rounding of the sum."""
+    """A shift along the ground is only added to x, to within the rounding of the sum."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     away = data.draw(st.floats(-1e3, 1e3)) * max(scene.a, scene.b)
@@ -108,9 +105,6 @@ def test_a_shift_along_the_ground_changes_only_x(data: Any) -> None:
     size = abs(away) + np.max(np.abs(one.x), initial=0.0)
     subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # smallest length in units of the body
     assert np.all(np.abs(one.x + away - other.x) <= sums * (EPS * size + subnormal))
-
-
-# ------------------------------------------------------------------------------------- energy
 
 
 def blur(scene: Scene, state: InitialState) -> float:
@@ -130,11 +124,11 @@ def surface_speed(scene: Scene, state: InitialState) -> float:
 def test_energy_never_grows_in_contact(data: Any) -> None:
     """Energy never grows through an event or in an arc; the potential energy includes the slope.
 
-    An event rounds each number of its state a few times, and a slip ends within rounding of its
-    initial speeds. An arc is known to within rounding of its largest terms: the energies at both
-    ends and, in a flight, its height between them. Averaged bounces move under their initial
-    forces: the error is the square of their duration, relative to the time in which a body falls,
-    turns by b/a, or a force turns it.
+    An event rounds each number of its state a few times, and a slip ends to within the rounding of
+    its initial speeds. The energy of an arc is known to within the rounding of its largest terms:
+    the energies at both ends and, in a flight, the height between them. Averaged bounces use their
+    initial forces, so their error is the square of their duration over the time in which the body
+    falls, turns by b/a, or is turned by a force.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -160,9 +154,6 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
             allowed += (rate * (each.t - begin)) ** 2 * sizes
         assert lost >= -allowed, (each, lost / allowed)
         before, begin = end, each.t
-
-
-# ------------------------------------------------------------------------------------ backwards
 
 
 def turned_round(at: Sample) -> dict[str, float]:
@@ -207,7 +198,8 @@ def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> N
     known = np.zeros(len(names))
     for share in (0.25, 0.5, 0.75, 1.0):
         at = there.at(share * span)
-        # reversed at a hit, or near it and moved by roundings, it would move into the ground
+        # if reversed at a hit, or so near that roundings move it there, the body would enter the
+        # ground
         gap = at.z - geometry.support(at.theta, a=scene.a, b=scene.b)
         assume(not flying or gap > 1e-9 * length)
         speed = math.sqrt(scene.gravity * length) + abs(at.x_dot) + abs(at.z_dot) + turning
@@ -217,7 +209,7 @@ def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> N
         for name, size in sizes.items():
             errors[name] += ROUNDINGS * EPS * size
         known += spread(way_back(share * span), turned_round(at), errors)
-    assume(known[0] < 1e-3)  # at a tip the ends of the bound may lie lower than the angles between
+    assume(known[0] < 1e-3)  # at a tip the bound may be smaller at its ends than between them
     grain = ROUNDINGS * EPS * max(1.0, abs(scene.theta), abs(at.theta))  # rounding of any angle
     own = grain * speed * np.array([1 / speed, 1 / length, span, span, 1, 1])
     start = np.array([getattr(there, name)[0] for name in names]) * [1, -1, 1, 1, -1, -1]

@@ -1,4 +1,4 @@
-"""Refusals: every wrong call of the package, in one table per module.
+"""Wrong calls of the package, in one table per module.
 
 **A new refusal goes into the table of its module**: a row is the name of the argument with which
 the message must start, and the call; `wrong` makes rows of one call with many wrong values. If no
@@ -21,7 +21,7 @@ Row = tuple[str | type[Exception], Callable[[Path], Any]]
 INF, NAN = math.inf, math.nan
 NOT_FINITE = [INF, -INF, NAN]
 NOT_POSITIVE = [0.0, -0.0, -1.0, *NOT_FINITE]
-# : Wrong values for every argument; `but` removes the values that an argument accepts.
+# : Values that are wrong for most arguments; `but` removes those that an argument accepts.
 ANYTHING: list[Any] = [
     "a", "", b"a", 42, 1.5, -1, NAN, INF, 10**400, 2j, [], [1, 2], {}, object(), len, np.array([]),
     np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,

@@ -18,12 +18,8 @@ AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
 USUAL: dict[str, Any] = {"scene": ROLLING, "t": 1.0}
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 PRINTED: dict[str, Any] = {
-    "q": Q,
-    "q_dot": Q_DOT,
-    **AXES,
-    "equations": "printed",
-    "consistent": "project",
-}
+    "q": Q, "q_dot": Q_DOT, **AXES, "equations": "printed", "consistent": "project",
+}  # fmt: skip
 UNKNOWN: list[Any] = ["", "auto ", "no_such", "rk5", None, 1, ["auto"]]
 PRESS, MANY_BLOWS = Impulse.press(1.0, 0.5), Impulse.press([1.0, 2.0], 0.5)
 

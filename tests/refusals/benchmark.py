@@ -53,7 +53,7 @@ def written(
 
 
 def scored_pipe(folder: Path) -> Any:
-    """A pipe that nobody writes to, on which a reader would wait forever."""
+    """Score a pipe without a writer, for which a reader would wait forever."""
     os.mkfifo(folder / "slide.stick.csv")
     return benchmark.score(folder)
 

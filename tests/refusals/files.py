@@ -38,7 +38,7 @@ def reads(content: bytes) -> Callable[[Path], Any]:
 
 
 def pipe(load: Callable[[Path], Any]) -> Callable[[Path], Any]:
-    """Load a pipe that nobody writes to, on which a reader would wait forever."""
+    """Load a pipe without a writer, for which a reader would wait forever."""
 
     def call(folder: Path) -> Any:
         os.mkfifo(folder / "pipe")
@@ -124,7 +124,7 @@ HEADERS = [
 
 
 def broken(_: Path) -> Any:
-    """The first use of a name whose module does not load."""
+    """Use a name for the first time, whose module does not load."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rl, "_import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]
         return rl.__getattr__("plot")

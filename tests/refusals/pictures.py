@@ -61,7 +61,7 @@ def film_that_fails(folder: Path) -> None:
 
 
 def film_that_is_stopped(folder: Path) -> None:
-    """Interrupt a film by an exception in a frame, which the writer's own failure must not hide."""
+    """Interrupt a film by an exception in a frame; the failure of the writer must not hide it."""
     program = folder / "ffmpeg"
     program.write_text("#!/bin/sh\ncat > /dev/null\nexit 1\n")
     program.chmod(0o755)

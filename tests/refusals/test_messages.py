@@ -1,8 +1,8 @@
-"""Every refusal is provoked, names its argument and shows the value; none is unreachable.
+"""Every refusal can be provoked, names its argument and shows the value.
 
-The sources show that no refusal is missing: every `raise` of the package must be in the traceback
-of some exception, and every text of the core in some message. Refusals that no call can reach are
-listed here, each with its reason.
+No refusal is missing from the tables: every `raise` of the package must be in the traceback of some
+exception, and every text of the core in some message. Refusals that no call can reach are listed
+here with their reasons.
 """
 
 import ast
@@ -34,7 +34,7 @@ REQUIRE = ("require", "_refuse", "_refuse_scenes")
 #: Functions and exceptions of the core whose arguments are texts of a message.
 THROW = re.compile(r"\b(?:refuse|std::(?:invalid_argument|logic_error|runtime_error))\(")
 
-#: Parts of refusals that no call reaches, with the reasons.
+#: Parts of refusals that no call can reach, with the reasons.
 UNREACHABLE: dict[str, str] = {
     "trajectory must have finite samples": "pictures refuse what is too far away before",
     "there is no integrator for the method '": "settings refuse such a method before",
@@ -48,7 +48,7 @@ UNREACHABLE: dict[str, str] = {
 }
 
 
-# : Beginnings of the last part of a message: the value, or its fault.
+# : Beginnings of the last part of a message, which shows the value or its fault.
 ENDS = ("got ", ", but ", ": ", " be given", " without a blow")
 
 
@@ -96,16 +96,13 @@ def is_refusal(name: str | type[Exception], found: Provoked) -> bool:
     if not isinstance(name, str):
         return isinstance(found.error, name)
     said = str(found.error)
-    begins = (
-        said.startswith(name) and not (said + "_")[len(name)].isidentifier() and " must " in said
-    )
+    whole = not (said + "_")[len(name)].isidentifier()  # not only the start of a longer name
+    begins = said.startswith(name) and whole and " must " in said
     ends = any(end in said for end in ENDS) and len(said) < 1000
     return begins and ends and isinstance(found.error, ValueError | TypeError)
 
 
-def test_each_invalid_call_is_rejected_with_the_name_of_the_argument(
-    all_provoked: list[Provoked],
-) -> None:
+def test_each_invalid_call_is_rejected_by_name(all_provoked: list[Provoked]) -> None:
     wrong = [
         f"{name}: {found.error!r}"
         for (name, _), found in zip(TABLE, all_provoked, strict=True)

@@ -1,4 +1,5 @@
-"""Rules for all numerical arguments: other values are refused by name, without a warning."""
+"""All numerical arguments obey the same rules and refuse other values by name, without a
+warning."""
 
 from collections import deque
 from collections.abc import Callable
@@ -99,9 +100,7 @@ def refused(error: type[Exception], name: str, requirement: str, door: Door, val
     with pytest.raises(error) as caught:
         door(value)
     said = str(caught.value)
-    assert said.startswith(f"{name} must be {requirement}") or (
-        said.startswith(f"{name} must have {requirement}")
-    ), said
+    assert said.startswith(tuple(f"{name} must {verb} {requirement}" for verb in ("be", "have")))
     assert "got " in said and len(said) < 500
 
 
@@ -212,11 +211,9 @@ def test_numbers_of_every_type_are_converted_to_doubles() -> None:
     ],
     ids=lambda value: f"{check.shown(value):.20}",
 )  # fmt: skip
-def test_conversion_in_pieces_equals_conversion_at_once(
-    value: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Pieces of 16 numbers give the result of pieces of 131072. No call of NumPy takes more than a
-    piece of a list, so that Ctrl-C works in between."""
+def test_conversion_in_pieces_equals_conversion_at_once(value: Any, monkeypatch: Any) -> None:
+    """Pieces of 16 numbers give the same result as pieces of 131072. No call of NumPy converts more
+    than one piece of a list, so that Ctrl-C works in between."""
 
     def found() -> Any:
         try:

@@ -1,4 +1,4 @@
-"""The corrected equations from any start: refused, projected or taken as given."""
+"""The corrected equations refuse, project or accept an inconsistent start."""
 
 from typing import Any
 
@@ -95,10 +95,9 @@ def test_corrected_projects_to_the_nearest_state() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("which", [3, 4])
 @pytest.mark.parametrize("off", [1.0, 1e10, -1e20, 1e50])
-def test_errors_in_psi_and_r_do_not_move_a_projected_body(
-    stabilization: str, which: int, off: float
-) -> None:
-    """psi and r have no mass and do not enter a circle's equations of motion: it rolls on."""
+def test_errors_in_psi_and_r_do_not_move_a_body(stabilization: str, which: int, off: float) -> None:
+    """psi and r have no mass and do not enter the equations of motion of a circle, which rolls
+    on."""
     q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
     given = np.where(np.arange(5) == which, q + off, q)
     motion = as_given(given, q_dot, [0.01, 0.02], a=1.5, b=1.5, stabilization=stabilization)
@@ -108,10 +107,9 @@ def test_errors_in_psi_and_r_do_not_move_a_projected_body(
 
 
 def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
+    how, times = {"consistent": "as_given", "stabilization": "none"}, np.linspace(0, 2, 21)
     with pytest.warns(report.InconsistentStartWarning) as caught:
-        motion = corrected(
-            OWN_Q, OWN_RATES, np.linspace(0, 2, 21), consistent="as_given", stabilization="none"
-        )
+        motion = corrected(OWN_Q, OWN_RATES, times, **how)
     (said,) = caught
     assert str(said.message) == f"the start violates constraints: {OWN_VIOLATIONS}"
     assert said.filename == __file__
@@ -125,7 +123,8 @@ def test_corrected_runs_the_reports_own_start_as_given_with_a_warning() -> None:
 
 
 def test_a_motion_that_starts_off_the_constraints_is_never_valid() -> None:
-    """This holds even at 1e-6 m/s off the ground, with forces that the ground can give."""
+    """This holds even for a speed of 1e-6 m/s off the ground, with forces that the ground can
+    exert."""
     motion = lifted(0.5)
     assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
     assert motion.message == "the start violates the constraints, as no body on the ground does"
@@ -191,9 +190,8 @@ def test_corrected_has_its_own_defaults() -> None:
 
 def test_corrected_raises_where_it_stops() -> None:
     times = np.linspace(0, 1, 11)
-    with pytest.raises(
-        rl.IntegrationError, match=r"^max_steps = 4 was reached at t = 0\.1"
-    ) as caught:
+    said = r"^max_steps = 4 was reached at t = 0\.1"
+    with pytest.raises(rl.IntegrationError, match=said) as caught:
         corrected(Q, Q_DOT, times, max_steps=4)
     there = caught.value.trajectory
     assert there.status is rl.Status.MAX_STEPS and there.stats["steps"] == 4

@@ -1,6 +1,6 @@
-"""The errata of the report: two numbers for each row, then the equations one by one.
+"""The errata of the report: two numbers for each row, then each equation.
 
-The right numbers are compared with closed forms written out again here, from h and its derivatives
+The right numbers agree with closed forms, written here from h and its derivatives
 (oracles/geometry.py), with psi and r by r cos(psi - theta) = h and r sin(psi - theta) = h'.
 """
 
@@ -75,7 +75,8 @@ def numbers(where: str) -> report.Comparison:
 
 
 def close(value: float) -> Any:
-    """A value within 100 ulp: some ten operations in either form, none of which cancels tenfold."""
+    """A value within 100 ulp: some ten operations in either form, none with a tenfold
+    cancellation."""
     return pytest.approx(value, rel=100 * EPS, abs=0)
 
 
@@ -97,8 +98,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     ),
     # an exponent is missing
     "eq 32, df3": lambda at: (
-        2 * at.polar * at.r_dot - 6 * math.sin(at.psi) ** 2 * at.psi_dot,
-        0,
+        2 * at.polar * at.r_dot - 6 * math.sin(at.psi) ** 2 * at.psi_dot, 0,
         2 * at.polar**1.5 * at.r_dot,
     ),
     # a sign is wrong
@@ -110,9 +110,7 @@ ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
     # the printed row is no derivative of eq 10
     "eq 38, f1 and f2": lambda at: (
         at.slope * at.omega - at.r_dot * math.sin(at.psi - ANGLE) - at.psi_dot * at.slope
-        + at.omega * at.h,
-        0,
-        at.h * at.omega,
+        + at.omega * at.h, 0, at.h * at.omega,
     ),
     # gravity has the wrong sign
     "eq 39, λ2": lambda at: (10 * at.normal - 2 * 98.1, 10 * at.normal, 0),
@@ -160,7 +158,7 @@ def test_overflowing_rates_are_infinite() -> None:
 
 
 def test_a_frozen_f1_lets_the_body_spin_on_the_spot() -> None:
-    """With f1 = 0 the body spins on the spot: x + h' stays constant while theta grows."""
+    """With f1 = 0 the contact x + h' stays in place while theta grows."""
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
     motion = report.simulate(q, rates, 0.5, equations="printed", printed=("f1",), **SHAPE)
@@ -303,7 +301,7 @@ def test_back_substitution_does_not_detect_the_misprints() -> None:
 
 
 def test_back_substitution_detects_a_changed_solution() -> None:
-    """Back substitution detects a solution that was changed."""
+    """An error of 1e-3 in a multiplier appears as an error of 1e-3."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
     assert isinstance(motion, report.PrintedMotion)
@@ -390,7 +388,8 @@ def test_multipliers_equal_those_of_the_package() -> None:
 
 
 def test_the_right_rows_are_the_gradients_of_f1_to_f4() -> None:
-    """Rows times rates equal scaled `constraints`, at any state, even off the constraints."""
+    """The product of rows and rates equals scaled `constraints` for any state, even off the
+    constraints."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
     velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity

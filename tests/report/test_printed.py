@@ -1,4 +1,4 @@
-"""The equations as printed: their motion, their consistent starts, their refusals."""
+"""The equations as printed: motions, consistent starts and refusals."""
 
 from functools import partial
 from typing import Any
@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 from oracles.margins import told
 from oracles.report import BODY, Q_DOT, SHAPE, Q, start
 from rolling_ellipse import report
-
-# ----------------------------------------------------------------------------------- the simulation
 
 GAPS = [  # rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot = 2 rad/s [m]
     (("f1", "df2"), -0.305),
@@ -31,15 +29,12 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
-def test_wrong_equations_lift_the_body_off_the_ground(
-    printed: tuple[str, ...], gap: float, mass: float
-) -> None:
-    """Cause (a) is wrong equations, from their own consistent start, at any tolerance."""
+def test_wrong_equations_lift_the_body(printed: tuple[str, ...], gap: float, mass: float) -> None:
+    """Cause (a): the equations are wrong. This happens from their own consistent start, at any
+    tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
-    loose, tight = (
-        run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
-        for rtol in (1e-8, 1e-11)
-    )
+    how: dict[str, Any] = {"printed": printed, "mass": mass}
+    loose, tight = (run(q, q_dot, [0.25], rtol=r, atol=r, **how) for r in (1e-8, 1e-11))
     told(printed, tight.gap)
     assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # the gap is given with three decimals
     assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
@@ -63,7 +58,8 @@ def test_the_right_rows_give_the_exact_motion() -> None:
 
 
 def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
-    """Cause (b) is the start: with z_dot off by one, right equations give f2 = t, f2'' = 0."""
+    """Cause (b): the start is inconsistent. With z_dot off by one, the right equations give f2 = t
+    and f2'' = 0."""
     q, q_dot = start(0.2, 2.0)
     q_dot[1] += 1.0
     times = np.linspace(0, 1, 11)
@@ -77,22 +73,21 @@ def test_an_inconsistent_start_lifts_the_body_off_the_ground() -> None:
 
 
 def test_large_steps_lift_the_body_off_the_ground() -> None:
-    """Cause (c) is the step: large RK4 steps give 0.84 m and +40 % energy after 60 s."""
+    """Cause (c): the steps are too large. RK4 steps of 0.02 s give 0.84 m and 40 % more energy
+    after 60 s."""
     q, q_dot = start(0.0, 3.2)
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
     assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)
     assert coarse.energy[1] / coarse.energy[0] - 1 == pytest.approx(0.40, abs=5e-3)
     # smaller steps reduce the error, unlike causes (a) and (b): order 4
-    errors = [
-        abs(run(q, q_dot, [0, 6], printed=(), method="rk4", step=step).gap[1])
-        for step in (0.02, 0.01, 0.005)
-    ]
+    runs = (run(q, q_dot, [0, 6], printed=(), method="rk4", step=h) for h in (0.02, 0.01, 0.005))
+    errors = [abs(each.gap[1]) for each in runs]
     assert errors[0] > 4 * errors[1] > 16 * errors[2] > 0
     assert errors[2] < 1e-4
 
 
 def test_samples_do_not_change_the_steps() -> None:
-    """Samples do not change the steps; between steps the pair has dense output of order 4."""
+    """Between steps the samples come from dense output of order 4."""
     q, q_dot = start(0.2, 2.0)
     few = run(q, q_dot, [0.5, 1.0], printed=())
     many = run(q, q_dot, np.linspace(0, 1, 101), printed=())
@@ -122,9 +117,6 @@ def test_a_printed_motion_stops_at_max_steps() -> None:
     q, q_dot = start(0.2, 2.0)
     motion = run(q, q_dot, [0.0, 1.0], printed=(), max_steps=3)
     assert motion.t.tolist() == [0.0] and motion.message.startswith("max_steps reached at 0.")
-
-
-# ---------------------------------------------------------------------------------------- the start
 
 
 @pytest.mark.parametrize("shape", [(2.0, 1.0), (1.0, 1.0), (1.0 + 1e-8, 1.0), (0.7, 1.9)])
@@ -168,7 +160,7 @@ def test_the_repr_of_a_motion_states_its_equations() -> None:
 
 
 def test_leading_axes_of_states_broadcast_or_are_rejected() -> None:
-    """Leading axes of states broadcast, or the error names all shapes."""
+    """The error names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
     of_body = (report.eq_39, report.eq_40, report.eq_41, report.eq_42, report.lambda4_numerator,
                report.multipliers, report.complete_f)  # fmt: skip

@@ -52,9 +52,6 @@ def period_unit(motion: Motion) -> float:
     return float(total) + 2 * math.ulp(float(exact_period(motion, 12)))
 
 
-# ---------------------------------------------------------------------------------- the period
-
-
 @each_motion
 def test_the_oracle_is_accurate_to_thirty_digits(motion: Motion) -> None:
     """Two rules of different order agree, and the coarser one errs far more than the finer one."""
@@ -73,25 +70,25 @@ def test_the_period_agrees_with_the_energy_integral(motion: Motion) -> None:
 
 
 def test_the_period_test_detects_a_speed_off_by_16_ulp() -> None:
-    """A change of the speed by 16 ulp is detected: the bound is tight."""
+    """The bound is therefore tight."""
     motion = MOTIONS["rotation"]
     changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
     off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
     assert off > LARGEST_ERROR
 
 
-def test_the_period_is_infinite_at_rest_and_one_full_turn_for_a_circle() -> None:
+def test_the_period_is_infinite_at_rest_and_on_the_separatrix() -> None:
     assert period(Scene(2.0, 1.0)) == math.inf
     assert period(Scene(2.0, 1.0, theta=math.pi / 2)) == math.inf
+    for speed in separatrix_speeds(2.0, 1.0, 0.0):
+        assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
     assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
-
-
-# ---------------------------------------------------------------------------------- short moves
 
 
 @each_motion
 def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: Motion) -> None:
-    """The state comes from a power series, or from a move without or with a quarter turn."""
+    """The package computes these states by a power series, or by a move with or without a quarter
+    turn."""
     scene, half = reference.Scene(*motion), float(exact_period(motion, 12)) / 2
     exact, changes = reference.motion(scene, rule(28)), reference.sensitivities(scene, rule(12))
     worst = 0.0
@@ -103,9 +100,6 @@ def test_a_fraction_of_a_half_turn_is_accurate_to_a_few_rounding_units(motion: M
         worst = max(worst, *(float(abs(value - known)) / unit for value, known, unit in found))
     told(f"{worst:.3g} units")
     assert worst <= LARGEST_ERROR
-
-
-# ------------------------------------------------------------------------- circle and nearly so
 
 
 @pytest.mark.parametrize("radius", [1.0, 0.37, 1e-3, 250.0])
@@ -126,8 +120,8 @@ def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
     ("theta", "omega"), [(0.3, 2.0), (0.3, -1e-3), (1.0, 1e-6), (0.2, 0.0), (1.5, 0.0)]
 )
 def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> None:
-    """The unit contains no roundings of a and b, which alone would change the slow motions by 1e-8:
-    a - b = 1e-8 is an exact difference of the given numbers."""
+    """The unit leaves out roundings of a and b, which alone would change slow motions by 1e-8: the
+    difference a - b = 1e-8 of the given numbers is exact."""
     a, b = 1.0 + 1e-8, 1.0
     scene = reference.Scene(a, b, (a * a + b * b) / 4, 9.81, theta, omega)
     exactly = reference.motion(scene, rule(28))
@@ -142,14 +136,12 @@ def test_a_nearly_round_body_loses_no_accuracy(theta: float, omega: float) -> No
         assert max(off) <= LARGEST_ERROR
 
 
-# --------------------------------------------------------------------------- rest and separatrix
-
-
 @pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9), (1.0, 1e-3)])
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
 def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], quarter: int) -> None:
-    """Rest lasts forever where the double next to the quarter turn is an equilibrium: |h'| within 8
-    ulp of h. At pi or 5 pi/2 it may not be: the body then rocks by the rounding of the angle."""
+    """The body stays at rest if the double next to the quarter turn is an equilibrium: |h'| is
+    within 8 ulp of h. The doubles next to pi or 5 pi/2 may not be; then the body rocks by the
+    rounding of the angle."""
     theta = quarter * math.pi / 2
     a, b = shape
     slope = geometry.support_slope(theta, a=a, b=b)
@@ -165,9 +157,9 @@ def test_a_body_at_rest_stays_flat_or_on_its_tip(shape: tuple[float, float], qua
 
 @pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
 def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None:
-    """h' is below a rounding of h, but the angle resolves the distance to the tip: omega is
-    distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to the square of
-    the distance and the roundings of the angle and of the exponent."""
+    """h' is smaller than a rounding of h, but the angle resolves the distance from the tip. omega
+    is distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to the square
+    of the distance and the roundings of the angle and of the exponent."""
     a, b, beside = 1.0 + rounder, 1.0, 2.0**-30
     with mp.workdps(40):
         off = mp.mpf(math.pi / 2 + beside) - mp.pi / 2
@@ -180,8 +172,8 @@ def test_a_nearly_round_body_released_near_its_tip_falls(rounder: float) -> None
 
 
 def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
-    """Doubles near the roll-over speed for which the package's energy equals that of the tip: these
-    motions neither return nor pass in a million seconds (the next ones take 50 s)."""
+    """Doubles near the roll-over speed whose energy equals that of the tip in the package: these
+    motions neither return nor pass the tip in a million seconds (their neighbours take 50 s)."""
     speed = thresholds(a, b).roll_over_speed
     around = [speed + k * math.ulp(speed) for k in range(-6, 7)]
     resting = math.pi / 2 if a > b else math.pi
@@ -208,9 +200,3 @@ def test_a_motion_on_the_separatrix_creeps_to_the_tip_and_never_passes(direction
         rates = np.diff(np.log(math.pi / 2 - theta[near])) / np.diff(times[near])
         rate = thresholds(2.0, 1.0).tip_rate
         assert np.median(rates) == pytest.approx(-rate, rel=1e-4)
-
-
-def test_the_period_on_the_separatrix_is_infinite() -> None:
-    """A motion that never returns has an infinite period."""
-    for speed in separatrix_speeds(2.0, 1.0, 0.0):
-        assert period(Scene(2.0, 1.0, omega=speed)) == math.inf

@@ -92,7 +92,7 @@ def errors(
 def test_flow_is_accurate_to_a_few_rounding_units(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float
 ) -> None:
-    """flow errs by a few units; x of many times has the rounding of a length like the body's."""
+    """x at many times may also have the rounding of a length like the body's."""
     found = errors(rows, call, rounding)
     worst = max(range(len(rows)), key=lambda i: np.nan_to_num(found[i], nan=math.inf).max())
     told(f"median {np.median(found, axis=0)}, worst {found[worst]} units, of {rows[worst]}")
@@ -101,10 +101,10 @@ def test_flow_is_accurate_to_a_few_rounding_units(
 
 @pytest.mark.parametrize("name", INPUTS)
 def test_changing_an_input_by_a_few_ulp_is_detected(rows: list[Row], name: str) -> None:
-    """A change of any single input by 16 ulp is detected: the check is sharp.
+    """The check detects a change of any single input by 16 ulp.
 
-    k^2 changes the motion least, by a fifth of a unit at best: 48 ulp are needed. Far start angles
-    are left out: their ulp is not a small change.
+    k^2 changes the motion least, by at most a fifth of a unit per ulp, so it needs 48 ulp. Distant
+    start angles are left out, because their ulp is not a small change.
     """
     ulps = 48 if name == "gyration2" else 16
 

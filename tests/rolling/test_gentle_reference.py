@@ -1,8 +1,8 @@
 """Gentle slopes and slowly passed tips against 40 digits (reference/make_gentle_reference.py).
 
-The slopes range from 1e-18 to 1e-3; starts are on and near a tip, which is just passed or not.
-Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and of 2.2e-16
-rad of theta0, plus two ulp of the number itself.
+The slopes range from 1e-18 to 1e-3. Motions start on or near a tip, or only just pass a tip, or
+just fail to. Every number has a unit: the effect of a relative change of 2.2e-16 of each input, and
+of 2.2e-16 rad of theta0, plus two ulp of the number itself.
 """
 
 from typing import Any
@@ -61,8 +61,8 @@ def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
     """The bound is four units, for one time and for the last of many.
 
     W near a tip has the rounding of W where the motion started, of the size of a rounded input;
-    some roundings of the time and of each answer add to it. The largest error was 1.6. With W
-    counted from the start alone, by sin^2, 31 cases exceeded this, by up to 5e5 units.
+    some roundings of the time and of each answer add to it. The largest error was 1.6. When W was
+    counted from the start alone, by sin^2, 31 cases exceeded the bound, by up to 5e5 units.
     """
     start, t = start_of(row), float(row["t"])
     alone = rl.flow(t, **start)
@@ -72,7 +72,7 @@ def test_the_flow_is_accurate_to_a_few_rounding_units(row: Row) -> None:
 
 
 def test_the_flow_of_many_bodies_equals_single_flows() -> None:
-    """Past times equal those of the reversed start; mirror images have opposite signs."""
+    """Past times give the states of the reversed start; mirror images have opposite signs."""
     starts = [start_of(row) for row in ROWS]
     columns = {name: np.array([start[name] for start in starts]) for name in starts[0]}
     t = np.array([float(row["t"]) for row in ROWS])
@@ -109,7 +109,7 @@ def rounding_of_forces(scene: rl.Scene, theta: float, omega: float) -> Any:
 
 @each_row
 def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
-    """The bound is four units; the forces belong to the rounded angle of the sample.
+    """The bound is four units; the forces are those at the rounded angle of the sample.
 
     The largest error was 3.2, where the terms of N of a thin body nearly cancel.
     """
@@ -123,7 +123,7 @@ def test_forces_are_accurate_to_a_few_rounding_units(row: Row) -> None:
 
 @each_row
 def test_rolling_ends_where_the_table_requires_all_available_friction(row: Row) -> None:
-    """With friction |F|/N at t rolling ends at t, or earlier at a place that needs as much.
+    """If the friction is |F|/N at t, rolling ends at t or earlier, where it needs as much.
 
     The end errs by four units of the margin mu N - |F| over its rate, and two ulp of the time.
     """

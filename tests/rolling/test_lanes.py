@@ -56,9 +56,7 @@ def same(found: np.ndarray, expected: np.ndarray) -> bool:
     [(10.0, 10.0), (1e3, 10.0), (10.0, 1e6), (1.0001, 100.0), (1e3, 0.3)],
     ids=["few", "thin", "long", "round", "short"],
 )
-def test_a_scene_gives_the_same_bits_in_a_batch_as_alone(
-    level: str, ratio: float, half_turns: float
-) -> None:
+def test_a_scene_has_the_same_bits_in_a_batch(level: str, ratio: float, half_turns: float) -> None:
     """The bits agree for any number of workers."""
     motions = scenes(2000, 1, ratio=ratio, half_turns=half_turns)
     alone = states(ONE_BY_ONE, motions)
@@ -68,7 +66,7 @@ def test_a_scene_gives_the_same_bits_in_a_batch_as_alone(
 
 @each_level
 def test_neighbouring_scenes_change_no_bit_of_a_result(level: str) -> None:
-    """The bits agree in any order of scenes, and with any part of the lanes filled."""
+    """The order of the scenes and the number of filled lanes do not matter."""
     motions = scenes(3000, 3, ratio=1e3, half_turns=1e3)
     found = states(level, motions)
     order = np.random.default_rng(3).permutation(3000)
@@ -110,7 +108,7 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
     "from beside 45 degrees past the flat": lambda: {
         "b": 0.02, "theta": -0.79, "omega": 3.0, "t": np.linspace(0.15, 0.35, 41),
     },
-    # the rounding of the time since the flat position changes omega more than the motion does
+    # rounding the time since the flat position changes omega more than the motion does
     "thin, beside the flat, soon after": lambda: {
         "a": 1.0, "b": 2.86e-3, "gyration2": 7.73e-6, "theta": -1.776e-4, "omega": 3.68,
         "t": np.geomspace(1e-9, 1e-6, 61),
@@ -123,9 +121,7 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
 
 @each_level
 @pytest.mark.parametrize("case", EXTREMES)
-def test_extreme_scenes_give_the_same_finite_results_in_lanes_as_one_by_one(
-    level: str, case: str
-) -> None:
+def test_extreme_scenes_have_the_same_finite_results_in_lanes(level: str, case: str) -> None:
     ordinary: Columns = {
         "a": 2.0, "b": 1.0, "gyration2": 1.25, "gravity": 9.81, "theta": 0.0, "omega": 0.0,
     }  # fmt: skip
@@ -146,10 +142,8 @@ WRONG = {
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("name", WRONG)
-def test_an_invalid_value_is_reported_by_name_and_index(
-    level: str, workers: int, name: str
-) -> None:
-    """The first wrong number is named, even if later chunks or later steps contain more of them."""
+def test_an_invalid_value_is_reported_by_its_index(level: str, workers: int, name: str) -> None:
+    """The message names the first wrong number, even if later chunks or steps contain more."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
     motions[name][[700, 2900]] = WRONG[name]
     motions["t"][[705, 2901]] = 1e30

@@ -1,7 +1,7 @@
-"""`flow` at many times of one motion: answers from a table, for any order and number of times.
+"""`flow` at many times of one motion uses a table; neither order nor number of times matters.
 
-The bits may depend only on whether there are enough times for a table (40): the result of
-test_flow_reference.py for 151 times in 40 digits then holds for any number of them.
+The bits depend only on whether there are enough times for a table (40). So the comparison of 151
+times with 40 digits in test_flow_reference.py holds for any number of times.
 """
 
 import math
@@ -30,7 +30,7 @@ each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 
 
 def swing(motion: tuple[float, ...]) -> float:
-    """Approximate time of a half turn or swing: from the speed, or from a rocking plate's."""
+    """Approximate time of a half turn or swing, from the speed or from small rocking."""
     a, b, gyration2, gravity, _, omega = motion
     low, high = min(a, b), max(a, b)
     rocking = math.sqrt(gravity * (high**2 - low**2) / (low * (gyration2 + low**2)))
@@ -65,7 +65,8 @@ def test_results_depend_only_on_the_time_bit_for_bit(motion: tuple[float, ...]) 
 
 @each_motion
 def test_results_at_many_times_agree_with_those_at_single_times(motion: tuple[float, ...]) -> None:
-    """Both answers may err by the bound; x has the rounding of a length like the body's."""
+    """Each answer may err by the bound; x may also have the rounding of a length like the
+    body's."""
     start = arguments(motion)
     times = times_of(motion)
     found = np.array(flow(times, **start))[:, ::137]
@@ -81,7 +82,7 @@ def test_results_at_many_times_agree_with_those_at_single_times(motion: tuple[fl
 
 @pytest.mark.parametrize("count", [0, 1, 2, 39, 40, 41, 1023, 1025])
 def test_any_number_of_times_gives_correct_results(count: int) -> None:
-    """Counts around the 40 times that start a table and the 1024 times of a chunk are correct."""
+    """The counts are near 40, where a table starts, and near the 1024 times of a chunk."""
     start = arguments(MOTIONS["rotation"])
     times = np.linspace(0.0, 3.0, count)
     found = flow(times, **start)
@@ -102,7 +103,7 @@ def test_an_invalid_time_is_named_by_its_index(place: int, bad: float) -> None:
 
 
 def test_flow_needs_little_more_memory_than_its_result() -> None:
-    """A million times are not copied, and any table takes less than a tenth of the answer."""
+    """The million times are not copied, and the table takes less than a tenth of the answer."""
     times, start = np.linspace(0.0, 100.0, 1_000_000), arguments(MOTIONS["rotation"])
     tracemalloc.start()
     try:

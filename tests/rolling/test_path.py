@@ -1,7 +1,7 @@
-"""The path of the centre in motions that start nearly at rest near the tip, and in steps.
+"""The path of the centre, in motions from near the tip and in stepped motions.
 
-The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
-alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.
+The centre of a rolling body moves by the integral of h dtheta, so x follows from the two angles
+alone. Legendre's elliptic integral gives it in 30 digits.
 """
 
 import math
@@ -35,7 +35,7 @@ def path(theta: float, a: float, b: float) -> mp.mpf:
 
 
 def excess(start: Start, t: float, state: State) -> float:
-    """Error of x, in units of the effect of roundings of theta and time plus four ulp of x."""
+    """Error of x. The unit is the effect of roundings of theta and time, plus four ulp of x."""
     a, b, theta0, _ = start
     theta, omega, x = state
     with mp.workdps(30):
@@ -115,7 +115,7 @@ SCENES = {
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize("method", ["dop853", "dopri5"])
-def test_x_agrees_with_the_centre_path_at_the_angle_in_stepped_motions(
+def test_x_of_stepped_motions_agrees_with_the_path(
     scene: Scene, method: Literal["dop853", "dopri5"]
 ) -> None:
     """x errs by a few roundings of the path, whose reference points are up to half a radian away,

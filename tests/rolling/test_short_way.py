@@ -1,4 +1,4 @@
-"""`flow` of plain floats: a shortcut through C++, indistinguishable from the Python function."""
+"""`flow` of plain floats takes a shortcut through C++ that acts like the Python function."""
 
 import copy
 import inspect
@@ -114,12 +114,9 @@ def test_attributes_and_signature_are_those_of_the_function() -> None:
     assert inspect.isfunction(rl.flow) and inspect.isroutine(rl.flow) and callable(rl.flow)
     for name in ("__name__", "__qualname__", "__module__", "__code__", "__kwdefaults__"):
         assert getattr(rl.flow, name) == getattr(LONG, name)
-    assert list(inspect.signature(rl.flow).parameters) == [
-        "t",
-        *START,
-        *(LONG.__kwdefaults__ or ()),
-    ]
-    assert inspect.signature(rl.flow).parameters["t"].annotation == "ArrayLike"
+    parameters = inspect.signature(rl.flow).parameters
+    assert list(parameters) == ["t", *START, *(LONG.__kwdefaults__ or ())]
+    assert parameters["t"].annotation == "ArrayLike"
     assert "def flow(" in inspect.getsource(rl.flow)
     help_text = pydoc.plain(pydoc.render_doc(rl.flow))
     assert "function flow" in help_text and "omega: 'Any'" in help_text

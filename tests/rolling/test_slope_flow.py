@@ -1,7 +1,7 @@
 """Exact rolling on slopes beyond the table: many half turns, long climbs, wells, circles, edges.
 
-The references share no formula with the package: mpmath's Hurwitz zeta function and its quadrature
-of the energy integral, which never goes through half turns one by one.
+The references share no formula with the package. They use mpmath's Hurwitz zeta function and its
+quadrature of the energy integral, without adding up half turns.
 """
 
 import math
@@ -78,7 +78,8 @@ MANY = product(list(DOWNHILL)[:3], (40, 1000, 10**6, 10**9))
 
 @pytest.mark.parametrize("name, half_turns", [*MANY, ("from its tip", 1000)])
 def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_turns: int) -> None:
-    """After n half turns the body stands as at the start, and its W has grown by n w.
+    """After n half turns the body has the same orientation as at the start, and its W has grown by
+    n w.
 
     The time of the simulation is rounded by half an ulp, and the quadrature has a few roundings, as
     if the inputs were changed by 8 roundings (3 at most were observed).
@@ -110,7 +111,7 @@ def test_a_body_stays_accurate_over_many_half_turns_downhill(name: str, half_tur
 @pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
 @pytest.mark.parametrize("ratio", [0.9, 0.3, 1e-2])
 def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) -> None:
-    """A motion mirrored in time is the same motion, uphill and back, from any of its states.
+    """Reversing a motion in time at any of its states retraces it, uphill and back.
 
     The reversed state at t reaches the reversed start after another t, by three methods: the sum
     uphill, the series over the top, the sum downhill. A rounding of the state in between changes
@@ -130,7 +131,8 @@ def test_a_climb_reversed_in_time_retraces_itself(slope: float, ratio: float) ->
 
 
 def test_a_body_returns_to_its_start_after_twice_the_time_to_its_turning_point() -> None:
-    """The mirror image of the way up ends there; neighbouring doubles lie in either stretch."""
+    """The mirror image of the climb ends at this time; neighbouring doubles belong to either
+    stretch."""
     for omega in np.linspace(-6.0, -1.0, 41):
         scene = rl.Scene(1.0, 0.7, slope=0.3, omega=omega)
         back = 2 * rolled(scene, [0.0, 30.0]).when(omega=0.0)[0]
@@ -186,8 +188,8 @@ def test_no_circle_rests_on_a_slope(slope: float) -> None:
 def assert_keeps_energy(found: rl.Trajectory) -> None:
     """Assert that E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) is constant, for b = 1.
 
-    Each term has a few roundings, 16 in all; roundings of x and theta change h by their size over
-    the radius of the tip, 1/ratio times the length of a thin body, and squared as h''.
+    Each term has a few roundings, 16 in all. Roundings of x and theta change h in proportion to the
+    curvature of the tip, which is 1/ratio over the length of a thin body and enters h'' squared.
     """
     axes = {"a": found.scene.a, "b": 1.0}
     size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)
@@ -210,10 +212,8 @@ def test_all_shapes_conserve_energy(ratio: float, slope: float) -> None:
 @pytest.mark.parametrize("ratio", [0.1, 1 - 1e-9, 2.0])
 @pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
 @pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
-def test_a_climbing_body_conserves_energy_up_to_its_highest_point(
-    ratio: float, slope: float, half_turns: float
-) -> None:
-    """The energy is constant up and down a climb: half turns near the top take longest."""
+def test_a_climb_conserves_energy(ratio: float, slope: float, half_turns: float) -> None:
+    """The energy is constant uphill and downhill; half turns near the top take longest."""
     height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
     speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
     scene = rl.Scene(ratio, 1.0, slope=slope, omega=-math.copysign(speed, slope))
@@ -227,7 +227,8 @@ def test_a_climbing_body_conserves_energy_up_to_its_highest_point(
 @pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last start climbs some 2000 half turns
 @pytest.mark.parametrize("begin, end", [(0.0, 40.0), (20.0, 20.5), (1000.0, 9e4)])
 def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: float) -> None:
-    """A time has the same bits alone and among others before and after it, in one half turn too."""
+    """A sample has the same bits alone and among others before and after it, also within one half
+    turn."""
     scene = rl.Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=omega)
     times = np.linspace(begin, end, 200)[1:]
     motion = rolled(scene, times)
@@ -270,21 +271,14 @@ def test_a_nearly_round_body_is_not_driven_by_rounding() -> None:
 @pytest.mark.parametrize(
     "scene",
     [
-        rl.Scene(
-            1.0 + EPS,
-            1.0 - EPS / 2,
-            theta=math.pi / 2,
-            omega=2.6e-10,
-            friction=1.0,
-            gravity=1.0,
-            slope=5e-324,
-        ),
+        rl.Scene(1.0 + EPS, 1.0 - EPS / 2, theta=math.pi / 2, omega=2.6e-10, friction=1.0,
+                 gravity=1.0, slope=5e-324),
         rl.Scene(1e21, 1e21 * (1 + EPS), omega=-9.9e-31, friction=0.053, slope=5e-324),
     ],
     ids=["tall", "flat"],
-)
+)  # fmt: skip
 def test_a_nearly_round_body_can_be_certified(scene: rl.Scene) -> None:
-    """Only roundings of the height drive the body. Its motion is still a single piece, and omega
+    """Only roundings of the height drive the body. Its motion is still a single stretch, and omega
     changes by no more than gravity and the height differences allow."""
     t = 0.1 / abs(scene.omega)
     motion = rl.simulate(scene, t, model="rolling")
@@ -321,8 +315,9 @@ def drawn_on_slopes(rng: np.random.Generator, n: int) -> dict[str, Any]:
 
 
 def test_the_flow_up_and_down_slopes_agrees_with_power_series() -> None:
-    """A run or climb is computed from its energy alone; the power series solve the equation of
-    motion. They agree to within the effect of a rounding of each argument and two of the state."""
+    """The package computes runs and climbs from the energy alone; the power series solve the
+    equation of motion. Both agree to within the effect of a rounding of each argument plus two of
+    the state."""
     asked = drawn_on_slopes(np.random.default_rng(0), 300)
     t = np.minimum(10 ** np.random.default_rng(1).uniform(-3, 1, 300), 6 / np.abs(asked["omega"]))
     found = np.stack(rl.flow(t, **asked))

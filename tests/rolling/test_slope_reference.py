@@ -70,14 +70,11 @@ MOTIONS = read_table()
 each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one in MOTIONS])
 
 
-# ------------------------------------------------------------------------ errors in units
-
-
 def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     """Errors in units (3, 5) of a scene that is forced to roll.
 
-    x is a path minus the path before the start. So it also has the error of theta, times h, even
-    shortly after a start at rest, where the inputs hardly matter to x.
+    x is a path minus the path before the start. Therefore x also has the error of theta times h,
+    even soon after a start at rest, where the inputs hardly affect x.
     """
     with warnings.catch_warnings():
         # N may become negative during the motion
@@ -110,22 +107,19 @@ def reach_of_series(motion: Motion) -> float:
     return min(1.0, math.sqrt(distance2)) / fastest
 
 
-# ----------------------------------------------------------------------------- the methods
-
-
 @each_motion
 def test_exact_is_accurate_to_a_few_rounding_errors(motion: Motion) -> None:
     """theta, omega and x err by at most four units; the forces follow from theta and omega.
 
-    A state is some hundred series, each with its own rounding, and the energy keeps the angular
-    velocity accurate; the sum over half turns has a few roundings of its time. The errors were 1.1
-    at most, 0.1 in the median.
+    A state takes some hundred series, each with its own rounding, and the energy keeps omega
+    accurate; the sum over half turns adds a few roundings of the time. The errors were 1.1 at most,
+    0.1 in the median.
     """
     assert errors(motion, method="exact")[:, :3].max() < 4
 
 
 def dop853_errors(motion: Motion) -> NDArray[np.float64]:
-    """Errors (3, 5) as changes of the inputs, in tolerances: rtol |theta| is allowed."""
+    """Errors (3, 5) as changes of the inputs, in units of the tolerance rtol |theta|."""
     rtol = 1e-13
     found = errors(motion, method="dop853", rtol=rtol, atol=1e-15)
     tolerances: NDArray[np.float64] = found * ROUNDING / (rtol * motion.farthest)
@@ -136,9 +130,9 @@ def dop853_errors(motion: Motion) -> NDArray[np.float64]:
 def test_dop853_stays_within_its_tolerance(motion: Motion) -> None:
     """dop853 errs by eight tolerances at most.
 
-    An unlucky method could add one tolerance in each of up to 4400 steps. The controller keeps the
-    estimate at 0.9^8 = 0.4 of the tolerance, and the true local error is of a higher order than
-    the estimate: the sum was 1.6 tolerances at most, 0.04 in the median.
+    In the worst case each of up to 4400 steps would add one tolerance. The controller keeps the
+    estimate at 0.9^8 = 0.4 of the tolerance, and the true local error is of a higher order than the
+    estimate: the sum was 1.6 tolerances at most, 0.04 in the median.
     """
     assert dop853_errors(motion).max() < 8
 
@@ -178,7 +172,7 @@ def test_radau_errors_are_as_its_order_predicts() -> None:
     "name", ["a", "b", "mass", "inertia", "gravity", "slope", "theta", "omega"]
 )
 def test_a_small_change_of_an_input_is_detected(name: str) -> None:
-    """A change of any single input by a millionth is detected in every scene: the check is sharp.
+    """The check detects a change of any single input by a millionth in every scene.
 
     Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share. A
     slope of a few milliradians hardly matters to a fast spin: its millionth is 14 tolerances.

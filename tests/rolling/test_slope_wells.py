@@ -50,9 +50,9 @@ def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
 def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> None:
     """Rocking errs by at most eight units and two ulp of each answer.
 
-    A half swing is a few series, each with a few roundings of its own in the time, the angle and
-    omega; the phase after any number of swings has the period's roundings. The largest error was
-    0.8; with gravity as a difference of two terms a third of the scenes erred by more than 8, up to
+    A half swing takes a few series, each with a few roundings of time, angle and omega; the phase
+    after any number of swings has the roundings of the period. The largest error was 0.8 units.
+    With gravity as a difference of two terms, a third of the scenes erred by more than 8, up to
     3e7.
     """
     scene, t = table.scene_of(row), float(row["t"])
@@ -73,7 +73,8 @@ def test_rocking_is_accurate_to_a_few_rounding_errors(row: dict[str, str]) -> No
 def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
     scene: rl.Scene, distance: float, share: float
 ) -> None:
-    """A start that moves towards or away from the rim swings like a start at rest further inside.
+    """A body that starts towards or away from the rim swings like one that starts at rest farther
+    inside.
 
     The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
     d (1 - share^2)^(1/2), up to its square and an ulp of theta; the period, 2 log(1/d)/rate plus a
@@ -95,7 +96,8 @@ def test_a_motion_near_the_rim_of_the_well_returns_to_its_start(
 
 
 def test_small_rocking_at_many_times_equals_that_at_single_times() -> None:
-    """Bits agree in a table, alone and in contact; the body turns back every half period."""
+    """The bits agree in a table, alone and in the model "contact"; the body turns back every half
+    period."""
     scene = rl.Scene(2.0, 1.0, slope=0.2, friction=0.5)
     scene = scene.replace(theta=equilibria(scene)[0].theta + 1e-9)
     half = rl.period(scene) / 2

@@ -1,6 +1,7 @@
 """Collisions with restitution: the law along its impulse path, and its invariants.
 
-The path is followed by straight pieces; tests/impacts follows it in small pushes without cases.
+The oracle follows the path in straight pieces; the oracle of tests/impacts takes small steps
+without cases.
 """
 
 import math
@@ -53,14 +54,11 @@ def limited() -> list[Hit]:
     return [hit for hit in hits(1200, 3) if math.isfinite(hit.scene.friction)]
 
 
-# ----------------------------------------------------------------------------- the path
-
-
 def test_impacts_agree_with_integration_along_the_impulse_path(limited: list[Hit]) -> None:
-    """Some hundred roundings are allowed, magnified by solving for the reaction. The speeds have
-    roundings of the size of the body's velocity, and e > 0 takes a square root of the work: errors
-    are absolute, in the scale of the impulse that stops the velocity. The angle, thousands of
-    radians after many turns, is rounded too."""
+    """Some hundred roundings are allowed, magnified by solving for the reaction. Speeds are rounded
+    relative to the body's velocity, and e > 0 needs a square root of the work, so errors are
+    absolute: relative to the impulse that stops the body. The angle, thousands of radians after
+    many turns, is rounded too."""
     assert len(limited) > 800
     for hit in limited:
         before, state = hit.before, hit.event.state_before
@@ -81,9 +79,6 @@ def test_the_random_impacts_cover_every_outcome(limited: list[Hit]) -> None:
         sticks = abs(w) <= 1e-13 * (abs(v) + abs(hit.before.gap_rate))
         outcomes["stick" if sticks else "slip on" if v * w > 0 else "reverse"] += 1
     assert min(outcomes.values()) >= 20, outcomes
-
-
-# ----------------------------------------------------------------------------- digits
 
 
 class Blow(NamedTuple):
@@ -120,8 +115,8 @@ def velocities_after(hit: Blow) -> list[mp.mpf]:
 
 
 def test_impacts_of_light_fast_turning_bodies_stay_accurate() -> None:
-    """Velocities agree with the pieces in 40 digits, in units of the effect of 2.2e-16 of each
-    number and two ulp of the answer. omega h is up to 1e4 times the centre's speed."""
+    """Velocities agree with the pieces in 40 digits. The unit is the effect of 2.2e-16 of each
+    number plus two ulp of the answer. omega h is up to 1e4 times the centre's speed."""
     rng = np.random.default_rng(30)
     worst, seen = 0.0, 0
     change = mp.mpf("1e-20")
@@ -153,9 +148,6 @@ def test_impacts_of_light_fast_turning_bodies_stay_accurate() -> None:
     assert worst <= 8
 
 
-# ----------------------------------------------------------------------------- energy
-
-
 def test_no_impact_gains_energy() -> None:
     """1e5 impacts gain no energy. Three velocities are rounded, squared and summed: 8 roundings."""
     worst = max(
@@ -167,13 +159,10 @@ def test_no_impact_gains_energy() -> None:
     assert worst <= 8 * EPS
 
 
-# ----------------------------------------------------------------------------- special cases
-
-
 def test_unlimited_friction_agrees_with_its_three_formulas() -> None:
-    """u1 = u - v Gnt/Gtt, the gap rate without slip, has three cases: stuck, stuck unpressed, or
-    friction alone. The terms are of the size of the velocities and the response, and the angle of
-    h' has an error of an ulp."""
+    """The gap rate without slip, u1 = u - v Gnt/Gtt, decides between three cases: the contact
+    sticks with or without pressure, or friction acts alone. The terms are of the size of the
+    velocities and the response, and the angle of h' has an error of an ulp."""
     met = [0, 0, 0]
     for hit in hits(600, 11, friction=math.inf):
         v, u, tangential, normal, coupling = hit.before

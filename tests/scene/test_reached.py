@@ -39,7 +39,7 @@ def inertial_time(scene: Scene, turned: float) -> float:
     [(DOWNHILL, 1e8), (LEVEL, 1e14 * rl.period(LEVEL) / 2)],
     ids=["downhill", "level"],
 )
-def test_a_state_after_very_many_half_turns_can_be_continued(
+def test_a_state_after_1e14_half_turns_can_be_continued(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
     """The bits agree whether the state comes from memory, a file, a table of scenes or a folder."""
@@ -75,8 +75,8 @@ def test_energy_gained_downhill_may_exceed_the_input_limit() -> None:
     for change in ({"omega": reached.omega}, {"impulse": Impulse(jx=1.0)}):
         with pytest.raises(ValueError, match=r"^omega must be at most .* for this body, got"):
             reached.replace(**change)
-    # No ground holds it: it slips, or leaves where c = g cos(alpha) + h'' omega^2 is negative. The
-    # last bit of theta, a quarter of a radian, decides.
+    # No ground holds the body: it slips, or it leaves the ground where c = g cos(alpha) + h''
+    # omega^2 is negative. The last bit of theta, a quarter of a radian, decides.
     h = math.hypot(2.0 * math.sin(reached.theta), math.cos(reached.theta))
     c = reached.gravity * math.cos(reached.slope) + (4.0 / h**3 - h) * reached.omega**2
     first = rl.Outcome.LOSES_CONTACT if c < 0 else rl.Outcome.SLIPS
@@ -115,7 +115,8 @@ LIMITS: dict[str, Callable[[dict[str, Any]], float]] = {
 )
 @pytest.mark.parametrize("name", LIMITS)
 def test_input_is_accepted_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
-    """A value 64 roundings below its limit is accepted; one as far above it is refused by name."""
+    """A value 64 roundings below its limit is accepted; a value 64 roundings above is refused by
+    name."""
     limit = LIMITS[name](of)
     above: dict[str, Any] = {"z": height(of) / 2} if name == "z_dot" else {}
     of = {**of, **above}

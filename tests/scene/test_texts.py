@@ -16,7 +16,7 @@ FULL = Scene(
     restitution=0.7, rolling_resistance=1e-3, omega=1e-300, x=1e17 + 16, z=0.9, x_dot=math.pi,
     z_dot=-1e-9, impulse=Impulse(jx=1e-9, jz=-2e-9, dx=0.01, dz=-0.02),
 )  # fmt: skip
-#: The numbers of older links, which have sizes of the page instead of three arguments of Scene.
+#: Numbers of older links, in which the page's own quantities replace three arguments of Scene.
 OLDER = "#jx=0&jz=0&dx=1.5&dz=0&a=2&b=1&mass=10&gravity=9.81&slope=0&restitution=0&x=0"
 LINKS = [
     ("theta=0.5&omega=3&friction=Infinity&k=1&height=0&slip=0", {"theta": 0.5, "omega": 3.0}),

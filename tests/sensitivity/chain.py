@@ -6,7 +6,8 @@ S = dy/dp obeys S' = f_y S + f_p along an arc. At an event g(y, p) = 0 with the 
 
 (M. A. Aizerman, F. R. Gantmacher, Q. J. Mech. Appl. Math. 11 (1958) 385). The equations of the
 three modes are written here for complex numbers; their derivatives come from complex steps of
-1e-200, those of the collision from differences. Kinds and times of the events are the motion's.
+1e-200, those of the collision from differences. Kinds and times of the events are taken from the
+motion.
 """
 
 from collections.abc import Mapping
@@ -114,7 +115,7 @@ def by_differences(y: Any, p: Mapping[str, Any], wrt: list[str]) -> tuple[Any, A
 
 
 def start(scene: Scene, p: dict[str, Any], wrt: list[str]) -> tuple[Any, Any]:
-    """The start as typed, and its derivatives; missing z, x_dot and z_dot follow the ground."""
+    """The start and its derivatives; missing z, x_dot and z_dot follow from the contact."""
     typed = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 
     def state(given: dict[str, Any], q: dict[str, Any]) -> Any:
@@ -193,15 +194,11 @@ def chain(motion: Trajectory, wrt: list[str]) -> tuple[Any, Any]:
 
 
 def _side(state: Any, p: Mapping[str, Any]) -> int:
-    """The sign of the slip of a sliding state, also where it only starts."""
+    """The sign of the slip of a sliding state; slip starts against the friction of rolling."""
     if state.mode.name != "SLIDING":
         return 0
     y = np.array([state.x, state.z, state.theta, state.x_dot, state.z_dot, state.omega])
     slip = guard("STICK", 0, y, p).real
-    return int(np.sign(slip)) if abs(slip) > 1e-12 else _slip(y, p)
-
-
-def _slip(y: Any, p: Mapping[str, Any]) -> int:
-    """The sign of a slip that starts: against the friction that rolling would need."""
-    acceleration = rates("ROLLING", 0, y, p)[3] - p["gravity"] * np.sin(p["slope"])
-    return -int(np.sign(acceleration.real))
+    if abs(slip) <= 1e-12:
+        slip = -(rates("ROLLING", 0, y, p)[3] - p["gravity"] * np.sin(p["slope"])).real
+    return int(np.sign(slip))

@@ -6,8 +6,9 @@ of Non-Smooth Mechanical Systems (2004), ch. 7)
 
     S+ = R_y S + (f+ - R_y f) g_y S / (g_y f),
 
-with derivatives by complex steps, those of the collision through its pieces. No difference is
-taken. Columns are made orthonormal at events; as a QR is unique, it does not matter where.
+with derivatives by complex steps, those of the collision through its pieces. No differences are
+used. Columns become orthonormal at events; because a QR decomposition is unique, the place does not
+matter.
 """
 
 from typing import Any
@@ -21,7 +22,8 @@ STATE = ("x", "z", "theta", "x_dot", "z_dot", "omega")
 
 
 def collided(y: Any, p: Any) -> Any:
-    """Stronge's collision, piece by piece: each number may be complex, real parts decide."""
+    """Stronge's collision, piece by piece. Every number may be complex; real parts decide the
+    cases."""
     h, h1, _ = support(y[2], p)
     k2, mu, e = gyration2(p), p["friction"], p["restitution"]
     tangential, normal, coupling = 1 + h * h / k2, 1 + h1 * h1 / k2, h * h1 / k2
@@ -114,7 +116,8 @@ def growths(motion: Trajectory, wrt: tuple[str, ...], times: Any) -> Any:
 
 
 def _allowed(scene: Scene, mode: str, y: Any, p: Any) -> Any:
-    """Changes of the start by its coordinates: on the ground z, z_dot (and x_dot) follow."""
+    """Derivatives of the start with respect to its coordinates: on the ground z, z_dot (and x_dot)
+    follow from the others."""
 
     def state(q: Any, p: Any) -> Any:
         h, h1, _ = support(q[2], p)
@@ -125,7 +128,8 @@ def _allowed(scene: Scene, mode: str, y: Any, p: Any) -> Any:
 
 
 def _orthonormal(columns: Any) -> tuple[Any, Any]:
-    """Gram and Schmidt, twice; a column that depends on those before becomes 0, and its log -inf.
+    """Gram-Schmidt, applied twice; a column that depends on earlier ones becomes 0, and its log
+    -inf.
 
     Dependent columns leave some 1e-12 of their size, by errors of the state at the event.
     """

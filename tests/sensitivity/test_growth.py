@@ -31,7 +31,7 @@ SLIDES = Scene(0.5, 1.5, friction=0.2, theta=1.4, omega=-3.7, x_dot=-2.2)
 def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: set[str]) -> None:
     """Of all columns; those that are lost are lost at the same events.
 
-    A part is known to 1e-11, and the columns after the first divide that by their own size.
+    Each part is known to 1e-11; later columns divide this error by their own size.
     """
     motion = simulate(scene, [end])
     assert {event.kind.name for event in motion.events} == kinds
@@ -44,7 +44,7 @@ def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: 
     assert np.abs(found.log[left] - true[left]).max() < 1e-8
 
 
-def test_growth_is_that_of_the_exact_orbit_until_it_is_not_known() -> None:
+def test_growth_agrees_with_the_exact_orbit_while_it_is_known() -> None:
     """The exact orbit in 60 digits departs by roundings that have grown: at most 64 of them."""
     for end in (9.0, 14.0, 18.0):
         motion = simulate(CHAOS, [end])
@@ -54,9 +54,10 @@ def test_growth_is_that_of_the_exact_orbit_until_it_is_not_known() -> None:
         assert abs(found / true - 1) < 64 * EPS * found, end
 
 
-def test_a_rounding_of_the_start_has_grown_to_a_thousandth_where_it_is_said() -> None:
-    """The neighbour one rounding (1.1e-16) away is between a hundredth and a hundred times 1e-3 of
-    the body away there, by its own roundings, and well within a second before."""
+def test_a_rounding_grows_to_a_thousandth_by_the_stated_time() -> None:
+    """At this time a neighbour that starts one rounding (1.1e-16) away has a distance between a
+    hundredth of and a hundred times 1e-3 of the body, because of its own roundings; 6 s earlier it
+    is still close."""
     motion = simulate(CHAOS, [26.0])
     until = simulate(CHAOS, [19.5]).growth().known_until
     near = simulate(CHAOS.replace(theta=np.nextafter(CHAOS.theta, 1)), [26.0])
@@ -66,7 +67,8 @@ def test_a_rounding_of_the_start_has_grown_to_a_thousandth_where_it_is_said() ->
 
 
 def test_elastic_bounces_keep_volumes() -> None:
-    """Of all six coordinates, also where changes grow: each part has an error of some 1e-11."""
+    """The volume is that of all six coordinates, also where changes grow: each part has an error of
+    about 1e-11."""
     found = simulate(CHAOS, [9.0]).growth()
     assert found.log[-1, 0] > 10 and np.abs(found.log.sum(axis=1)).max() < 1e-9
 
@@ -81,9 +83,7 @@ def test_elastic_bounces_keep_volumes() -> None:
         (scenes.jump, 2.0, []),
     ],
 )
-def test_changes_are_lost_where_the_number_of_coordinates_falls(
-    scene: Scene, end: float, lost: list[str]
-) -> None:
+def test_lost_coordinates_have_no_growth(scene: Scene, end: float, lost: list[str]) -> None:
     found = simulate(scene, [end]).growth()
     assert found.wrt == COORDINATES[: len(found.wrt)]
     gone = [name for name, log in zip(found.wrt, found.log[-1], strict=True) if log == -math.inf]
@@ -110,8 +110,8 @@ def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
     assert found.message in repr(found) and found.exponents.shape == (6,)
 
 
-def test_a_body_that_settles_loses_all_but_what_rolls() -> None:
-    """A disc, whose angle and place at rest on a line keep their changes; hops are summed."""
+def test_a_body_that_settles_keeps_only_changes_of_rolling() -> None:
+    """The angle and position of the disc keep their changes; hops are summed."""
     disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
     found: Any = simulate(disc, 3.0).growth()
     assert found.message == "" and np.isneginf(found.log[-1, 3:]).all()

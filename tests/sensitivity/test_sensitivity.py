@@ -87,7 +87,7 @@ def test_reference_motions_have_accurate_derivatives() -> None:
 
     The stated errors cover 99 of 100 columns, and are mostly within a factor of 100: one of the two
     steps beside the best is farther off by 4 to 64 times, and a value is allowed eight units.
-    Derivatives at bounds are one-sided. A table that only just holds its body has no derivative.
+    Derivatives at bounds are one-sided. A scene that lies exactly at a limit has no derivative.
     """
     last = {row["name"]: row for row in table.rows("contact_reference")}
     good, refused, ratios = {name for name in last if name[:3] != "jam"}, [], []
@@ -182,10 +182,8 @@ OF_BOUNCES = [STATE.index(name) for name in bounces.STATE]
 def relative(scene: Scene, found: Any, true: Any, wrt: list[str]) -> Any:
     """Errors of the last state of bounces over its largest entry."""
     unit = units(scene)[OF_BOUNCES, None]
-    least = [1 / size_of(scene, name) for name in wrt]
-    return np.abs((found - true) / unit).max(axis=0) / np.fmax(
-        np.abs(true / unit).max(axis=0), least
-    )
+    size = np.fmax(np.abs(true / unit).max(axis=0), [1 / size_of(scene, name) for name in wrt])
+    return np.abs((found - true) / unit).max(axis=0) / size
 
 
 def test_derivatives_chained_over_parts_agree_with_the_whole() -> None:
@@ -221,9 +219,8 @@ def test_growing_derivatives_are_accurate_until_they_are_rejected() -> None:
         known = motion.sensitivity(wrt)
         assert known.state[1, 2, 0] == pytest.approx(true, rel=1e-3)
         last = known.state[1][OF_BOUNCES]
-        (own, own_times), (exact, times) = (
-            bounces.bounces(motion, wrt, own=x) for x in (True, False)
-        )
+        own, own_times = bounces.bounces(motion, wrt, own=True)
+        exact, times = bounces.bounces(motion, wrt, own=False)
         assert relative(CHAOS, last, own, wrt).max() < 1e-10
         assert (relative(CHAOS, last, exact, wrt) < known.error).all()
         largest = np.abs(times).max(axis=0)
@@ -278,13 +275,12 @@ def test_derivatives_of_event_times_do_not_depend_on_the_samples() -> None:
 
 
 def test_a_message_names_the_events_in_which_a_neighbour_differs() -> None:
-    """A neighbour that ends early is not said to have its end in place of an event."""
+    """The end of a neighbour that stops early is not reported as an event."""
     landing = simulate(DROP, 1.0).events[0].t
     with pytest.raises(ValueError, match=r"there is no IMPACT to \w+ at t = 0\.\d+ s$"):
         simulate(DROP, landing).sensitivity("theta")
-    with pytest.raises(
-        ValueError, match=r"there is one more event, IMPACT to \w+, by t = 0\.\d+ s$"
-    ):
+    said = r"there is one more event, IMPACT to \w+, by t = 0\.\d+ s$"
+    with pytest.raises(ValueError, match=said):
         simulate(DROP, np.nextafter(landing, 0)).sensitivity("theta")
 
 
@@ -303,7 +299,7 @@ def test_a_forecast_beyond_its_stated_distance_warns() -> None:
 
 
 def test_a_forecast_for_changes_too_large_in_combination_warns() -> None:
-    """Theta and omega turn the body to another angle at its landing, together twice as far."""
+    """Theta and omega both change the angle at landing, together by twice as much."""
     known = simulate(DROP, [0.3, 1.0]).sensitivity(("theta", "omega"))
     theta, omega = (0.9 * known.distance).tolist()
     together = []
@@ -331,14 +327,14 @@ def test_a_forecast_is_accurate_to_second_order() -> None:
         return [repr((e.kind, e.state_after.mode)) for e in moved.events]
 
     for name, distance in zip(known.wrt, known.distance, strict=True):
-        near, far = (
-            [kinds(name, sign * distance * share) for sign in (1, -1)] for share in (0.999, 1.001)
-        )
+        near, far = ([kinds(name, side * share * distance) for side in (1, -1)]
+                     for share in (0.999, 1.001))  # fmt: skip
         assert near == [kinds(name, 0)] * 2 and far != near
 
 
 def test_derivatives_hold_at_any_time_at_bounds_and_with_steps() -> None:
-    """Bounds have one-sided derivatives; method errors count; dx/dx is 1, d/dt gives rates."""
+    """Derivatives at bounds are one-sided, errors of the method count, dx/dx is 1, and d/dt gives
+    rates."""
     motion = simulate(DROP, np.sort([0.0, 1.0, *(e.t for e in simulate(DROP, 1.0).events)]))
     known = motion.sensitivity(("x", "t", "theta"))
     assert np.abs(known.state[:, :, 0] - [1, 0, 0, 0, 0, 0]).max() < 1e-12
@@ -373,19 +369,15 @@ RESISTED = Scene(2.0, 1.0, theta=0.4, friction=1.0, rolling_resistance=0.02)
         (RESISTED.replace(slope=0.1, rolling_resistance=0.0), []),
     ],
 )
-def test_derivatives_hold_across_turns_of_rolling_resistance(
-    scene: Scene, kinds: list[str]
-) -> None:
+def test_derivatives_hold_across_turns_with_resistance(scene: Scene, kinds: list[str]) -> None:
     """The reference has second-order differences; steps of 1e-6 m leave about 1e-9."""
     motion = simulate(scene, [1.1, 4.5])
     assert [event.kind.name for event in motion.events] == kinds
     found = motion.sensitivity(["rolling_resistance", "theta"], side=1)
     for column, name in enumerate(found.wrt):
         start = getattr(scene, name)
-        moved = [
-            simulate(scene.replace(**{name: start + step}), [1.1, 4.5])
-            for step in (0.0, 1e-6, 2e-6)
-        ]
+        beside = (scene.replace(**{name: start + step}) for step in (0.0, 1e-6, 2e-6))
+        moved = [simulate(each, [1.1, 4.5]) for each in beside]
         states = np.array([[each.x, each.theta, each.omega] for each in moved])
         slopes = np.array([-3, 4, -1]) @ states.reshape(3, -1) / 2e-6
         exact = found.state[:, [0, 2, 5], column].T.ravel()

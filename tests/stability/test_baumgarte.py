@@ -42,9 +42,6 @@ def growth(method: str, alpha: float, beta: float, step: float) -> float:
     return float(amplification(method, step * roots).max())
 
 
-# ------------------------------------------------------------------ the stability function
-
-
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_feedback_on_a_circle_follows_the_stability_function(method: str) -> None:
     """The constraints of a circle are linear in the errors: each step multiplies f1 by R(-2 alpha
@@ -100,16 +97,14 @@ def test_the_package_knows_the_stability_function() -> None:
         assert _core.feedback_growth(without.core) == 0.0
 
 
-# ------------------------------------------------------------------------------- the limit of gains
-
 LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.3936515228}
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> None:
-    """Bisection finds the loss of runs within 1 % of the end of the stability interval of 2 alpha
-    h: on the ellipse, errors of 1e-6 must reach 1 in 600 steps (2.3 % a step, where R' is 2 or
-    more), and the constraints change as it turns."""
+    """Bisection finds that runs are lost within 1 % of the end of the stability interval of 2 alpha
+    h. On the ellipse, errors of 1e-6 must reach 1 in 600 steps (2.3 % a step, where R' is 2 or
+    more), and the constraints change as the body turns."""
     limit = interval(method, -1)
     assert limit == pytest.approx(LIMITS[method], rel=1e-9)
     found = reach(method)
@@ -122,29 +117,23 @@ def test_equal_gains_fail_at_the_end_of_the_stability_interval(method: str) -> N
 def test_gains_above_their_limit_ruin_the_motion(method: str, mix: tuple[float, float]) -> None:
     """The limit of gains in a fixed proportion is where a step multiplies constraint errors by 1: 5
     % below it residuals stay small for 600 steps, 5 % above it the motion is lost."""
-    limit = largest(
-        lambda gain: growth(method, mix[0] * gain, mix[1] * gain, 2.0**-7) <= 1 + 1e-12,
-        1.0,
-        1e4,
-        1e-9,
-    )
-    below, above = (
-        missed_with((share * mix[0] * limit, share * mix[1] * limit), method)
-        for share in (0.95, 1.05)
-    )
+
+    def stable(gain: float) -> bool:
+        return growth(method, mix[0] * gain, mix[1] * gain, 2.0**-7) <= 1 + 1e-12
+
+    limit = largest(stable, 1.0, 1e4, 1e-9)
+    gains = ((share * mix[0] * limit, share * mix[1] * limit) for share in (0.95, 1.05))
+    below, above = (missed_with(each, method) for each in gains)
     told(f"{method}, gains {mix} x {limit:.1f} 1/s: residuals {below:.1e} below, {above:.1e} above")
     assert below < 1e-2 and above > 1.0
-
-
-# ----------------------------------------------------------------------------- warnings of gains
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("gains", [(10.0, 10.0), (40.0, 5.0), (3.0, 30.0)])
 def test_gains_that_are_too_large_give_a_warning(method: str, gains: tuple[float, float]) -> None:
-    """Above the limit a warning names the largest stable step; 1.01 times that step is unstable. A
-    run with that step gives no warning about the gains. (The step is rounded down to a multiple of
-    1e-6 s, a relative change of less than 1e-4.)"""
+    """Above the limit a warning states the largest stable step; 1.01 times that step is unstable. A
+    run with the stated step gives no warning about the gains. (The step is rounded down to a
+    multiple of 1e-6 s, a relative change of less than 1e-4.)"""
     limit = largest(lambda step: growth(method, *gains, step) <= 1 + 1e-12, 1e-3, 10.0, 1e-9)
     how = kept_by("baumgarte", method=method, baumgarte=gains, raise_on_failure=False)
     with pytest.warns(rl.StabilityWarning, match="is unstable with the gains") as caught:
@@ -172,9 +161,6 @@ def test_controlled_steps_find_the_stability_limit_by_themselves() -> None:
     told(f"2 alpha h = {2 * 200 * mean:.2f} on the mean; limit {LIMITS['dop853']:.2f}")
     assert 2 * 200 * mean < 2 * LIMITS["dop853"]
     assert worst_residual(found) < 1e-6
-
-
-# ----------------------------------------------------------------------------- the price of gains
 
 
 def test_errors_fall_with_the_square_of_small_gains_and_large_gains_spoil_the_phase() -> None:

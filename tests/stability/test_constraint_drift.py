@@ -41,9 +41,9 @@ HELD: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("how", HELD.values(), ids=HELD)
 def test_residuals_of_projection_and_index_2_do_not_grow(how: dict[str, Any]) -> None:
-    """Constraints hold from 1 to 1000 half turns, where the first motion above has left the ground
-    by 1e-4: within 16 ulp of theta in the constraints, times the rates for velocities. No error
-    grows beyond the last digit of theta."""
+    """From 1 to 1000 half turns, after which the first motion above is 1e-4 off the ground,
+    constraints hold to 16 ulp of theta, times the rates for velocities. No error grows beyond the
+    last digit of theta."""
     spans = np.unique(np.geomspace(1, 1000, 40).round())
     found = run(ROUND, spans * half_turn(ROUND), **how)
     held = found.constraint_residuals()

@@ -26,18 +26,13 @@ def dropped(theta: float = 0.0, **given: Any) -> Scene:
     return Scene(2.0, B, theta=theta, z=height, friction=0.3, restitution=E, **given)
 
 
-def end_of_all(scene: Scene) -> float:
-    """Time of the last bounce [s]: v/g (1 + e)/(1 - e), with v from the height of the double z."""
-    assert scene.z is not None
-    with mp.workdps(DIGITS):
-        v = mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(scene.z) - B))
-        return float(v / GRAVITY * (1 + mp.mpf(E)) / (1 - mp.mpf(E)))
-
-
 def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
-    """In a loop over parabolas and collisions, time stands still from the first bounce that takes
-    less than half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, however many follow."""
-    end = end_of_all(dropped())
+    """In a loop over parabolas and collisions, time stops at the first bounce that takes less than
+    half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, however many bounces follow. The last
+    bounce ends at v/g (1 + e)/(1 - e), with v from the height of the double z."""
+    with mp.workdps(DIGITS):
+        v = mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(dropped().z) - B))
+        end = float(v / GRAVITY * (1 + mp.mpf(E)) / (1 - mp.mpf(E)))
     stood, t = event_loop(SPEED, E, 2000)
     told(f"after 2000 events t = {t!r} of {end!r} s; stands still from event {stood} on")
     assert t <= end * (1 + 4 * EPS)
@@ -46,8 +41,8 @@ def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-4])
 def test_equal_steps_let_the_body_sink_into_the_ground(step: float) -> None:
-    """Symplectic Euler steps multiply the speed by -e where the body is in the ground and falls:
-    the speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) a second."""
+    """Symplectic Euler steps multiply the speed by -e where the body is below the ground and falls.
+    The speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) per second."""
     t, z = sinking(SPEED, E, step, 6.0)
     half = t.size // 2
     rate = (z[half] - z[-1]) / (t[-1] - t[half])

@@ -45,9 +45,6 @@ def walks() -> Errors:
     return errors(QUICK, SAMPLES, gauss_runs(RUNS))
 
 
-# ------------------------------------------------------------------------ the measurement itself
-
-
 @pytest.mark.parametrize(("drift", "expected"), [(0.0, 0.5), (1.0, 1.0)])
 def test_growth_exponents_are_measured_correctly(drift: float, expected: float) -> None:
     """Exponents of synthetic walks are right; they scatter by 0.04 from seed to seed."""
@@ -66,9 +63,6 @@ def test_the_energy_error_is_measured_correctly() -> None:
         other = simulate(Scene(A, B, theta=theta, omega=omega), 0.0).energy[0]
         lying = simulate(Scene(A, B, omega=omega), 0.0).energy[0]
         assert energy_error(theta, omega, omega) == pytest.approx(other / lying - 1, abs=16 * EPS)
-
-
-# ------------------------------------------------------------------- methods that drift
 
 
 @pytest.mark.parametrize("name", DRIFTING)
@@ -98,9 +92,6 @@ def test_constraints_alone_do_not_conserve_energy(name: str, power: int) -> None
     told(f"{name}: " + " ".join(f"{value:.1e}" for value in lost) + f", slope {slope:.3f}")
     assert lost[-1] > 1e-6
     assert slope == pytest.approx(power, abs=0.15)
-
-
-# ----------------------------------------------------------------- Gauss walks at random
 
 
 def test_the_energy_of_gauss_walks_at_random() -> None:

@@ -1,8 +1,8 @@
-"""Friction just above or below what rolling needs: the grip holds or is lost for an instant.
+"""With friction just above or below the need of rolling, the grip holds or is lost for an instant.
 
-The need has a smooth maximum on the way up: it exceeds a friction that falls short by 10^-k over
-10^(-k/2) of the path. From some k on, neither samples nor the ends of steps show this; the
-certificate decides signs of polynomials and misses nothing.
+The need has a smooth maximum during the rise: it exceeds a friction that falls short by 10^-k over
+10^(-k/2) of the path. Beyond some k neither samples nor ends of steps show this; the certificate
+decides signs of polynomials and misses no such place.
 """
 
 import math
@@ -21,7 +21,7 @@ from stability_laws import GRAZING as SCENE
 
 OMEGA = SCENE.omega
 DISTANCES = range(1, 16)  # exponents k of the distances 10^-k
-# Distances that are decided: margins of the polynomial of degree 10 allow 1e-12 of its terms.
+# Exponents that are decided: margins of the polynomial of degree 10 allow 1e-12 of its terms.
 DECIDED = range(1, 12)
 
 

@@ -1,8 +1,8 @@
-"""Motions with a tolerance of 1e-2, as in the report: some leave their constraints, some keep them,
-some keep their energy.
+"""Motions with a tolerance of 1e-2, as in the report: some violate their constraints, some satisfy
+them, and some conserve energy.
 
-A tolerance bounds the error of a step, not of the motion: only a quantity kept by construction is
-kept at any tolerance.
+A tolerance bounds the error of a step, not of the motion: only quantities conserved by construction
+are conserved at any tolerance.
 """
 
 from functools import cache
@@ -38,7 +38,7 @@ def kind(name: str) -> str:
 def test_constraints_are_satisfied_only_by_construction(scene: str, name: str) -> None:
     """Free constraints err by half a semi-axis or more: 100 steps with errors of 1e-2, and drift
     like t^2. Feedback leaves the errors of a few steps, between a tenth of the tolerance and a
-    semi-axis. All other methods keep within 16 ulp of theta, also at samples between steps."""
+    semi-axis. All other methods stay within 16 ulp of theta, also at samples between steps."""
     found = run(scene, name)
     if kind(name) == "none":
         assert found.missed.max() > 0.5

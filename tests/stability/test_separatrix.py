@@ -1,8 +1,8 @@
-"""Close to the separatrix any error decides whether a motion rolls over or returns.
+"""Close to the separatrix a small error decides whether a body rolls over or returns.
 
 The body starts flat with omega = omega_R (1 +- 10^-k) and lingers at the tip for
 ln(1/distance)/lambda. An error of the energy on the way there shifts the separatrix of a method,
-and the method is wrong for all throws between its own separatrix and the true one.
+and the method is wrong for all starts between its own separatrix and the true one.
 """
 
 import math
@@ -36,19 +36,17 @@ def first_wrong(side: int, **how: Any) -> int | None:
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
-def test_motions_that_conserve_energy_are_right_down_to_1e_minus_14_off_the_separatrix(
-    how: dict[str, Any], side: int
-) -> None:
-    """Exact motions decide correctly to 45 ulp of omega, as do stepped ones that keep their
-    energy."""
+def test_motions_that_conserve_energy_are_right(how: dict[str, Any], side: int) -> None:
+    """Exact motions, and stepped motions that conserve energy, decide correctly to within 1e-14 of
+    the separatrix, which is 45 ulp of omega."""
     assert first_wrong(side, **how) is None
 
 
 @pytest.mark.parametrize("name", FAIL)
 def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str) -> None:
-    """A method is wrong between its own separatrix and the true one, from k = -log10(distance) on,
-    on the side of its own separatrix. A shift of rounding size is known only to a unit. (ggl is too
-    slow for a bisection.)"""
+    """A method is wrong between its own separatrix and the true one, for k of at least
+    -log10(distance). A shift as small as rounding is known only to a unit. (ggl is too slow for a
+    bisection.)"""
     above, below = (first_wrong(side, **FAIL[name]) for side in SIDES)
     assert (above is None) != (below is None)
     if "ggl" not in name:

@@ -46,7 +46,7 @@ def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
 
 
 def test_the_printed_tangent_does_not_pass_the_tip() -> None:
-    """The printed tan is singular at a quarter turn: the motion stops there with a message."""
+    """The printed tangent is singular at a quarter turn, where the motion stops with a message."""
     q, q_dot = start(0.0, 3.2)
     how: dict[str, Any] = SHAPE | {"equations": "printed", "method": "rk4", "step": 0.02}
     times = np.linspace(0, 12, 121)

@@ -26,8 +26,6 @@ from stability_laws import (
     run,
 )
 
-# --------------------------------------------------------------------- growth in a step
-
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_steps_scale_the_amplitude_as_the_stability_function_predicts(method: str) -> None:
@@ -72,9 +70,6 @@ def test_the_amplitude_of_dopri5_grows_slowly_beyond_its_stability_interval() ->
     assert by_a_hundredth["dopri5"] == pytest.approx(1.73, abs=0.02)
     for method in ("rk4", "dop853"):
         assert by_a_hundredth[method] < 1.005 * LIMITS[method]
-
-
-# ---------------------------------------------------------------------- methods without a limit
 
 
 def test_radau_has_no_step_limit() -> None:

@@ -1,4 +1,4 @@
-"""Once errors reach rounding, more work improves no answer: they stay there or rise again.
+"""Once errors reach rounding, more work does not improve the answer: errors stay or rise again.
 
 Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
 sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated

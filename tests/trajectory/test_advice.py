@@ -1,4 +1,4 @@
-"""A StabilityWarning is issued for every motion that loses what it must keep, and no other."""
+"""Exactly the motions that lose energy or constraints give a StabilityWarning."""
 
 import math
 import warnings
@@ -42,8 +42,8 @@ def lost(motion: rl.Trajectory) -> Losses:
 
 
 def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, Any]:
-    """A motion of eight steps, all of which are checked for losses, and its samples at the checks:
-    at the ends of steps and in the middle of the last step."""
+    """A motion of eight steps, all checked for losses, and its samples at the checks: at the ends
+    of steps and in the middle of the last step."""
     step = t_end / 8
     motion, _ = advice(scene, [t_end], step=step, **how)
     return motion, motion.sol([*(step * np.arange(8)), 7.5 * step, t_end])
@@ -92,8 +92,8 @@ def test_the_constraint_loss_is_the_largest_of_three_errors() -> None:
 )
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_losses_do_not_depend_on_the_origin_of_x(how: dict[str, Any]) -> None:
-    """The origin of x changes neither the motion except x, nor its losses and warnings, bit by bit;
-    x is known to an ulp of its start at best."""
+    """A shift of x changes no bit of the rest of the motion, its losses or its warnings; x itself
+    is known to an ulp of its start at best."""
     scene = Scene(2.0, 1.0, slope=0.3, theta=0.3, omega=3.5)
     here, said = advice(scene, [1.0, 3.0], **how)
     expected = lost(here)
@@ -125,8 +125,8 @@ def test_the_plotted_energy_error_does_not_depend_on_the_origin_of_x() -> None:
 
 
 def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
-    """Only some steps are checked for losses: a loss that comes and goes may be seen below its
-    maximum, so that a warning is certain only above three times the limit."""
+    """Only some steps are checked, so a temporary loss may be seen below its maximum: a warning is
+    certain only above three times the limit."""
     seen = {True: 0, False: 0}
     for seed in range(70):
         run = losses.drawn(seed)
@@ -143,8 +143,8 @@ def test_every_run_with_a_loss_gives_a_warning_and_no_other_does() -> None:
 
 
 def test_projection_hides_no_step_that_is_too_large() -> None:
-    """Energy and constraints hold at the ends of steps, but the motion is lost: its angle goes to
-    -22 rad and beyond 60, while the true one never turns back and reaches 38.4."""
+    """Energy and constraints hold at the ends of steps, but the motion is wrong: its angle reaches
+    -22 rad and more than 60 rad, while the true angle only increases, to 38.4 rad."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=3.2)
     how: dict[str, Any] = {"model": "multipliers", "stabilization": "projection+energy"}
     motion, (said,) = advice(scene, np.arange(0, 20.1, 0.2), method="rk4", step=0.2, **how)
@@ -157,7 +157,7 @@ def test_projection_hides_no_step_that_is_too_large() -> None:
 
 
 def test_a_warning_comes_with_the_loss_and_not_before() -> None:
-    """Steps range from fine to coarse; some lose the constraints or the energy."""
+    """Coarse steps lose the constraints or the energy, fine steps do not."""
     for how, quantity, least in (
         (DRIFTING, "constraints", 1e-3),
         ({"model": "rolling", "method": "rk4"}, "energy", 1e-2),
@@ -178,10 +178,8 @@ def test_a_warning_states_the_loss_and_a_remedy() -> None:
     (said,) = advice(SCENE, 20.0, step=0.02, **DRIFTING)[1]
     assert "by t = 20 s with stabilization 'none'" in said and "use 'projection'" in said
     (said,) = advice(SCENE, 20.0, step=0.2, model="rolling", method="rk4")[1]
-    assert (
-        "the relative change of the energy has reached 0.15 by t = 20 s" in said
-        and "or method 'exact'" in said
-    )
+    assert "the relative change of the energy has reached 0.15 by t = 20 s" in said
+    assert "or method 'exact'" in said
     slope = Scene(2.0, 1.0, slope=0.01, omega=2.0)
     motion, (said,) = advice(slope, 3.0, step=0.4, model="rolling", method="rk4")
     assert "or method 'exact'" in said and motion.success

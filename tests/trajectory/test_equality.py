@@ -1,4 +1,4 @@
-"""Motions are equal if their requests and their results are equal, bit by bit."""
+"""Motions are equal if their requests and results are equal bit for bit."""
 
 import copy
 import dataclasses
@@ -77,7 +77,7 @@ def test_a_motion_equals_nothing_but_a_motion(thing: Any) -> None:
 
 
 def test_equal_results_of_different_requests_are_unequal() -> None:
-    """Equal results of other requests are not equal; nor is a part of a motion."""
+    """A part of a motion is not equal to the whole either."""
     exact = MOTIONS["rolling"]()
     assert exact != simulate(rl.scenes.report, TIMES, method="exact")
     assert exact != simulate(rl.scenes.report, TIMES[:-1])

@@ -1,6 +1,6 @@
-"""The methods bound to a motion from other modules behave as if they were written in its class.
+"""Methods that other modules add to Trajectory behave as if the class defined them.
 
-Tests of their modules check their results; these check that people and programs can find them.
+Tests of their modules check their results; these tests check that users and programs find them.
 """
 
 import ast

@@ -1,4 +1,4 @@
-"""A reason states first what happens and then what is proved, and contains no other numbers."""
+"""A reason states what happens, then what is proved."""
 
 import math
 import re

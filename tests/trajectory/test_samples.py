@@ -1,4 +1,4 @@
-"""The samples of a Trajectory: each array equals its definition; residuals of a million samples.
+"""Each array of a Trajectory agrees with its definition, and residuals do not grow.
 
 The tests compute forces by Newton's law and the geometry in long double. tests/multipliers judges
 the multipliers.
@@ -55,9 +55,6 @@ def test_close_detects_a_difference_of_ten_ulp() -> None:
         close(values * (1 + 10 * EPS), values, values, 8)
 
 
-# -------------------------------------------------------------------------------------------- times
-
-
 class Own(list[float]):
     """A list whose methods may behave otherwise."""
 
@@ -73,7 +70,7 @@ class Own(list[float]):
     ids=repr,
 )  # fmt: skip
 def test_times_of_every_kind_become_the_same_doubles(t: Any) -> None:
-    """A list of floats and an array of doubles take a shortcut, which returns such an array."""
+    """Lists of floats and arrays of doubles take a shortcut."""
     expected = np.asarray(t, float)
     if expected.ndim == 0:
         expected = np.linspace(0.0, 2.0, 1001)
@@ -100,9 +97,6 @@ def test_the_shortcut_accepts_no_wrong_times(t: Any) -> None:
         sample_times(t)
 
 
-# ------------------------------------------------------------------------------------------- arrays
-
-
 def test_arrays_have_the_stated_shapes_and_types(motion: Trajectory) -> None:
     n = motion.t.size
     arrays = {name: (n,) for name in VECTORS} | {name: (n, k) for name, k in MATRICES.items()}
@@ -122,7 +116,8 @@ def test_arrays_have_the_stated_shapes_and_types(motion: Trajectory) -> None:
 
 
 def test_positions_and_velocities_follow_from_theta_and_omega(motion: Trajectory) -> None:
-    """h, h', psi and r from theta, and rates from them and omega, err by a few roundings."""
+    """h, h', psi and r follow from theta, and rates from these and omega, to within a few
+    roundings."""
     e, omega = outline(motion), motion.omega.astype(np.longdouble)
     close(motion.z, e.h, e.h, 4)
     r, grain_of_psi = np.hypot(e.h, e.slope), np.abs(motion.psi) + 8 * np.abs(e.lead)
@@ -188,7 +183,7 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     rate = getattr(at[0], DERIVATIVES[name] or "")
     near = (values[1] - values[-1]) / (2 * step)
     far = (values[2] - values[-2]) / (4 * step)
-    # rate of change per theta: the rate per time over omega, except where the body turns back
+    # derivative with respect to theta: the rate over omega, except where the body turns back
     fast = np.abs(at[0].omega) > 1e-2
     per_theta = np.where(fast, np.abs(rate / np.where(fast, at[0].omega, 1.0)), 0.0)
     theta_grain = 2 * np.spacing(np.maximum(np.abs(at[0].theta), 1.0))
@@ -201,7 +196,8 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
 
 
 def test_forces_and_torques_obey_newton_and_euler(motion: Trajectory) -> None:
-    """Accelerations give the forces, and satisfy the torque balance, which no code uses."""
+    """Accelerations give the forces and satisfy the torque balance, which the package does not
+    use."""
     scene, e = motion.scene, outline(motion)
     mass, weight = scene.mass, scene.mass * scene.gravity
     inertia = scene.mass * scene.gyration2
@@ -231,8 +227,6 @@ def test_energies_agree_with_their_definitions(motion: Trajectory) -> None:
     close(motion.potential_energy, potential, potential, 8)
     assert np.array_equal(motion.energy, motion.kinetic_energy + motion.potential_energy)
 
-
-# ---------------------------------------------------------------------------------------- residuals
 
 LONG_RUNS = {
     "report": (rl.scenes.report, 60.0),
@@ -271,15 +265,12 @@ def test_residuals_of_a_million_samples_do_not_grow(scene: Scene, t_end: float) 
         "gap": np.abs(residuals.gap) / allowed,
         "f1": np.abs(residuals.velocity[:, 0]) / np.where(speed > 0, allowed * speed, EPS),
         "slip": np.abs(residuals.slip) / np.where(speed > 0, allowed * speed, EPS),
-        "rates": np.max(np.abs(residuals.velocity[:, 1:]), axis=1)
+        "rates": np.abs(residuals.velocity[:, 1:]).max(axis=1)
         / np.where(rate > 0, allowed * rate, EPS),
         "energy": drift / (16 * EPS * start),
     }
     told(", ".join(f"{name} {np.max(share):.2g}" for name, share in shares.items()))
-    told(
-        f"worst: position {np.max(np.abs(residuals.position)):.2g}, velocity "
-        f"{np.max(np.abs(residuals.velocity)):.2g}, gap {np.max(np.abs(residuals.gap)):.2g}, slip "
-        f"{np.max(np.abs(residuals.slip)):.2g}, energy {np.max(drift) / start / EPS:.2g} ulp"
-    )
+    worst = {name: float(np.abs(each).max()) for name, each in vars(residuals).items()}
+    told(f"worst: {worst}, energy {np.max(drift) / start / EPS:.2g} ulp")
     for name, share in shares.items():
         assert np.max(share) <= 1, name

@@ -24,7 +24,7 @@ STEPPED: list[dict[str, Any]] = [
 
 
 def every_law() -> Iterator[Trajectory]:
-    """Motions of every kind: slides, flights, bounces, rest, rolling; on slopes; with steps."""
+    """Yield motions with slides, flights, bounces, rest and rolling, on slopes, and by steps."""
     for slope, seed in [(0.0, 5), (0.3, 6)]:
         for scene in random_scenes(30, seed, slope=slope):
             yield simulate(scene, 5.0, model="contact", raise_on_failure=False)
@@ -42,7 +42,7 @@ def columns(motion: Trajectory) -> list[np.ndarray]:
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_the_order_of_times_changes_no_bit() -> None:
-    """Reversed, shuffled and repeated times keep the bits, many (by tables) and few (without)."""
+    """The times are reversed, shuffled or repeated; many use tables, few do not."""
     rng = np.random.default_rng(30)
     few = 39  # 40 times and more use a table of exact rolling, within 8 units of a single time
     looked_at = 0

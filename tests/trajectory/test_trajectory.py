@@ -17,9 +17,6 @@ from rolling_ellipse._ask.printing import brief
 each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 
 
-# ------------------------------------------------------------------------------------- sample times
-
-
 def test_a_single_number_is_taken_as_the_end_time() -> None:
     trajectory = simulate(rl.scenes.rocking, 3)
     assert np.array_equal(trajectory.t, np.linspace(0, 3, 1001))
@@ -42,9 +39,6 @@ def test_an_array_of_times_is_used_unchanged(times: Any) -> None:
     assert np.array_equal(trajectory.t, np.asarray(times, float))
     assert not np.shares_memory(trajectory.t, np.asarray(times))
     assert not isinstance(times, np.ndarray) or times.flags.writeable
-
-
-# -------------------------------------------------------------------------------------- the end
 
 
 @each_scene
@@ -80,9 +74,9 @@ ENDING = {
 
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
 def test_rolling_is_valid_until_its_law_fails(scene: Scene) -> None:
-    """At valid_until a law ends rolling: |F| = friction N, or N = 0; before it the ground can hold
-    the motion. The bound is 1e-9 of the weight: time and angle are good to some 1e-15, and the
-    forces change by at most some hundred weights a second."""
+    """At valid_until a law fails: |F| = friction N, or N = 0. Before this time the ground can hold
+    the body. The bound is 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
+    change by at most some hundred weights a second."""
     with pytest.warns(ValidityWarning, match="rolling is valid until t = "):
         trajectory = simulate(scene, 10.0, model="rolling")
     assert trajectory.status is Status.VALIDITY_LOST and not trajectory.success
@@ -141,7 +135,7 @@ def test_a_body_at_rest_stays_at_rest(theta: float) -> None:
 
 
 def test_a_motion_may_end_before_the_first_sample() -> None:
-    """A motion that jams at t = 0 has none of the later samples requested."""
+    """A motion that jams at t = 0 has no samples at later times."""
     scene = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
     trajectory = simulate(scene, [0.5, 1.0])
     assert trajectory.status is Status.JAMMED and trajectory.t_end == 0
@@ -164,9 +158,6 @@ def test_the_repr_summarizes_the_motion() -> None:
     assert len(text) < 120
 
 
-# ------------------------------------------------------------------------------- the parts
-
-
 def five_samples() -> Trajectory:
     return simulate(rl.scenes.bounce, np.linspace(0.0, 0.4, 5))
 
@@ -183,7 +174,7 @@ def test_numbers_of_any_type_become_float64() -> None:
 
 
 def test_arrays_of_the_caller_are_left_alone() -> None:
-    """The caller's arrays are neither locked nor shared, nor are read-only views of them."""
+    """Neither the caller's arrays nor read-only views of them are locked or shared."""
     mine, mode = np.arange(5.0), np.full(5, 2, np.int8)
     view = mine[:]
     view.flags.writeable = False
@@ -234,7 +225,7 @@ def test_reason_and_stats_are_computed_on_demand() -> None:
 
 
 def test_names_of_any_text_type_become_plain_strings() -> None:
-    """A name of a text type becomes plain, since a reader of its pickle may not have the type."""
+    """Whoever reads a pickle may not have the other type."""
 
     class Mine(str):
         def __reduce__(self) -> Any:

@@ -23,8 +23,8 @@ def all_times(motion: Trajectory, name: str, values: Any, direction: int = 0) ->
 
 
 def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
-    """Allowed error of the quantity at the times found: its change in 8 ulp of the time, and twice
-    the 8 ulp to which touches are resolved."""
+    """Allowed error of the quantity at the returned times: its change in 8 ulp of the time, and
+    twice the 8 ulp to which touches are resolved."""
     near = np.maximum(times, 1e-3)
     aside = np.clip(np.stack([times - 1e-6 * near, times + 1e-6 * near]), 0, motion.t_end)
     before, after = (getattr(motion.sol(t), name) for t in aside)
@@ -34,7 +34,8 @@ def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Float
 
 
 def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float]) -> int:
-    """Assert that no time is missed or invented, by dense samples; return their number."""
+    """Compare the times with dense samples, so that none is missed or invented; return their
+    number."""
     tables = [all_times(motion, name, values, direction) for direction in (0, 1, -1)]
     for value, found, rising, falling in zip(values, *tables, strict=True):
         assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))
@@ -70,9 +71,8 @@ def test_passages_of_many_values_agree_with_brute_force(first: int) -> None:
             alone, among = all_times(motion, name, values[4]), all_times(motion, name, values)[4]
             assert np.array_equal(alone, among)
             noise = 16 * EPS * (np.abs(seen).max() + max(motion.scene.a, motion.scene.b))
-            if (
-                seen.size > 1 and abs(seen[-1] - seen[-2]) > noise
-            ):  # a change at the end: the last value is passed there
+            # where the quantity changes at the end, its last value is passed there
+            if seen.size > 1 and abs(seen[-1] - seen[-2]) > noise:
                 assert all_times(motion, name, float(seen[-1]))[-1] >= motion.t_end * (1 - 8 * EPS)
     assert passages > 1000  # every twenty seeds have about 2000
 
@@ -136,7 +136,8 @@ def test_events_can_be_selected_by_their_kinds() -> None:
 
 
 def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() -> None:
-    """In 1e9 half turns an angle is passed once and found quickly; a height, too often."""
+    """In 1e9 half turns a body passes an angle once, and this time is found quickly; it passes a
+    height too often."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
     (t,) = motion.when(theta=angle)
@@ -259,7 +260,7 @@ def test_a_motion_that_stopped_early_can_be_searched() -> None:
 
 @pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce", "rest", "five"])
 def test_a_single_state_equals_a_row_of_samples(name: str) -> None:
-    """The state has plain floats with the bits of `sol`, also in five coordinates."""
+    """The state consists of plain floats that equal those of `sol`, also in five coordinates."""
     scene = Scene(2.0, 1.0) if name == "rest" else getattr(rl.scenes, name, rl.scenes.rolling)
     motion = simulate(scene, 3.0, model="multipliers" if name == "five" else "auto")
     for t in (0.0, 1.234, 3.0):
@@ -284,7 +285,7 @@ def test_the_largest_double_is_never_passed() -> None:
 
 
 def test_too_little_memory_for_the_times_is_a_memory_error() -> None:
-    """There is room for none, some or all of a hundred thousand arrays of times."""
+    """Depending on the limit there is memory for none, some or all of 100,000 arrays."""
     program = """
         import resource, numpy as np, rolling_ellipse as rl
         motion = rl.simulate(rl.scenes.rolling, 1.0)

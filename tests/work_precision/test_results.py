@@ -1,4 +1,4 @@
-"""Answers of a WorkPrecision equal hand-made tables of hand-made runs."""
+"""Answers of a WorkPrecision with made-up runs agree with tables made by hand."""
 
 import json
 import math
@@ -77,7 +77,8 @@ def test_a_notebook_shows_the_least_time_of_each_method() -> None:
 
 
 def test_the_verdict_states_no_value_that_was_not_computed() -> None:
-    """The verdict states neither number where a given reference outlasts the package's motion."""
+    """The verdict leaves out both numbers if the reference lasts longer than the package's
+    motion."""
     unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
     said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
     assert said == ("To t = 2 s, judged by exact rolling, at the sample times and the end:")
@@ -149,7 +150,7 @@ CUT = replace(
 
 
 def test_a_method_that_was_not_run_is_not_beaten() -> None:
-    """A method that was not run is not said to have no answer or an inaccurate one."""
+    """The verdict does not judge a method at errors for which the method was not run."""
     assert CUT.not_run(1e-2) == ("rough", "lost", "never")
     assert CUT.not_run(1e-5) == ("rough", "lost", "never")
     assert CUT.not_run(1e-6) == ("late", "rough", "lost", "never")

@@ -1,4 +1,4 @@
-"""The error that `work_precision` calls attainable, judged by the units of an 80-digit table."""
+"""The error that `work_precision` calls attainable agrees with the units of an 80-digit table."""
 
 import math
 from typing import Any
@@ -15,21 +15,17 @@ from rolling_ellipse._verbs.work_precision.truth import Judge
 ROWS = [row for row in table.rows("rolling_reference") if 0 < float(row["t"]) < 1e4]
 
 
-def scene_of(row: dict[str, str]) -> tuple[Scene, float]:
-    numbers: dict[str, Any] = {name: float(row[name]) for name in ("a", "b", "gravity")}
-    start: dict[str, Any] = {"theta": float(row["theta0"]), "omega": float(row["omega0"])}
-    return Scene(inertia=float(row["gyration2"]), **numbers, **start), float(row["t"])
-
-
 def test_the_attainable_error_is_that_of_rounding_the_inputs() -> None:
     """The attainable error is the largest of the table's units of theta, omega and x: the same sums
     over the inputs, by differences that err by a few per cent."""
     ratios = []
     for row in ROWS[::3]:
-        scene, t = scene_of(row)
+        numbers: dict[str, Any] = {name: float(row[name]) for name in ("a", "b", "gravity")}
+        start: dict[str, Any] = {"theta": float(row["theta0"]), "omega": float(row["omega0"])}
+        scene = Scene(inertia=float(row["gyration2"]), **numbers, **start)
         if certify(scene).validity is not Validity.VALID:
             continue
-        judge = Judge(scene, t, 8, None)
+        judge = Judge(scene, float(row["t"]), 8, None)
         theta, omega, x = (float(row[f"unit_{name}"]) for name in ("theta", "omega", "x"))
         _, fastest, length = judge._sizes
         known = max(theta, omega / fastest, x / length)
@@ -40,7 +36,8 @@ def test_the_attainable_error_is_that_of_rounding_the_inputs() -> None:
 
 
 def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
-    """A body at rest needs no period; one slightly off would swing, at most for 1e15 swings."""
+    """A body at rest needs no period; a body slightly off equilibrium could swing for at most 1e15
+    swings."""
     found = Judge(Scene(2.0, 1.0, friction=1.0), 1e206, 4, None).reference
     assert found.name == "exact rolling" and math.isfinite(found.attainable)
 
