@@ -1,7 +1,7 @@
-"""Time and bytes of many motions in files: python benchmarks/bench_batches.py
+"""Time and bytes per motion of large runs into files: python benchmarks/bench_batches.py
 
-The figures help to plan a large run: single-core time and bytes per motion, exact or with slips and
-jumps, and the rate of a pool of processes.
+The figures help to plan a large run: time on one core and bytes per motion, for exact motions and
+for motions with slips and jumps, and the rate of a pool of processes.
 """
 
 import argparse
@@ -27,7 +27,7 @@ MORE = 101  # number of samples of the larger files
 
 
 def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float]:
-    """Time per motion, the least of a few calls [s], and bytes per motion."""
+    """Time per motion, the shortest of a few calls [s], and bytes per motion."""
     friction, speeds = STARTS[kind]
     if samples > 1:
         speeds = speeds[:: samples // 2]

@@ -2,10 +2,11 @@
 
     python benchmarks/bench_calls.py [--rounds 20] [--only flow]
 
-Each case is timed once in each of many rounds, in turn, and the least time is kept. Machines and
-their load differ: compare ratios (to the first line of a table) within one run. The core's share of
-a call has its own line; the difference from the whole call is Python's share. Imports of the
-package and of NumPy are timed in new interpreters. bench_peers.py measures the cost of accuracy.
+Each case is timed once in each of many rounds, in turn, and the least time counts. Machines and
+their load differ: compare ratios (to the first line of a table) within one run. A line with the
+words "the core" has the time of the core alone; the difference from the whole call is Python's
+share. Imports of the package and of NumPy are timed in new interpreters. bench_peers.py measures
+the cost of accuracy.
 """
 
 import subprocess
@@ -141,7 +142,8 @@ def starts() -> dict[str, dict[str, Any]]:
 
 
 def among_many(start: dict[str, Any], t: float) -> Case:
-    """End states of motions whose omega differs in the last digits, so that each needs a set-up."""
+    """End states of motions whose omega differs in the last digits, so that each motion needs a
+    set-up."""
     omega = start["omega"] * (1 + np.arange(STATES) * 2.0**-50)
     columns = {name: np.full(STATES, value) for name, value in start.items()} | {"omega": omega}
     return Case(partial(flow, np.full(STATES, t), **columns), STATES)
@@ -180,7 +182,8 @@ def flows() -> dict[str, dict[str, Case]]:
     kept: dict[str, Any] = {}
 
     def into_known_memory(case: Case) -> Case:
-        """The same call while its last answer is kept; the call after next reuses its memory."""
+        """The same call, with its last answer stored; the call after next reuses the memory of this
+        answer."""
         return Case(lambda: kept.update(answer=case.call()), case.count)
 
     of_many = {

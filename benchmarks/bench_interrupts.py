@@ -4,10 +4,10 @@
 
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
 table has the median, the 95th percentile and the longest time from the signal to the
-KeyboardInterrupt. A call afterwards must give the same result bit for bit. The exit code is 1 if it
-differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback is one line,
-since Jupyter takes longer to show the source. The last line of the table has the time with the
-source and is not judged. Run it on an otherwise idle machine.
+KeyboardInterrupt. A later call must give the same result as before, bit for bit. The exit code is 1
+if this result differs, or if a 95th percentile is more than 200 ms. In the notebook the traceback
+is one line, since Jupyter takes longer to show the source. The last line of the table has the time
+with the source, which does not affect the exit code. Run it on an otherwise idle machine.
 """
 
 import argparse
@@ -151,7 +151,7 @@ class Notebook:
         return found
 
     def wait(self, receive: Callable[..., dict[str, Any]], asked: str, kind: str) -> Any:
-        """Content of the first message of a kind in reply to a request."""
+        """The content of the first message of a kind in reply to a request."""
         while True:
             message = receive(timeout=60)
             if message["msg_type"] == kind and message["parent_header"].get("msg_id") == asked:

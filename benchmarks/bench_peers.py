@@ -1,12 +1,12 @@
 """The package compared with third-party integrators: python benchmarks/bench_peers.py
 
 Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers); missing
-ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
-tolerances or steps, in turn (`rolling_ellipse.work_precision`). The largest error at samples and at
-the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is timed
-separately; and so are, in a table before the races of a scene, the empty call of each contender (a
-millionth of the span), a call of a known scene, and one of a new scene with its preparation.
-Machines and their load differ: compare ratios within one run.
+ones are named. All integrate theta, omega and x with compiled right-hand sides and with a series of
+tolerances or steps, in turn (`rolling_ellipse.work_precision`). The error is the largest one at the
+samples and at the end, compared with 40 digits. The preparation of a new scene, with its
+compilation, is timed separately. A table before the races of a scene has the times of three calls
+of each contender: an empty call (a millionth of the span), a call with a known scene, and a call
+with a new scene and its preparation. Machines and their load differ: compare ratios within one run.
 """
 
 import argparse
@@ -42,7 +42,7 @@ SCENES = {
     "S": Scene(2.0, 1.0, theta=0.2, omega=3.2, slope=0.1, friction=10.0),  # downhill
     "W": Scene(2.0, 1.0, theta=0.2, omega=1.0, slope=0.1, friction=10.0),  # rocking in a well
 }
-HALF_TURNS = (0.1, 0.42, 1.37, 10.37, 100.37)  # no symmetric states: they would hide phase errors
+HALF_TURNS = (0.1, 0.42, 1.37, 10.37, 100.37)  # symmetric states would hide phase errors
 METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
@@ -113,7 +113,8 @@ def race(
 def costs(
     scene: Scene, half_turns: float, found: Sequence[Any], rounds: int
 ) -> dict[str, list[float]]:
-    """Least seconds of an empty call, of a known scene and of a new one, for every contender."""
+    """The shortest times of an empty call, a call with a known scene and one with a new scene, for
+    every contender [s]."""
     calls: dict[Any, Callable[[], Any]] = {}
     end = end_of(scene, half_turns)
     speeds = itertools.count(1)
@@ -134,7 +135,7 @@ def costs(
 
 
 def table_of_calls(found: dict[str, list[float]]) -> str:
-    """A row for each contender: microseconds of an empty call, of a known and of a new scene."""
+    """A row for each contender: microseconds of an empty call, a known scene and a new scene."""
     lines = [f"{f'[us], least; setting {SETTING:.0e}':28}"]
     lines[0] += "".join(f"{head:>{WIDTH}}" for head in ("empty call", "known scene", "new scene"))
     for name, cells in found.items():
@@ -156,7 +157,8 @@ def microseconds(seconds: float) -> str:
 
 
 def table(found: WorkPrecision) -> str:
-    """A row for each contender and a column for each error; then the row of the best ratios."""
+    """A row for each contender and a column for each error, with the best ratios in the last
+    row."""
     least = {decade: found.least(decade) for decade in DECADES}
     lines = [f"{'[us], least; error <=':28}" + "".join(f"{d:{WIDTH}.0e}" for d in DECADES)]
     lines[0] += f"{'best error':>12}{'set-up [ms]':>13}"
@@ -171,13 +173,8 @@ def table(found: WorkPrecision) -> str:
             best, setup = min(r.errors.largest for r in runs), max(r.setup for r in runs)
             line += f"{best:12.1e}{setup * 1e3:13.3g}"
         lines.append(line)
-    return "\n".join([*lines, factors(found)])
-
-
-def factors(found: WorkPrecision) -> str:
-    """The best peer's time over the package's best, at each error."""
-    line = f"{'best peer / best of package':28}"
-    return line + "".join(f"{factor(found, decade):>{WIDTH}}" for decade in DECADES)
+    ratios = "".join(f"{factor(found, decade):>{WIDTH}}" for decade in DECADES)
+    return "\n".join([*lines, f"{'best peer / best of package':28}{ratios}"])
 
 
 def factor(found: WorkPrecision, decade: float) -> str:

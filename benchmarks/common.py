@@ -1,4 +1,4 @@
-"""Facts of the machine, interleaved timings and tables for the benchmarks."""
+"""Facts about the machine, interleaved timings, and tables for the benchmarks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ _LEVELS = {"avx512f": "AVX-512", "avx2": "AVX2", "avx": "AVX", "asimd": "NEON"}
 
 
 def machine() -> dict[str, str]:
-    """Facts by name: the processor, its widest vectors, the compiler of the core, versions."""
+    """Facts about the machine by name: the processor, its widest vectors, the compiler,
+    versions."""
     text = ""
     with suppress(OSError):  # the file exists only on Linux
         text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
@@ -63,7 +64,7 @@ def end_time(scene: Scene, half_turns: float) -> float:
 
 
 def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
-    """Mean time of a call in a row of calls [s]."""
+    """Mean time of a call that is repeated [s]."""
     begin = time.perf_counter()
     for _ in range(repeats):
         call()

@@ -1,12 +1,13 @@
-"""Rolling, sliding, flight and impacts, followed by Taylor series in any number of digits.
+"""Rolling, sliding, flight and impacts, computed from Taylor series with any number of digits.
 
-make_contact_reference.py and make_resistance_reference.py make tables with this module,
-judge_contact.py judges random scenes. It needs only gmpy2 and shares no code or formula with the
-package.
+make_contact_reference.py and make_resistance_reference.py make tables with this module, and
+judge_contact.py judges random scenes with it. The module needs only gmpy2 and shares no code or
+formula with the package.
 
-Motion. x along the ground, z away from it, theta clockwise, g down a slope alpha; per mass, with
-k^2 = I/m. The point that touches is P(phi) = (a sin phi, -b cos phi) of the body. With
-w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind the contact:
+Motion. x is along the ground, z away from it, and theta clockwise. The ground slopes down by alpha.
+Forces are per mass, with k^2 = I/m. The touching point of the body is P(phi) = (a sin phi, -b cos
+phi). With w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind the
+contact:
 
     w^2 = a^2 cos^2 phi + b^2 sin^2 phi,   tan theta = (b/a) tan phi,   phi' = omega w^2 / (a b)
     h = a b / w,   o = dh/dtheta = c^2 sin phi cos phi / w,   r = w^3 / (a b)                    (1)
@@ -15,12 +16,12 @@ r is the radius of curvature. The ground acts with N and F per mass:
 
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - (o + q) N              (2)
 
-The contact is a small patch. In it N acts by the lever of rolling resistance delta ahead of the
-point that touches, which is a couple q N against the turning: q = delta sign omega. A body that
-does not turn is held by a couple of up to delta N to either side. Slip v = x' - h omega, and
-without pressure the gap z - h would open with -c, where c = g cos alpha + (r - h) omega^2. A mode
-ends when one of its margins, listed last, reaches zero; with delta > 0, q omega is one more margin
-of rolling and sliding:
+The contact is a small patch. In it N acts ahead of the touching point by the lever of rolling
+resistance delta. This is a couple q N against the turning, with q = delta sign omega. A body that
+does not turn is held by a couple of up to delta N to either side. The slip is v = x' - h omega.
+Without pressure the gap z - h would open with the acceleration -c, where c = g cos alpha + (r - h)
+omega^2. A mode ends when one of its margins, listed last, reaches zero; with delta > 0, q omega is
+one more margin of rolling and sliding:
 
     rolling   v = 0: (k^2 + h^2 + o (o + q)) omega' = h g sin alpha - o h omega^2 - (o + q) c, N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
@@ -30,27 +31,29 @@ of rolling and sliding:
     held      omega = 0 for a time, N = g cos alpha: at rest with F = -g sin alpha for ever, or
               sliding with F = -mu s N; s v
 
-Where slip, turning or both are zero, each is tried as absent and to both sides. A mode is possible
-if its N and B are above 0, the slip and the turning that start grow to their sides, and neither
-friction nor the couple is larger than available. Where none is possible, the body flies if c <= 0
-and jams if not, as a slide does with B < 0 < c; where several are, the motion is undecided. F and N
-jump where omega changes its sign, so slip may start there. The change of sign is no event, but rest
-is. Without friction slip has no side, and changes its sign without an event.
+If slip or turning is zero, modes without it and with it to either side are tried. A mode is
+possible if its N and B are positive, if the slip and the turning that start grow to their sides,
+and if neither friction nor the couple is larger than available. If no mode is possible, the body
+flies if c <= 0 and otherwise jams, as does a slide with B < 0 < c. If several modes are possible,
+the motion is undecided. F and N jump when omega changes its sign, and slip may start then. The
+change of sign is not an event, but rest is. Without friction slip has no side, and changes its sign
+without an event.
 
-An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
-which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
-the work taken before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first ends
-the slip, as far as possible without a pull. Rebounds below 1e-6 sqrt(g min(a, b)) of a body dropped
-flat are summed, after which it rests; other scenes end before rebounds fall to a thousand times
-that.
+An impact adds up impulses per mass along and away from the ground with Coulomb's law, in pieces on
+which v and u = z' - o omega change linearly. It ends when the work done since u = 0 is e^2 times
+the work absorbed before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first
+ends the slip, as far as this is possible without a pulling force. Rebounds below 1e-6 sqrt(g min(a,
+b)) of a body dropped flat are summed, after which it rests; other scenes end before rebounds fall
+to a thousand times that.
 
 Method. Taylor series in time of (1) and (2) by the recurrences for products, quotients and roots
-(A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each step.
-The first event of a step is the first root of polynomials, located without sampling: Bernstein
-coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
-the interval is halved. Where s v, z - h or q omega starts at zero those zeros are divided out: one
-where slip, turning or rebound starts with a speed or a jump of the force, two where rolling turns
-to slip or a gap opens at once, three where a slide lifts off. This resolves the shortest slips.
+(A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients determine the size of
+each step. The first event of a step is the first root of polynomials, located without sampling:
+Bernstein coefficients that do not change sign exclude a root, one change means exactly one root,
+and otherwise the interval is halved. If s v, z - h or q omega starts at zero, those zeros are
+divided out: one if slip, turning or rebound starts with a speed or a jump of the force, two if
+rolling turns to slip or a gap opens at once, three if a slide lifts off. This resolves the shortest
+slips.
 """
 
 import math
@@ -352,8 +355,8 @@ def sign_of(number: Any) -> int:
 
 
 def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
-    """How the next arc may turn, in fields of `Arc`: they have no meaning without a couple, and
-    from omega = 0 there are three possibilities."""
+    """How the next arc may turn, as fields of `Arc`. Turning does not matter without a couple; from
+    omega = 0 there are three possibilities."""
     if body.lever == 0:
         return [{}]
     if omega != 0:

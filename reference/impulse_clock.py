@@ -2,9 +2,10 @@
 
     python reference/impulse_clock.py
 
-The clock is the impulse of the normal force. Rates with respect to it stay finite where B vanishes,
-where contact_motion.py, whose clock is time, stops. Extrapolated midpoint rules (W. Gragg)
-integrate the motion. Prints the numbers in tests/contact/test_slides.py.
+The independent variable is the impulse of the normal force. Derivatives with respect to this
+impulse stay finite as B vanishes. contact_motion.py, which uses time instead, stops there. The
+integrator extrapolates midpoint rules (W. Gragg). The script prints the numbers in
+tests/contact/test_slides.py.
 """
 
 from typing import Any
@@ -25,7 +26,7 @@ SCENES = (
 
 
 def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
-    """Rates of the state y, named in NAMES, per impulse per mass; and the slip."""
+    """Derivatives of the state y (see NAMES) with respect to impulse per mass, and the slip."""
     theta, omega, x_dot, _, _ = y
     a, b, k2 = mp.mpf(scene.a), mp.mpf(scene.b), mp.mpf(scene.inertia) / mp.mpf(scene.mass)
     sine, cosine, c2 = mp.sin(theta), mp.cos(theta), (a - b) * (a + b)
@@ -41,7 +42,7 @@ def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
 
 
 def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[Any], Any]:
-    """The state after a step, and its error."""
+    """The state after a step, and an estimate of its error."""
     rows: list[list[list[Any]]] = []
     for i, n in enumerate(POINTS):
         part = step / n
@@ -61,7 +62,7 @@ def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[A
 
 
 def end_of_slide(scene: rl.Scene) -> list[Any]:
-    """The state in which the slip vanishes, from a sliding start."""
+    """The state in which the slip of a sliding start vanishes."""
     y = [mp.mpf(getattr(scene, name, 0.0)) for name in NAMES]
     slip = rates(scene, 1, y)[1]
     side, step = (1 if slip > 0 else -1), mp.mpf("1e-3")

@@ -1,30 +1,30 @@
-"""Judge `simulate(model="contact")` by random scenes, followed by contact_motion.py.
+"""Judge `simulate(model="contact")` with random scenes that contact_motion.py follows.
 
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
-one scene of a seed and prints all its values, `--family well` draws from one family, `--scenes 0`
-only prints the findings in a file. The report counts the judged scenes by family, shape, friction
-and rolling resistance, and reproduces each scene above `--limit` units.
+one scene of a seed and prints all its values, `--family well` draws from one family, and `--scenes
+0` only prints the findings in a file. The report counts the judged scenes by family, shape,
+friction and rolling resistance, and prints each scene with an error above `--limit` units.
 
 `--resistance` adds a lever of rolling resistance to each scene: up to half of the shorter
 semi-axis, down to 1e-12 of that, or close to the least that holds the body. Such scenes last for
 ten natural times.
 
-Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
+The scenes come from the families below: aspect ratios from 1e-3 to 1e3, friction from none to
 unlimited, inertia, mass, gravity and lengths over many powers of ten. Each scene is followed with
-42 digits until the inputs no longer fix the answer, there are enough events, or the kind of an
-event is undecided. Events, the states after them and states at times between are compared with the
-package's, which come from a table of times, from single times, and from `sol` in any order.
+42 digits until the inputs no longer determine the answer, there are enough events, or the kind of
+an event is undecided. Events, the states after them and states at times between are compared with
+the package's, which come from a table of times, from single times, and from `sol` in any order.
 
-Units. The unit of a value is a sum: the effect of 2.2e-16 of each input, each in its own run, two
-ulp of the value and, at events, the effect of two ulp of the time. On the ground it includes the
-effect of half an ulp of theta on h, h' omega and, without slip, h omega: in returned states these
-follow from the rounded theta. theta0 is changed by 2.2e-16 rad. The strict unit changes theta0 by
-2.2e-16 of its distance from the nearest quarter turn and has no ulp of times: there a double
-resolves more finely than an ulp of the angle.
+Units. The unit of a value is a sum: the effects of changing each input by 2.2e-16, each in a
+separate run; two ulp of the value; and, at events, the effect of two ulp of the time. On the ground
+the unit includes the effect of half an ulp of theta on h, h' omega and, without slip, h omega,
+because returned states compute these values from the rounded theta. theta0 changes by 2.2e-16 rad.
+The strict unit has no ulp of times, and changes theta0 by 2.2e-16 of its distance from the nearest
+quarter turn, which is finer than an ulp of the angle.
 
-Rolling that never ends equals the model "rolling" bit for bit, which other tables judge over any
+Rolling without an end equals the model "rolling" bit for bit. Other tables test this model over any
 time.
 
 Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged beyond it. If
@@ -73,11 +73,11 @@ from series import Road
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # the values of every 20th scene are checked in a third precision
-FARTHEST = 0.1  # most units between two precisions; the finer one is then millions of times better
+FARTHEST = 0.1  # most units between two precisions; the finer one is millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # least unit / size of a scene: some values are zero for all inputs
 RATE_STEP = 1e-8  # change of time / step, in differences for rates
 UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not determine the answer
-KIND_LIMIT = 1e-4  # largest unit of a time / time; up to it the inputs fix the kind of an event
+KIND_LIMIT = 1e-4  # largest unit of a time / time at which the inputs determine the kind of event
 MOST_STEPS = 260  # most steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
 ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
@@ -100,7 +100,7 @@ class Blow(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A scene of a family, and the plan of its judgement."""
+    """A scene of a family, with the largest time and number of events to judge."""
 
     family: str
     scene: Scene
@@ -171,7 +171,7 @@ class Judge(Follower):
         return Arc(FLIGHT, zeros=1) if hit.rebound > 0 else standing(body, self.state, hit.slip)
 
     def step(self, end: Any) -> None:
-        """Take a step, and keep the state at its start."""
+        """Take a step, and store the state at its start."""
         self.started = self.state
         super().step(end)
 
@@ -297,10 +297,10 @@ def differences(new: Row, old: Row) -> list[float]:
 
 
 class Reference(NamedTuple):
-    """The rows and events that the inputs fix."""
+    """The rows and events that the inputs determine."""
 
     judged: list[Judged]
-    kinds: list[str]  # kinds of the events that the inputs fix
+    kinds: list[str]  # kinds of the events that the inputs determine
     times: list[Any]  # times of all events
     at_limit: str  # the input whose change changes the events, or ""
     apart: float  # distance from a finer precision, in units
@@ -313,7 +313,8 @@ def natural(scene: Scene) -> tuple[float, float]:
 
 
 def sizes(scene: Scene) -> list[float]:
-    """Natural sizes of the components of a row, to recognise answers that the inputs do not fix."""
+    """Natural sizes of the components of a row, to recognise answers that the inputs do not
+    determine."""
     length, tau = natural(scene)
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
@@ -367,8 +368,7 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
     rows, bases = rows_of(exact), rows_of(base)
-    loose = {key: [0.0] * len(VALUES) for key in rows}
-    strict = {key: [0.0] * len(VALUES) for key in rows}
+    loose, strict = ({key: [0.0] * len(VALUES) for key in rows} for _ in range(2))
     at_limit = ""
     for name, count, changed in changed_cases(case):
         again = answer(changed, road, times, end)
@@ -424,14 +424,12 @@ def in_words(case: Case) -> rl.Scene:
     """The scene of a case as the package's `Scene`."""
     given = case.scene.given()
     if case.blow:
-        given["impulse"] = rl.Impulse(
-            jx=case.blow.jx, jz=case.blow.jz, dx=case.blow.dx, dz=case.blow.dz
-        )
+        given["impulse"] = rl.Impulse(**case.blow._asdict())
     return rl.Scene(**given)
 
 
 class Found(NamedTuple):
-    """The package's answers, by row name and the route to it."""
+    """The package's answers by the name of the row and the way of computing them."""
 
     kinds: list[str]
     values: dict[tuple[str, str], list[float]]  # (name of the row, route): t, theta, ...
@@ -487,8 +485,7 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
     last = ends[-1] if ends else 0.0
     end = last + (stop - last) * (0.6 if stop < case.longest else 1.0)
     times = []
-    bounds = [0.0, *ends, end]
-    for low, high in pairwise(bounds):
+    for low, high in pairwise([0.0, *ends, end]):
         if high - low > max(1e6 * ROUNDING * high, SHORTEST * natural(case.scene)[1]):
             times += [low + (high - low) * rng.uniform(0.05, 0.95) for _ in range(2)]
     if len(times) > 12:
@@ -497,7 +494,7 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
 
 
 def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bool:
-    """Whether a scene changed by a few roundings has these events in the package."""
+    """Whether a scene changed by a few roundings has the events that the package reports."""
     for most in (4, 64) * NEARBY:
         near = case
         v = case.scene._asdict()
@@ -519,7 +516,7 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
 
 
 def too_slow(*_: Any) -> None:
-    """Handles the alarm."""
+    """Handle the alarm by raising a TimeoutError."""
     raise TimeoutError
 
 
@@ -534,8 +531,7 @@ def judge(task: Task, tell: bool = False) -> dict[str, Any]:
     case = drawn(rng, family)
     if resistance:
         case = with_resistance(rng, case)
-    record: dict[str, Any] = {"number": number, "family": case.family}
-    record["inputs"] = case.scene.given()
+    record = {"number": number, "family": case.family, "inputs": case.scene.given()}
     if case.blow:
         record["blow"] = list(case.blow)
     signal.signal(signal.SIGALRM, too_slow)
@@ -697,17 +693,11 @@ def drawn_body(rng: random.Random) -> dict[str, Any]:
     elif what < 0.5:
         inertia = mass * longer**2 * power(rng, -1.5, 0.5)
     restitution = rng.choice([0.0, 0.0, 1.0, rng.uniform(0, 1), power(rng, -8, -1)])
-    return {
-        "a": a,
-        "b": b,
-        "mass": mass,
-        "gravity": 9.81 if rng.random() < 0.6 else power(rng, -3, 3),
-        "inertia": inertia,
-        "slope": drawn_slope(rng),
-        "friction": drawn_friction(rng),
-        "restitution": restitution,
-        "x": 0.0 if rng.random() < 0.6 else longer * rng.uniform(-2, 2),
-    }
+    gravity = 9.81 if rng.random() < 0.6 else power(rng, -3, 3)
+    ground = {"slope": drawn_slope(rng), "friction": drawn_friction(rng)}
+    x = 0.0 if rng.random() < 0.6 else longer * rng.uniform(-2, 2)
+    body = {"a": a, "b": b, "mass": mass, "gravity": gravity, "inertia": inertia}
+    return body | ground | {"restitution": restitution, "x": x}
 
 
 Values = dict[str, Any]
@@ -900,8 +890,7 @@ def needed_friction(v: Values) -> float:
     h, lever, _ = support(v["a"], v["b"], v["theta"])
     disc = (v["a"] ** 2 + v["b"] ** 2) / 4
     k2 = disc if v["inertia"] is None else v["inertia"] / v["mass"]
-    needed: float = abs(h * lever) / (k2 + h * h)
-    return needed
+    return float(abs(h * lever) / (k2 + h * h))
 
 
 class Family(NamedTuple):

@@ -1,19 +1,20 @@
-"""Judge `fit_motion` by films of known scenes, right ones and wrong ones.
+"""Judge `fit_motion` with right and wrong films of known scenes.
 
     python reference/judge_films.py judged.jsonl --study right --films 300
 
-A film takes one to six seconds. A run continues an existing file, and each study has its own seeds;
-`--films 0` only prints what is in the file. The studies:
+A film takes one to six seconds. A run continues an existing file, and each study has its own seeds.
+`--films 0` only prints the results in the file. The studies:
 
 right    films of all kinds with normal noise: how many are called wrong, and, if sigma is
          estimated, how far parameters are from those of the scene, in standard errors
-camera   films of all kinds by a camera of unknown scale, ground and clock: as for right films
-resistance  films of bodies that come to rest by rolling resistance, every second one by such a
+camera   films of all kinds from a camera of unknown scale, ground and clock: as for right films
+resistance  films of bodies that come to rest by rolling resistance, every second one from such a
          camera, with given sigma: chi2, parameters as for right films, and the time of a fit
 wrong    films that do not fit their scene, of the kinds below in turn: how many are called wrong,
-         and for how many the reading that makes them fit is named
-example  the film of docs/film.md: cost of the minimum above the minimum downhill from the truth
-wild     the same with 4 of 80 angles off by a quarter turn, by "soft_l1" and "cauchy" in turn
+         and for how many the message names the reading that makes them fit
+example  the film of docs/film.md: cost of the minimum above the minimum reached from the true scene
+wild     the same film with 4 of 80 angles off by a quarter turn, fitted with "soft_l1" and
+         "cauchy" in turn
 """
 
 import argparse
@@ -31,9 +32,8 @@ from runs import add_record, read_records
 
 Tracks = dict[str, Any]
 TRACKS = ("x", "z", "theta")
-EXAMPLE = rl.Scene(
-    0.035, 0.025, z=0.1, theta=0.5, omega=12.0, friction=0.18, restitution=0.52
-)  # of docs/film.md
+# the scene of docs/film.md
+EXAMPLE = rl.Scene(0.035, 0.025, z=0.1, theta=0.5, omega=12.0, friction=0.18, restitution=0.52)
 GUESS = EXAMPLE.replace(theta=0.3, omega=10.0, friction=0.4, restitution=0.3)
 FREE = ("theta", "omega", "friction", "restitution")
 SIGMA = {"x": 5e-4, "z": 5e-4, "theta": 0.01}
@@ -89,7 +89,7 @@ def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
 
 
 def largest(fit: rl.Fit) -> float:
-    """Largest T of the tracks of a fit without outliers, by the definition of `fit_motion`."""
+    """The largest T of the tracks of a fit without outliers, as defined in `fit_motion`."""
     found = [0.0]
     for r in fit.residuals.T:
         pairs = np.isfinite(r[:-1]) & np.isfinite(r[1:])
@@ -100,25 +100,37 @@ def largest(fit: rl.Fit) -> float:
     return max(found)
 
 
-def right(seed: int) -> dict[str, Any]:
-    random, kind = np.random.default_rng([1, seed]), KINDS[seed % 5]
-    scene, free, sigma, t = drawn(kind, random)
-    film = noisy(scene, t, sigma, random)
-    if seed // 5 % 2:  # missing frames
-        for name in TRACKS:
-            film[name][random.random(t.size) < 0.1] = np.nan
-    given = sigma if seed // 10 % 3 == 2 else None
-    fit = rl.fit_motion(**film, scene=guessed(scene, free), free=free, sigma=given)
-    off = {n: (value_of(fit.scene, n) - value_of(scene, n)) / fit.errors[n] for n in free}
-    return {
-        "kind": kind, "frames": t.size, "given": given is not None, "T": largest(fit), "off": off,
+def with_gaps(film: Tracks, random: Any) -> None:
+    """Remove a tenth of the numbers."""
+    for name in TRACKS:
+        film[name][random.random(len(film[name])) < 0.1] = np.nan
+
+
+def results(fit: rl.Fit, true: dict[str, float], **more: Any) -> dict[str, Any]:
+    """The results of a fit of right films; `off` is the error in standard errors."""
+    off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
+    return more | {
+        "frames": len(fit.residuals), "T": largest(fit), "off": off, "chi2": fit.chi2,
+        "dof": int(np.isfinite(fit.residuals).sum()) - len(true),
         "alarm": "not fit" in fit.message, "message": fit.message,
     }  # fmt: skip
 
 
+def right(seed: int) -> dict[str, Any]:
+    random, kind = np.random.default_rng([1, seed]), KINDS[seed % 5]
+    scene, free, sigma, t = drawn(kind, random)
+    film = noisy(scene, t, sigma, random)
+    if seed // 5 % 2:
+        with_gaps(film, random)
+    given = sigma if seed // 10 % 3 == 2 else None
+    fit = rl.fit_motion(**film, scene=guessed(scene, free), free=free, sigma=given)
+    true = {name: value_of(scene, name) for name in free}
+    return results(fit, true, kind=kind, given=given is not None)
+
+
 def camera(seed: int) -> dict[str, Any]:
-    """The scale is wrong by 0.2 to 5 times, the ground by up to three bodies; the first frame is up
-    to 1.5 sqrt(a/g) after the start, and the clock of the film may have run for long before."""
+    """The scale is 0.2 to 5, and the ground is off by up to three semi-axes. The first frame is up
+    to 1.5 sqrt(a/g) after the start, and the clock of the film may have started long before."""
     random, kind = np.random.default_rng([7, seed]), KINDS[seed % 5]
     scene, free, sigma, t = drawn(kind, random)
     scale = float(np.exp(random.uniform(math.log(0.2), math.log(5))))
@@ -128,30 +140,24 @@ def camera(seed: int) -> dict[str, Any]:
     film = noisy(scene, t - t[0] + late, sigma, random)
     film |= {"x": scale * film["x"], "z": ground + scale * film["z"]}
     if seed // 5 % 2:
-        for name in TRACKS:
-            film[name][random.random(t.size) < 0.1] = np.nan
+        with_gaps(film, random)
     film["t"] = film["t"] - clock
     free = tuple(name for name in free if name != "z")  # the clock determines it
     guess = guessed(scene, free)
     true = {name: value_of(scene, name) for name in free}
     true |= {"scale": scale, "ground": ground, "clock": clock}
     given = {n: s * (1 if n == "theta" else scale) for n, s in sigma.items()}
-    how: dict[str, Any] = {"sigma": given if seed % 3 == 0 else None}
-    fit = rl.fit_motion(**film, scene=guess, free=tuple(true), **how)
-    off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
-    return {
-        "kind": kind, "frames": t.size, "given": seed % 3 == 0, "T": largest(fit), "off": off,
-        "chi2": fit.chi2, "dof": int(np.isfinite(fit.residuals).sum()) - len(true),
-        "alarm": "not fit" in fit.message, "message": fit.message,
-    }  # fmt: skip
+    known = given if seed % 3 == 0 else None
+    fit = rl.fit_motion(**film, scene=guess, free=tuple(true), sigma=known)
+    return results(fit, true, kind=kind, given=known is not None)
 
 
 def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """Like `drawn`, for a body that comes to rest and whose lever is at least five errors from 0.
+    """Like `drawn`, for a body that comes to rest and whose lever is at least five standard errors.
 
-    A rolling body before a camera with a clock of its own has a known spin: where x alone is known,
-    it passes a start again with each swing.
-    The film ends between 0.7 and 1.1 of the time of rest, which is below 60 sqrt(a/g).
+    The spin of a rolling body is known if the camera has an unknown clock, because otherwise the
+    body would pass through an equivalent start in every swing. The film ends at 0.7 to 1.1 times
+    the time of rest, which is below 60 sqrt(a/g).
     """
     random, small = np.random.default_rng([8, seed]), seed // 6 % 2
     while True:
@@ -186,7 +192,8 @@ def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], An
 
 
 def _error(scene: rl.Scene, free: tuple[str, ...], sigma: dict[str, float], t: Any) -> float:
-    """Standard error of the lever, by central differences at the truth and a known camera."""
+    """Standard error of the lever for a known camera, from central differences at the true
+    scene."""
     columns = []
     for name in free:
         step = 1e-6 * {"rolling_resistance": scene.b}.get(name, 1.0)
@@ -213,13 +220,9 @@ def resistance(seed: int) -> dict[str, Any]:
     given = {n: s * (1 if n == "theta" else scale) for n, s in sigma.items()}
     guess, start = guessed(scene, free).replace(rolling_resistance=0.0), time.process_time()
     fit = rl.fit_motion(**film, scene=guess, free=tuple(true), sigma=given)
-    off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
-    return {
-        "seconds": time.process_time() - start, "frames": t.size, "T": largest(fit), "off": off,
-        "levers": scene.rolling_resistance / fit.errors["rolling_resistance"], "chi2": fit.chi2,
-        "dof": int(np.isfinite(fit.residuals).sum()) - len(true),
-        "alarm": "not fit" in fit.message, "message": fit.message,
-    }  # fmt: skip
+    seconds = time.process_time() - start
+    levers = scene.rolling_resistance / fit.errors["rolling_resistance"]
+    return results(fit, true, seconds=seconds, levers=levers)
 
 
 def _smoothed(track: Any) -> Any:
@@ -267,16 +270,13 @@ def wrong(seed: int) -> dict[str, Any]:
 
 
 def _over_truth(film: Tracks, loss: str) -> dict[str, Any]:
-    """Cost of the minimum, minus that of the minimum downhill from the truth."""
+    """Cost of the minimum that `fit_motion` finds, minus that of the minimum reached from the true
+    scene."""
     start = time.process_time()
     fit = rl.fit_motion(**film, scene=GUESS, free=FREE, sigma=SIGMA, loss=loss)
-    seconds, cost = time.process_time() - start, _cost(fit, loss)
+    seconds, squares = time.process_time() - start, (fit.residuals / fit.sigma) ** 2
+    cost = float(np.nansum(_LOSS[loss](squares)) / 2)
     return {"over": cost - _local(film, loss), "seconds": seconds, "message": fit.message}
-
-
-def _cost(fit: rl.Fit, loss: str) -> float:
-    squares = (fit.residuals / fit.sigma) ** 2
-    return float(np.nansum(_LOSS[loss](squares)) / 2)
 
 
 _LOSS: dict[str, Callable[[Any], Any]] = {
@@ -287,7 +287,7 @@ _LOSS: dict[str, Callable[[Any], Any]] = {
 
 
 def _local(film: Tracks, loss: str) -> float:
-    """Cost of the minimum that SciPy alone reaches from the truth."""
+    """Cost of the minimum that SciPy alone reaches from the true scene."""
     from scipy.optimize import least_squares
 
     def residuals(u: Any) -> Any:
@@ -304,8 +304,7 @@ def _local(film: Tracks, loss: str) -> float:
 
 
 def example(seed: int) -> dict[str, Any]:
-    film = _example_film(np.random.default_rng(seed))
-    return _over_truth(film, "linear")
+    return _over_truth(_example_film(np.random.default_rng(seed)), "linear")
 
 
 def wild(seed: int) -> dict[str, Any]:
@@ -339,10 +338,8 @@ def report(rows: list[dict[str, Any]]) -> None:
                   f"parameters, {np.mean(off < 1):.1%} within 1, {np.mean(off < 3):.1%} within 3 "
                   f"errors, largest {off.max():.1f}")  # fmt: skip
             if study == "resistance":
-                chi2, dof, levers, seconds = (
-                    np.array([row[name] for row in some])
-                    for name in ("chi2", "dof", "levers", "seconds")
-                )
+                names = "chi2", "dof", "levers", "seconds"
+                chi2, dof, levers, seconds = np.array([[row[n] for n in names] for row in some]).T
                 print(f"chi2/n {np.sum(chi2) / np.sum(dof):.3f}, of films {min(chi2 / dof):.2f} to "
                       f"{max(chi2 / dof):.2f}; levers of {min(levers):.0f} errors or more; median "
                       f"time of a fit {np.median(seconds):.2f} s")  # fmt: skip

@@ -1,34 +1,36 @@
-"""Judge the states of random motions as new starts.
+"""Start new motions from the states of random motions, and judge them.
 
     python reference/judge_restarts.py --study ends --scenes 20000 --seed 1 --file restarts.jsonl
 
-A run takes some minutes and continues an existing file; without `--file` nothing is kept, and
-`--scenes 0` only prints what is in the file. The studies:
+A run takes a few minutes and continues an existing file. Without `--file` the results are not
+stored. `--scenes 0` only prints the results in the file. The studies:
 
 ends    ends after t1 start motions of length t2: do they end like one motion of length t1 + t2
         (an exact sum)?
 events  states at events (those of the event, of `at` and of `scene_at`) start motions: do these
         have the later events?
-cut     motions cut by `max_events` continue from their end, and from a rounding before the next
-        event: do these have the due event and the later ones?
+cut     motions stopped by `max_events` continue from their end, and from one rounding before the
+        next event: do the new motions have this event and the later ones?
 
-Scenes are drawn with aspects up to 800, any size, slope and friction, and angles up to 1e9. A new
-start is judged as one of these:
+The random scenes have aspect ratios up to 800, any size, slope and friction, and angles up to 1e9.
+The verdict on a new start is one of these:
 
 same            the same events and, in `ends`, a state within 8 units
 over 8 units    the same events, but a state farther away
-silent          in `cut`, the due change of mode happens without an event, as documented
+silent          in `cut`, the next change of mode happens without an event, as documented
 one more ...    one more impact from a start among bounces that the motion sums, as documented
 jams ...        a start at the edge of Painleve's paradox: its roundings decide whether it jams, as
                 documented
-beside a tie    other events, but the motion itself has others, too, with an input changed by 1e-12
-wrong           other events without a reason
+beside a tie    other events, but the first motion has other events, too, if an input changes by
+                1e-12
+wrong           other events for no known reason
 refused         no scene accepts the state
 
-A unit of a number is the effect of a rounding of each input of the motion, and of each input of the
-new start, by differences, plus two ulp of the number. On the ground it includes the effect of an
-ulp of theta on h, h' omega and, without slip, h omega: in both states these follow from the rounded
-theta, by half an ulp. A state whose dependence on the inputs is not linear is beside a tie.
+The unit of a number is the sum of the effects of one rounding of each input of the motion and of
+the new start, computed from differences, plus two ulp of the number. On the ground the unit
+includes the effect of one ulp of theta on h, h' omega and, without slip, h omega, because both
+states compute these values from a theta rounded by half an ulp. A state that does not depend
+linearly on the inputs is beside a tie.
 """
 
 import argparse
@@ -124,7 +126,7 @@ def draw(rng: Any, n: int) -> Values:
 
 
 def scene_of(v: Values, i: int) -> rl.Scene | None:
-    """One of the scenes, if it is accepted."""
+    """Scene number i, or None if its values are rejected."""
     try:
         given: Values = {n: float(c[i]) for n, c in v.items() if not math.isnan(c[i])}
         return rl.Scene(**given)
@@ -147,7 +149,8 @@ def ends(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:
-    """Effect of a rounding of each input on the ends, and whether an input changes events."""
+    """Effect of a rounding of each input on the ends, and whether such a change changes the
+    events."""
     states, codes = ends(v, t)
     total, tie = np.zeros_like(states), np.zeros(len(t), bool)
     for name, column in v.items():
@@ -233,7 +236,8 @@ def follow(scene: rl.Scene, t: float, most: int = MOST) -> rl.Trajectory:
 def same(
     m: rl.Trajectory, got: rl.Trajectory, k: int = 0, skip: int = 0, start: float = 0.0
 ) -> bool:
-    """Whether a motion that starts at a time has the events from k on (8 kinds, 3 times)."""
+    """Whether a motion from `start` on has the events of another motion from event k on: the first
+    eight kinds and the first three times."""
     complete = len(m.events) < MOST
     if complete and m.status is not got.status:
         return False

@@ -1,28 +1,29 @@
 """Make `python/rolling_ellipse/benchmark/problems/*.json`: problems with known answers.
 
-contact_motion.py computes the motions, in series of order 50 and 60 with 64 and 76 digits. States,
-forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest difference
-was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
+contact_motion.py computes the motions with series of order 50 and 60 and with 64 and 76 digits.
+States, forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest
+difference was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
 
     python make_benchmark.py            makes all files (4 minutes, one core)
     python make_benchmark.py roll.resist slide.resist     makes these two
 
-Rows hold x, z, theta, x_dot, z_dot, omega (SI units) and the normal and the friction force on the
-body [N], 0 in flight. A given time is a multiple of a round step, and no closer than
-0.02 sqrt(L/g) to an event, where L = max(a, b). All numbers are the doubles nearest to the motion
-of the scene in the file, with its inertia; for a start on the ground the numbers that theta, omega
-and the contact determine are derived from these.
+A row contains x, z, theta, x_dot, z_dot, omega (SI units) and the normal and the friction force on
+the body [N], which are 0 in flight. The times are multiples of a round step, at least 0.02
+sqrt(L/g) away from each event, where L = max(a, b). All numbers are the doubles nearest to the
+motion of the scene in the file, with the inertia in the file. For a start on the ground, the values
+that theta, omega and the contact determine are computed from these.
 
-Condition. The sum over the inputs p of |dy/dln p| over `scales`, the worst of the six of a state,
-or for an event of its time over sqrt(L/g); at least 1. theta changes in radians, other zeros of the
-start in units of L, sqrt(g L) or sqrt(g/L); zero slope, friction, restitution and rolling
-resistance are not changed, nor are the mass and the inertia of a uniform disc, which follows a and
-b. Differences of 1e-12 on both sides, in 42 digits; an input at the end of its range, or whose
-other side has other events, changes on one side.
+Condition. The condition of a value y is the sum of |dy/dln p| over the inputs p, divided by the
+scale of y, and at least 1. A state has the largest condition of its six values (see `scales`), an
+event that of its time, with the scale sqrt(L/g). theta changes in radians, and other values of the
+start that are zero change in units of L, sqrt(g L) or sqrt(g/L). A slope, friction, restitution or
+rolling resistance of zero does not change, nor does the mass; the inertia is that of a uniform disc
+and follows from a and b. The differences are central, of 1e-12 with 42 digits. They are one-sided
+if the input is at the end of its range or if one side has other events.
 
-The infinitely many bounces of a disc that no longer slips are a geometric series, with its sum in
-closed form. Events are listed as by a simulation with the default rest_speed: impacts as long as
-the rebound is above 1e-6 sqrt(g b), and one event, STICK, at the end of the series.
+The infinitely many bounces of a disc that no longer slips form a geometric series, whose sum is
+known in closed form. The events are those of a simulation with the default rest_speed: impacts as
+long as the rebound is above 1e-6 sqrt(g b), and one event, STICK, at the end of the series.
 """
 
 import json
@@ -185,8 +186,8 @@ class Sampler(Follower):
         self.grips |= self.arc is not None and self.arc.mode == ROLLING
 
     def step(self, end: Any) -> None:
-        """Take a step, and keep the rows on both sides of its events; between two of them the body
-        flies."""
+        """Take a step, and store the rows just before and after its events; between two events of a
+        step the body flies."""
         known = len(self.rows)
         super().step(end)
         for row in self.rows[known:]:
@@ -239,8 +240,7 @@ def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[S
         then = [row.t for row in one.rows]
         numbers.append([*then, *chain(*one.samples), *chain(*chain(*one.sides))])
     with CHECK_ROAD.context():
-        pairs = zip(*numbers, strict=True)
-        apart = max(float(abs(p - q) / max(abs(q), 1)) for p, q in pairs)
+        apart = max(float(abs(p - q) / max(abs(q), 1)) for p, q in zip(*numbers, strict=True))
         energy = float(found[0].energy_error / found[0].size)
     assert found[0].kinds == found[1].kinds and max(apart, energy) < AGREEMENT
     return found[0], apart
@@ -249,7 +249,8 @@ def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[S
 def neighbours(
     problem: Problem, base: Sampler, times: list[float], name: str, size: Any
 ) -> tuple[Any, ...]:
-    """An input changed on both sides, or changed on one side and unchanged, with the answers."""
+    """Two values of an input and their motions: the input decreased and increased, or unchanged and
+    changed."""
     scene, end, old = problem.scene, problem.t_end, mpfr(getattr(problem.scene, name))
     found = []
     for new in (old - size, old + size):
@@ -298,12 +299,12 @@ def gradient(problem: Problem, name: str) -> list[str]:
 
 
 def doubles(row: list[Any]) -> list[float]:
-    """The nearest doubles; 0 for values that are zero to within their last digits."""
+    """The nearest doubles, or 0 for magnitudes up to `AGREEMENT`."""
     return [float(one) if abs(one) > AGREEMENT else 0.0 for one in row]
 
 
 def tags(scene: Scene, found: Sampler) -> list[str]:
-    """Abilities that a simulator needs; "spin" is a spin that differs from the spin of rolling."""
+    """Abilities that a simulator needs; "spin" means a spin that differs from that of rolling."""
     has = {
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
         "non-round": scene.a != scene.b,
@@ -402,12 +403,8 @@ def main(names: list[str]) -> None:
         text, *check = make(name, PROBLEMS[name])
         (FOLDER / f"{name}.json").write_text(text, encoding="utf-8")
         checks.append((*check, len(text.encode())))
-        print(
-            name,
-            *(f"{one:.2g}" for one in checks[-1]),
-            f"{time.perf_counter() - began:.0f} s",
-            flush=True,
-        )
+        numbers = (f"{one:.2g}" for one in checks[-1])
+        print(name, *numbers, f"{time.perf_counter() - began:.0f} s", flush=True)
     apart, energy, sizes = zip(*checks, strict=True)
     print(f"apart {max(apart):.1e}, energy {max(energy):.1e}, {sum(sizes)} bytes")
 

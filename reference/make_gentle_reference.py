@@ -1,21 +1,22 @@
-"""Make `gentle_reference.csv`: rolling on gentle slopes, over tips that are passed slowly.
+"""Make `gentle_reference.csv`: rolling on gentle slopes, with slow passages over the tip.
 
-Slopes are from 1e-18 to 1e-3. The motion of a body that starts on or near its tip, or that just
-passes one or just fails to, depends on a very small difference of energies. The script needs gmpy2,
-mpmath and the Taylor series of `make_slope_reference.py`, and shares no code or formula with the
-package.
+The slopes range from 1e-18 to 1e-3. A very small difference of energies decides how a body moves
+that starts on or near its tip, or that barely passes over a tip or barely fails to. The script
+needs gmpy2, mpmath and the Taylor series of `make_slope_reference.py`, and shares no code or
+formula with the package.
 
     python make_gentle_reference.py            makes and checks the table (10 minutes, one core)
 
-Method. The series follow the angle and its rate, without the energy, so that nothing cancels near
-the tip. Every value was computed twice, in 64 digits and in 76, with series of order 54 and 62, and
-must agree to `AGREEMENT`, relative to itself or to its unit; the worst difference was 1.4e-40.
+Method. The Taylor series follow the angle and its rate and do not use the energy, so that no digits
+cancel near the tip. Every value was computed twice, with 64 and 76 digits and series of order 54
+and 62. The two values must agree to `AGREEMENT`, relative to the larger of the value and its unit;
+the largest difference was 1.4e-40.
 
-Units are those of make_slope_reference.py, by differences of 1e-20 in 44 digits. Scenes whose
-inputs do not determine theta to `UNIT_LIMIT` are left out.
+Units are defined as in make_slope_reference.py and computed from differences of 1e-20 with 44
+digits. Scenes whose inputs do not determine theta to `UNIT_LIMIT` are left out.
 
-Speeds. A body at phi passes the upright equilibrium at psi slowly, in the coordinates of
-`make_slope_reference.py`, if J omega^2 / 2 is about the difference of the potentials
+Speeds. In the coordinates of `make_slope_reference.py`, a body at phi slowly passes over the
+upright equilibrium at psi if J omega^2 / 2 is close to the difference of the potentials
 
     V = g (z cos alpha - x sin alpha),   x = int w dphi - o,   int w dphi = a E(phi | c^2 / a^2)
 """
@@ -29,7 +30,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import mpmath
-from make_slope_reference import COLUMNS, Answer, Scene, follow, units
+from make_slope_reference import COLUMNS, Answer, Scene, body_of_ratio, follow, units
 from runs import log_uniform, write_table
 from series import Road
 
@@ -46,7 +47,7 @@ KINDS = ["tip", "beside", "first", "later", "downhill", "swing"]
 
 
 class Case(NamedTuple):
-    """A scene of a kind, and a time."""
+    """A scene, its kind, and the time of the answer."""
 
     kind: str
     scene: Scene
@@ -57,7 +58,7 @@ class Case(NamedTuple):
 
 
 def random_body(rng: random.Random) -> Scene:
-    """A body with an aspect of 1e-3 to 1e3 on a slope, at theta 0."""
+    """A random body with an aspect ratio of 1e-3 to 1e3 on a slope, at theta = 0."""
     longer, draw = log_uniform(rng, 0.05, 20.0), rng.random()
     if draw < 0.4:
         ratio = log_uniform(rng, 1e-3, 0.98)
@@ -65,24 +66,18 @@ def random_body(rng: random.Random) -> Scene:
         ratio = log_uniform(rng, 0.1, 0.95)
     else:
         ratio = 1 - log_uniform(rng, 1e-9, 0.1)
-    axes = longer, longer * ratio
-    a, b = axes if rng.random() < 0.5 else axes[::-1]
-    mass = log_uniform(rng, 0.05, 200.0)
-    inertia = mass * (a * a + b * b) / 4
-    if rng.random() < 0.4:
-        inertia *= log_uniform(rng, 1e-3, 1e3)
-    gravity = 9.81 if rng.random() < 0.7 else log_uniform(rng, 1e-2, 1e2)
-    slope = rng.choice([-1, 1]) * log_uniform(rng, LEAST_SLOPE, MOST_SLOPE)
-    return Scene(a, b, mass, inertia, gravity, slope, 0.0, 0.0)
+    body = body_of_ratio(rng, longer, ratio, 0.4, 1e3)
+    return body._replace(slope=rng.choice([-1, 1]) * log_uniform(rng, LEAST_SLOPE, MOST_SLOPE))
 
 
 def flat_angle(body: Scene) -> float:
-    """The angle, theta or phi, at which the long axis lies along the ground."""
+    """The angle (theta or phi) at which the long axis is parallel to the ground."""
     return 0.0 if body.a > body.b else math.pi / 2
 
 
 def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float | None:
-    """|omega| at which a body at theta just passes `tips` tips, None if it cannot fail to."""
+    """The |omega| with which a body at theta barely passes over `tips` tips; None if there is
+    none."""
     a, b, mass, inertia, g, alpha = map(mpmath.mpf, body[:6])
     c2, side = a * a - b * b, math.copysign(1.0, body.slope)
     sine = 2 * a * b * mpmath.tan(abs(alpha)) / abs(c2)
@@ -105,7 +100,7 @@ def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float |
 
 
 def random_start(rng: random.Random, kind: str, body: Scene) -> Scene | None:
-    """The start of a kind, in some cases many half turns away from theta 0."""
+    """A random start of a kind, sometimes many half turns away from theta = 0."""
     rate, sign = math.sqrt(body.gravity / max(body.a, body.b)), rng.choice([-1, 1])
     turns = 0 if rng.random() < 0.8 else round(sign * log_uniform(rng, 1.0, 3000.0))
     theta = flat_angle(body) + turns * math.pi
@@ -129,7 +124,7 @@ def random_start(rng: random.Random, kind: str, body: Scene) -> Scene | None:
 
 
 def drawn(rng: random.Random) -> Iterator[Case]:
-    """Cases of all kinds in turn."""
+    """Random cases of all kinds in turn."""
     while True:
         for kind in KINDS:
             scene = None
@@ -139,21 +134,14 @@ def drawn(rng: random.Random) -> Iterator[Case]:
             yield Case(kind, scene, natural * log_uniform(rng, 0.02, 40.0))
 
 
-class Known(NamedTuple):
-    """The answers of a case, and their units."""
-
-    answer: Answer
-    units: list[float]
-
-
-def known(case: Case, road: Road) -> Known | None:
+def known(case: Case, road: Road) -> tuple[Answer, list[float]] | None:
     """Answers and units of a case, or None if the inputs do not determine the motion."""
     unit = units(case.scene, [case.t], UNIT_ROAD, UNIT_PART)[0]
     if unit[0] > UNIT_LIMIT:
         return None
     with road.context():
         answer, _ = next(follow(case.scene, [case.t], road))
-    return Known(answer, unit)
+    return answer, unit
 
 
 # ---------------------------------------------------------------- the table

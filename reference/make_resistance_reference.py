@@ -2,32 +2,18 @@
 
     python make_resistance_reference.py         makes and checks the table (8 minutes, one core)
 
-Like make_contact_reference.py, with the column `rolling_resistance` and two more states of a scene,
-at times between. Named scenes come first: rocking and rolling that ends, in the flat position and
-on the tip, a slide that holds the body or stops turning, and turns where slip starts.
+This table is like that of make_contact_reference.py, with the column `rolling_resistance` and with
+states at more times. Named scenes come first: rocking and rolling that end flat or on the tip,
+slides that hold the body or stop its turning, and turning points at which slip starts.
 """
 
 import math
-import random
-import time
-from collections import Counter
 from pathlib import Path
 
-from contact_motion import VALUES, Scene
-from make_contact_reference import (
-    RESULTS,
-    Checked,
-    Family,
-    checked,
-    drawn,
-    report,
-    units,
-)
-from runs import write_table
+from contact_motion import Scene
+from make_contact_reference import Family, checked, make_table, units
 
 TABLE = Path(__file__).with_name("resistance_reference.csv")
-FIELDS = [*Scene._fields]
-INPUTS = [name + "0" if name in VALUES else name for name in FIELDS]
 
 
 def scene(a: float, b: float, lever: float, friction: float = 1.0, **given: float) -> Scene:
@@ -62,7 +48,7 @@ def family(
     name: str, scenes: int, start: str, wanted: tuple[str, ...], shape: str = "any",
     least: float = 1e-3, **given: float,
 ) -> Family:  # fmt: skip
-    """A family of scenes with levers drawn from the least one to half of the shorter semi-axis."""
+    """A family of scenes with random levers of `least` to 0.5 times the shorter semi-axis."""
     return Family(
         name, scenes, start, wanted, shape, given, states=(0.3, 0.7, 1.0), lever=(least, 0.5)
     )
@@ -92,23 +78,9 @@ FAMILIES = [
 ]
 
 
-def make_table(seed: int) -> None:
-    """Write the table."""
-    rng = random.Random(seed)
-    began = time.perf_counter()
-    numbers: Counter[str] = Counter()
-    made: list[Checked] = []
-    for name, (one, ends) in NAMED.items():
-        made.append(checked(name, one, ends, units(one, ends), FIELDS))
-    for each in FAMILIES:
-        for _ in range(each.scenes):
-            numbers[each.name] += 1
-            made.append(drawn(rng, each, f"{each.name}-{numbers[each.name]}", FIELDS))
-        print(f"{each.name}: {time.perf_counter() - began:.0f} s so far", flush=True)
-    columns = ["name", *INPUTS, *RESULTS]
-    write_table(TABLE, columns, (line for one in made for line in one.lines))
-    report(made)
-
-
 if __name__ == "__main__":
-    make_table(seed=20270508)
+    fields = [*Scene._fields]
+    named = [
+        checked(name, one, ends, units(one, ends), fields) for name, (one, ends) in NAMED.items()
+    ]
+    make_table(TABLE, 20270508, named, FAMILIES, fields)

@@ -1,7 +1,7 @@
 """Make `rolling_reference.csv`: exact rolling on level ground, to 40 digits.
 
-The table judges `rolling_ellipse.flow`. The script needs only mpmath and shares no code with the
-package.
+The tests compare `rolling_ellipse.flow` with this table. The script needs only mpmath and shares no
+code with the package.
 
     python make_rolling_reference.py            makes the table again (4 minutes, one core)
 
@@ -13,25 +13,26 @@ the ground, k^2 = I/m independent of a and b:
     E = D omega^2 / 2 + g h  conserved,  x = integral of h dtheta, 0 at the start               (2)
 
 Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits,
-inverted after whole half turns or half swings are subtracted. Libration is written in u,
-sin phi = kappa sin u, phi counted from the flat position, so that turning points are ordinary
-points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the two places
-where the integrand has nearby complex singularities, the flat (thin ellipses) and the tip (near the
-separatrix). Every state in the table was computed twice, with different panels, node counts and
-working precision, and must agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
+inverted after whole half turns or half swings are subtracted. For libration the variable is u with
+sin phi = kappa sin u, where phi is measured from the flat position, so that turning points are
+ordinary points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the
+two places where the integrand has nearby complex singularities, the flat position (thin ellipses)
+and the tip (near the separatrix). Every state in the table was computed twice, with different
+panels, node counts and working precision. The two states must agree to `AGREEMENT`; the largest
+relative difference was 2.3e-58.
 
-Method 2: Taylor series of another form of the equation, without using the energy, on up to four
-scenes of every kind that a few hundred steps can cover (`make_slope_reference.py --level`): all
-theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within 1.9e-38 (a fast spin and 1e9
-half turns take too many steps).
+Method 2 (a check by `make_slope_reference.py --level`): Taylor series of another form of the
+equation, which do not use the energy. They follow up to four scenes of each kind that takes no more
+than a few hundred steps. theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within
+1.9e-38; fast spins and 1e9 half turns take too many steps.
 
 Units. The effect of one rounding of every input on the answer y, plus two ulp of y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, k^2, g, omega0) of |dy/dp| |p| + |dy/dtheta0|) + 2 ulp(y)
 
-by central differences of method 1. For one scene of each of 19 kinds, central differences of
-a Taylor series agreed within 5e-7. Where unit_theta would exceed 1e-4 the time is cut: there the
-inputs do not determine the answer.
+computed from central differences of method 1. For one scene of each of 19 kinds, central
+differences of a Taylor series agreed within 5e-7. If unit_theta would exceed 1e-4, the time is
+shortened, because the inputs do not determine the answer.
 """
 
 import math
@@ -43,7 +44,7 @@ from typing import Any, NamedTuple
 
 import mpmath
 from mpmath import mp, mpf
-from runs import ROUNDING, log_uniform, write_table
+from runs import ROUNDING, difference, log_uniform, write_table
 
 TABLE = Path(__file__).with_name("rolling_reference.csv")
 COLUMNS = ["kind", "a", "b", "gyration2", "gravity", "theta0", "omega0", "t"]
@@ -84,7 +85,8 @@ class Rule(NamedTuple):
 
 
 def gauss_rule(count: int, growth: float) -> Rule:
-    """Nodes by Newton's method on the Legendre polynomial P_n."""
+    """The rule with n nodes, which Newton's method finds as roots of the Legendre polynomial
+    P_n."""
     nodes, weights = [], []
     for i in range(count):
         y = mp.cos(mp.pi * (i + mpf("0.75")) / (count + mpf("0.5")))
@@ -164,7 +166,7 @@ class RollingEllipse:
         return mp.asinh(sin_flat), mp.asinh(mp.sqrt((self.h_max**2 - self.A2) / self.c2))
 
     def _build_quarter(self) -> None:
-        """Panel edges on [0, pi/2] and the integrals of both rates up to each."""
+        """Compute panel edges on [0, pi/2], and the integrals of both rates up to each edge."""
 
         def graded(scale: Any) -> list[Any]:
             edges = [mpf(0)]
@@ -195,7 +197,7 @@ class RollingEllipse:
         return 2 * half_turns * self.quarter_x + sign * x
 
     def _time_and_x(self, v: Any) -> tuple[Any, Any]:
-        """Integrals of the rates from 0 to any v."""
+        """The integrals of both rates from 0 to v."""
         half_turns = int(mp.nint(v / mp.pi))
         rest = v - half_turns * mp.pi
         sign, rest = (-1, -rest) if rest < 0 else (1, rest)
@@ -205,8 +207,7 @@ class RollingEllipse:
         return 2 * half_turns * self.quarter_time + sign * time, self._unfold(half_turns, sign, x)
 
     def _solve_quarter(self, time: Any) -> tuple[Any, Any]:
-        """The v in [0, pi/2] reached at `time`, and X at v: Newton's method kept inside its
-        panel."""
+        """The v in [0, pi/2] at `time`, and X(v), by Newton's method confined to one panel."""
         i = min(bisect_right([s[0] for s in self.sums], time), len(self.sums) - 1) - 1
         low, high = self.edges[i], self.edges[i + 1]
         width = high - low
@@ -222,7 +223,7 @@ class RollingEllipse:
         raise ArithmeticError("Newton's method did not settle")
 
     def phase(self, t: Any) -> Any:
-        """Time since the last passage of v = 0, in units of a quarter's time."""
+        """Time since the last passage through v = 0, divided by the time of a quarter."""
         signed = t if self.rocks else self.direction * t
         return (self.time0 + signed) / self.quarter_time
 
@@ -253,7 +254,7 @@ class RollingCircle:
         self.scene = Scene(*map(mpf, scene))
 
     def phase(self, t: Any) -> Any:
-        """Always half a quarter: a circle has no symmetry time."""
+        """One half at all times, since a circle has no times of symmetry."""
         return mpf("0.5")
 
     def state(self, t: Any) -> State:
@@ -268,7 +269,7 @@ def motion(scene: Scene, rule: Rule) -> RollingEllipse | RollingCircle:
 
 
 def sensitivities(scene: Scene, rule: Rule) -> Callable[[Any], list[State]]:
-    """Functions of t: the change of the state for each input changed by ROUNDING."""
+    """A function of t that returns the changes of the state if each input changes by ROUNDING."""
     small = mpf("1e-24")
     pairs = []
     for name in Scene._fields:
@@ -300,7 +301,7 @@ class AboveEnergy(ValueError):
 
 
 class Body(NamedTuple):
-    """Shape and gravity of a body, with its sorted axes and its time scale."""
+    """The inputs of a scene without its start."""
 
     a: float
     b: float
@@ -313,11 +314,11 @@ class Body(NamedTuple):
         return 0.0 if self.a >= self.b else math.pi / 2
 
     def height(self, theta: float) -> float:
-        """h in double precision, to choose a scene."""
+        """h in double precision, which is enough to choose a scene."""
         return math.hypot(self.a * math.sin(theta), self.b * math.cos(theta))
 
     def speed(self, theta: float, level: Any) -> float:
-        """omega at an angle for the energy E = g * level."""
+        """The omega > 0 at an angle that gives the energy E = g * level."""
         s, c = mp.sin(theta), mp.cos(theta)
         h2 = (self.a * s) ** 2 + (self.b * c) ** 2
         if level <= mp.sqrt(h2):
@@ -327,7 +328,7 @@ class Body(NamedTuple):
 
 
 def random_body(rng: random.Random, kind: str) -> Body:
-    """A body of 0.01 to 100 m, a third of them with a < b, mostly uniform discs on Earth."""
+    """A random body of 0.01 to 100 m, usually a uniform disc on Earth; a third have a < b."""
     a = log_uniform(rng, 0.01, 100.0)
     ratio = log_uniform(rng, 1.001e-3, 0.999)
     if kind == "thin":
@@ -372,7 +373,7 @@ def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, floa
 
 
 def energy_level(rng: random.Random, kind: str, height: float, high: float) -> Any:
-    """E / g above or below the tip as the kind requires, else at random."""
+    """E / g, above or below that of rest on the tip as the kind requires, otherwise at random."""
     if kind.startswith("separatrix"):
         _, side, distance = kind.split("_")
         return high * (1 + mpf(distance) * (1 if side == "above" else -1))
@@ -391,26 +392,27 @@ KINDS = {
 
 
 def random_time(rng: random.Random, kind: str, scene: Scene, rule: Rule) -> float:
-    """Time for a kind [s], before it is cut to UNIT_LIMIT."""
+    """A random time for a kind [s], before UNIT_LIMIT shortens it."""
     if kind == "many_half_turns":
         one = motion(scene, rule)
         assert isinstance(one, RollingEllipse)
         return float(2 * one.quarter_time) * rng.uniform(0.8e9, 1.2e9)
     if kind.startswith("short"):
         return rng.choice([1e-6, 1e-3])
-    if kind.endswith(("1e-9", "1e-12")):  # enough for a few passages of the tip
+    if kind.endswith(("1e-9", "1e-12")):  # enough for a few passages over the tip
         return math.sqrt(max(scene.a, scene.b) / scene.gravity) * log_uniform(rng, 0.5, 200.0)
     return log_uniform(rng, 0.1, 1e6)
 
 
 def at_symmetry(one: RollingEllipse | RollingCircle, t: float) -> bool:
-    """Whether the phase at a time is within a hundredth of the flat, the tip or a turning point."""
+    """Whether the phase at a time is within 0.01 of the flat position, the tip or a turning
+    point."""
     phase = one.phase(mpf(t))
     return bool(abs(phase - mp.nint(phase)) < mpf("0.01"))
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A scene of a kind, redrawn while its start is above the requested energy."""
+    """A random scene of a kind, drawn again while its start is above the requested energy."""
     while True:
         body = random_body(rng, kind)
         try:
@@ -423,12 +425,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 # ---------------------------------------------------------------- the table
 
 
-def difference(one: State, other: State) -> Any:
-    """Largest relative difference of theta, omega and x between two states."""
-    return max(abs(p - q) / (abs(q) or 1) for p, q in zip(one, other, strict=True))
-
-
-def make_row(rng: random.Random, kind: str, rule: Rule, check: Rule) -> tuple[list[str], Any]:
+def make_row(rng: random.Random, kind: str, rule: Rule, check: Rule) -> tuple[list[str], float]:
     """One line of the table and the relative disagreement of the two quadratures."""
     scene = random_scene(rng, kind)
     t = random_time(rng, kind, scene, rule)
@@ -456,13 +453,13 @@ def made(seed: int) -> Iterator[list[str]]:
     rule = gauss_rule(50, 2.0)
     with mp.extradps(10):
         check = gauss_rule(54, 1.6)
-    worst = mpf(0)
+    worst = 0.0
     for kind, count in KINDS.items():
         for _ in range(count):
             row, disagreement = make_row(rng, kind, rule, check)
             worst = max(worst, disagreement)
             yield row
-        print(f"{kind}: {count}, worst disagreement so far {mp.nstr(worst, 2)}", flush=True)
+        print(f"{kind}: {count}, worst disagreement so far {worst:.1e}", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,10 +2,10 @@
 
     python make_sensitivity_reference.py        makes the table (10 minutes, one core)
 
-A row has the derivatives of x, z, theta, x_dot, z_dot, omega with respect to one input: differences
-of 1e-15 (relative, where the input is above 1e-6) in motions of 42 digits, towards larger values.
-An input has no row if it is infinite or not given, if the changed motion has other events, or if
-its effect is known: x, and mass where it changes nothing.
+A row contains the derivatives of x, z, theta, x_dot, z_dot, omega with respect to one input. They
+are forward differences of motions with 42 digits, for a change of 1e-15, relative to the input if
+its magnitude is above 1e-6. An input has no row if it is infinite or omitted, if the changed motion
+has other events, or if its effect is known (x, and the mass if it changes nothing).
 """
 
 import csv
@@ -17,7 +17,7 @@ from pathlib import Path
 
 from contact_motion import Scene, Undecided, follow
 from gmpy2 import mpfr
-from make_contact_reference import FIELDS, INPUTS, TABLE, UNIT_ROAD
+from make_contact_reference import FIELDS, TABLE, UNIT_ROAD, inputs
 from runs import write_table
 
 DERIVATIVES = Path(__file__).with_name("sensitivity_reference.csv")
@@ -49,9 +49,9 @@ def lines() -> Iterator[list[str]]:
     for name, group in groupby(rows, itemgetter("name")):
         *events, last = group
         if all(row["kind"] != "jam" for row in events):
-            texts = {name: last[column] for name, column in zip(FIELDS, INPUTS, strict=True)}
-            given = {name: float(text) if text else None for name, text in texts.items()}
-            scene = Scene(**given)
+            texts = (last[column] for column in inputs(FIELDS))
+            numbers = (float(text) if text else None for text in texts)
+            scene = Scene(**dict(zip(FIELDS, numbers, strict=True)))
             with UNIT_ROAD.context():
                 yield from derivatives(name, scene, float(last["t"]))
         print(name, flush=True)

@@ -1,7 +1,7 @@
 """Make `slope_reference.csv`: rolling without slip on a slope, to 30 digits.
 
-The table judges the integrators. The script needs only gmpy2 and shares no code or formula with the
-package.
+The tests compare the integrators with this table. The script needs only gmpy2 and shares no code or
+formula with the package.
 
     python make_slope_reference.py              makes and checks the table (10 minutes, one core)
     python make_slope_reference.py --level      only compares with the level table (2 minutes)
@@ -19,25 +19,25 @@ contact, whose distance from the centre is |P|. Thus, with J = k^2 + |P|^2 = k^2
     Lagrangian / m = J (a b phi' / W)^2 / 2 - g (z cos alpha - x sin alpha)                      (2)
     J phi'' = g w (sin alpha - c^2 p cos alpha / (a b)) - c^2 p phi'^2 (1 + 2 J / W)             (3)
 
-with p = sin phi cos phi, c^2 = a^2 - b^2, by Lagrange's equation and dx/dphi = z dtheta/dphi. The
-forces are Newton's: N = m (z'' + g cos alpha), F = m (x'' - g sin alpha), from the Taylor
-coefficients of (1) in time.
+with p = sin phi cos phi, c^2 = a^2 - b^2, which follows from Lagrange's equation and dx/dphi = z
+dtheta/dphi. The forces follow from Newton's law, N = m (z'' + g cos alpha), F = m (x'' - g sin
+alpha), with the Taylor coefficients of (1) in time.
 
 Method. Taylor series in time of phi and of the arc by the recurrences for products, quotients and
-roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each
-step. Every value was computed twice, in series of order 50 and 60 with 60 and 72 digits, and must
-agree to `AGREEMENT`: the worst relative difference was 5.2e-45. The energy, with the kinetic energy
-of the moving centre instead of (2), must be constant to `AGREEMENT`: the worst change was 2.9e-46.
-On level ground 75 scenes of `rolling_reference.csv`, which comes from the energy integral, are
-reproduced within 1.9e-38.
+roots (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients determine the
+size of each step. Every value was computed twice, with series of order 50 and 60 and with 60 and 72
+digits. The two values must agree to `AGREEMENT`: the largest relative difference was 5.2e-45. The
+energy, with the kinetic energy of the moving centre instead of (2), must be constant to
+`AGREEMENT`: the largest change was 2.9e-46. On level ground 75 scenes of `rolling_reference.csv`,
+which comes from the energy integral, are reproduced within 1.9e-38.
 
 Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
 
-by one-sided differences of 1e-10 in 32 digits. For one scene of each of 12 kinds, central
-differences of 1e-18 in 60 digits agreed within 4e-7. If unit_theta would exceed `UNIT_LIMIT`
-another scene is drawn: there the inputs do not determine the answer.
+computed from one-sided differences of 1e-10 with 32 digits. For one scene of each of 12 kinds,
+central differences of 1e-18 in 60 digits agreed within 4e-7. If unit_theta would exceed
+`UNIT_LIMIT`, another scene is drawn, because the inputs do not determine the answer.
 """
 
 import csv
@@ -52,7 +52,7 @@ from typing import Any, NamedTuple
 
 import gmpy2
 from gmpy2 import mpfr
-from runs import ROUNDING, log_uniform, write_table
+from runs import ROUNDING, difference, log_uniform, write_table
 from series import Road, product, quotient, square_root, value
 
 TABLE = Path(__file__).with_name("slope_reference.csv")
@@ -107,7 +107,7 @@ class State(NamedTuple):
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time of the motion, sin phi, cos phi and p = sin phi cos phi."""
+    """Taylor coefficients in time of the motion, sin phi, cos phi, p = sin phi cos phi and w."""
 
     phi: list[Any]
     rate: list[Any]
@@ -119,7 +119,7 @@ class Series(NamedTuple):
 
 
 class Rolling:
-    """One motion, followed forwards in the context of its own precision."""
+    """One motion, followed forwards; its methods need the gmpy2 context of its precision."""
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.road = road
@@ -230,7 +230,7 @@ def follow(scene: Scene, times: list[float], road: Road) -> Iterator[tuple[Answe
 def units(
     scene: Scene, times: list[float], road: Road = UNIT_ROAD, part: float = UNIT_CHANGE
 ) -> list[list[float]]:
-    """The units of the answers at each time, from relative changes `part` of the inputs."""
+    """The units of the answers at each time, from changes of each input by a relative `part`."""
     with road.context():
         answers = [answer for answer, _ in follow(scene, times, road)]
         total = [[mpfr(0)] * len(Answer._fields) for _ in times]
@@ -257,7 +257,7 @@ LEAST_SLOPE, MOST_SLOPE = 1e-3, 1.2
 
 
 def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
-    """Semi-axes: 5 cm to 20 m, two of five standing (a < b)."""
+    """Random semi-axes of 5 cm to 20 m; two fifths of the bodies have a < b."""
     longer = log_uniform(rng, 0.05, 20.0)
     if kind == "circle":
         return longer, longer
@@ -273,8 +273,24 @@ def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
     return axes if rng.random() < 0.6 else axes[::-1]
 
 
+def body_of_ratio(
+    rng: random.Random, longer: float, ratio: float, odd: float, most: float
+) -> Scene:
+    """A body at theta = 0 on level ground, whose inertia differs from that of a disc with
+    probability `odd` by a factor of up to `most`.
+    """
+    axes = longer, longer * ratio
+    a, b = axes if rng.random() < 0.5 else axes[::-1]
+    mass = log_uniform(rng, 0.05, 200.0)
+    inertia = mass * (a * a + b * b) / 4
+    if rng.random() < odd:
+        inertia *= log_uniform(rng, 1 / most, most)
+    gravity = 9.81 if rng.random() < 0.7 else log_uniform(rng, 1e-2, 1e2)
+    return Scene(a, b, mass, inertia, gravity, 0.0, 0.0, 0.0)
+
+
 def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
-    """Moment of inertia: a uniform disc's, much less or much more."""
+    """A random moment of inertia: that of a uniform disc, or much less or more."""
     if kind == "light":
         return 0.01 * disc
     if kind == "heavy":
@@ -283,7 +299,7 @@ def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
 
 
 def random_slope(rng: random.Random, kind: str, a: float, b: float) -> float:
-    """Slope of either sign; equilibria exist up to tan(slope) = |a^2 - b^2| / (2 a b)."""
+    """A random slope of either sign. Equilibria exist up to tan(slope) = |a^2 - b^2| / (2 a b)."""
     low, high = LEAST_SLOPE, MOST_SLOPE
     if kind in WITH_A_DIP:
         low, high = 1e-2, min(high, 0.8 * math.atan(abs(a * a - b * b) / (2 * a * b)))
@@ -310,7 +326,7 @@ def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
 def random_start(
     rng: random.Random, kind: str, axes: tuple[float, float], slope: float, rate: float
 ) -> tuple[float, float]:
-    """theta0 and omega0 of a kind; `rate` is one radian per natural time."""
+    """Random theta0 and omega0 of a kind; `rate` is one radian per natural time."""
     theta, sign = rng.uniform(-math.pi, math.pi), rng.choice([-1, 1])
     if kind in WITH_A_DIP:
         dip, hill = equilibria(*axes, slope)
@@ -334,7 +350,7 @@ def natural_time(scene: Scene) -> float:
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A scene of a kind."""
+    """A random scene of a kind."""
     a, b = random_axes(rng, kind)
     mass = log_uniform(rng, 0.05, 200.0)
     inertia = random_inertia(rng, kind, mass * (a * a + b * b) / 4)
@@ -345,7 +361,8 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def random_times(rng: random.Random, scene: Scene) -> list[float]:
-    """Times of about 0.3, 2 and 10 natural times, shortened beyond `MOST_HALF_TURNS`."""
+    """Three times of about 0.3, 2 and 10 natural times, or less for `MOST_HALF_TURNS` half
+    turns."""
     natural = natural_time(scene) * rng.uniform(0.9, 1.1)
     with UNIT_ROAD.context():
         motion, last = Rolling(scene, UNIT_ROAD), 0.0
@@ -356,12 +373,6 @@ def random_times(rng: random.Random, scene: Scene) -> list[float]:
 
 
 # ---------------------------------------------------------------- the table
-
-
-def difference(one: Answer, other: Answer) -> float:
-    """Largest relative difference of two answers."""
-    pairs = zip(one, other, strict=True)
-    return max(float(abs(p - q) / (abs(q) or 1)) for p, q in pairs)
 
 
 class Checked(NamedTuple):
@@ -409,7 +420,7 @@ def made(seed: int) -> Iterator[list[str]]:
 
 
 def verify_on_level_ground(most_steps: int = 350, per_kind: int = 4) -> None:
-    """Compare with the 40-digit table of the energy integral."""
+    """Compare motions on level ground with the 40-digit table of the energy integral."""
     done: Counter[str] = Counter()
     worst = 0.0
     with LEVEL_TABLE.open(newline="") as file, TABLE_ROAD.context():

@@ -1,23 +1,24 @@
-"""Make `well_reference.csv`: rocking about the lying equilibrium on a slope, to 30 digits.
+"""Make `well_reference.csv`: rocking about the stable equilibrium on a slope, to 30 digits.
 
-Amplitudes range from 1e-12 rad up to the rim of the well, with 1 to 1e9 swings and aspects of 1e-3
-to 1e3. The script needs gmpy2 and the Taylor series of `make_slope_reference.py`, and shares no
-code or formula with the package.
+The amplitudes range from 1e-12 rad up to the rim of the potential well, the times from 1 to 1e9
+swings, and the aspect ratios from 1e-3 to 1e3. The script needs gmpy2 and the Taylor series of
+`make_slope_reference.py`, and shares no code or formula with the package.
 
     python make_well_reference.py              makes and checks the table (3 minutes, one core)
 
-Method. The series of `Rolling`, in steps of half their reach, are followed over one swing. A
-turning point is the root of the rate in a step, by Newton's method. The motion repeats itself after
-a period T, twice the time between two turning points: the states at t and t - n T are equal.
-Every value was computed twice, in 80 digits and in 95, with series of order 60 and 72, and must
-agree to `AGREEMENT`, relative to the largest value in the swing.
+Method. The Taylor series of `Rolling` follow one swing in steps of half their reach. A turning
+point is a root of the rate, found by Newton's method. The period T is twice the time between two
+turning points, and the states at t and t - n T are equal. Every value was computed twice, with 80
+and 95 digits and series of order 60 and 72. The two values must agree to `AGREEMENT`, relative to
+the larger of the value and its unit.
 
 Units. The effect of a relative change of 2.2e-16 of each input on an answer,
 
     unit_y = 2.2e-16 sum over p in (a, b, I, g, alpha, theta0, omega0) of |dy/dp| |p|
 
-by one-sided differences of 1e-24 in 60 digits. Scenes whose inputs do not determine the motion to
-`UNIT_LIMIT` of its magnitude are left out: next to the rim, and where the well nearly vanishes.
+computed from one-sided differences of 1e-24 with 60 digits. Scenes whose inputs do not determine
+the motion to `UNIT_LIMIT` of its magnitude are left out. Such scenes start next to the rim, or
+their well nearly vanishes.
 """
 
 import math
@@ -32,7 +33,7 @@ from typing import Any, NamedTuple
 import gmpy2
 from contact_motion import bisected
 from gmpy2 import mpfr
-from make_slope_reference import Rolling, Scene, Series, State
+from make_slope_reference import Rolling, Scene, Series, State, body_of_ratio
 from runs import ROUNDING, log_uniform, write_table
 from series import Road, value
 
@@ -59,7 +60,7 @@ class Answer(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """A step of the motion: its start, its duration and its series."""
+    """The start, the duration and the series of one step of the motion."""
 
     begin: Any
     lasts: Any
@@ -89,7 +90,8 @@ class Swing(Rolling):
         self.width = max(abs(each.series.phi[0] - self.start) for each in self.stages)
 
     def go_on(self) -> Stage:
-        """Take one more step, of half its series' reach, with at most one turning point."""
+        """Take one more step of half the reach of its series, so that it has at most one turning
+        point."""
         series = self.series(self.road.order)
         self.stages.append(Stage(self.time, self._reach(series) / 2, series))
         self.time += self.stages[-1].lasts
@@ -136,8 +138,8 @@ def units(scene: Scene, t: float) -> list[float]:
 
 
 class Well(NamedTuple):
-    """theta of the lying equilibrium and of the downhill rim, and the frequency of small rocking
-    [1/s]."""
+    """theta of the stable equilibrium and of the downhill rim, and the frequency of small
+    oscillations [1/s]."""
 
     lying: Any
     rim: Any
@@ -145,8 +147,8 @@ class Well(NamedTuple):
 
 
 def well(scene: Scene) -> Well:
-    """The well of a scene: gravity has no moment where sin 2 phi = 2 a b tan alpha / c^2, by
-    (3)."""
+    """The potential well of a scene. By (3), gravity exerts no moment if sin 2 phi = 2 a b tan
+    alpha / c^2."""
     a, b, mass, inertia, g, slope = map(mpfr, scene[:6])
     longer, shorter, side = max(a, b), min(a, b), 1 if slope > 0 else -1
     c2 = longer**2 - shorter**2
@@ -163,25 +165,19 @@ def well(scene: Scene) -> Well:
 
 
 def random_body(rng: random.Random) -> Scene:
-    """A body on a slope that has equilibria, at theta 0."""
+    """A random body at theta = 0 on a slope on which it has equilibria."""
     longer, ratio = log_uniform(rng, 0.05, 20.0), log_uniform(rng, 1e-3, 0.98)
     if rng.random() < 0.1:
         ratio = 1 - log_uniform(rng, 1e-6, 0.1)
-    axes = longer, longer * ratio
-    a, b = axes if rng.random() < 0.5 else axes[::-1]
-    mass = log_uniform(rng, 0.05, 200.0)
-    inertia = mass * (a * a + b * b) / 4
-    if rng.random() < 0.5:
-        inertia *= log_uniform(rng, 1e-4, 1e4)
-    gravity = 9.81 if rng.random() < 0.7 else log_uniform(rng, 1e-2, 1e2)
+    body = body_of_ratio(rng, longer, ratio, 0.5, 1e4)
+    a, b = body[:2]
     steepest = min(1.5, math.atan(abs(a * a - b * b) / (2 * a * b)))
     share = log_uniform(rng, 1e-6, 1.0) if rng.random() < 0.7 else 1 - log_uniform(rng, 1e-6, 0.5)
-    return Scene(a, b, mass, inertia, gravity, rng.choice([-1, 1]) * share * steepest, 0.0, 0.0)
+    return body._replace(slope=rng.choice([-1, 1]) * share * steepest)
 
 
 def random_start(rng: random.Random, body: Scene) -> Scene:
-    """A start at rest or moving, with an amplitude up to the rim; some starts are next to the
-    rim."""
+    """A random start, at rest or moving, with an amplitude up to the rim of the well."""
     at = well(body)
     if rng.random() < 0.3:
         inside = (at.lying - at.rim) * log_uniform(rng, 1e-12, 0.1)
@@ -201,8 +197,9 @@ def random_start(rng: random.Random, body: Scene) -> Scene:
     return body._replace(theta0=float(theta) + turns * math.pi, omega0=float(omega))
 
 
-def is_told_from_rest(scene: Scene) -> bool:
-    """Whether doubles distinguish a start from rest, well over 8 ulp of h from h' = h tan alpha."""
+def differs_from_rest(scene: Scene) -> bool:
+    """Whether a start clearly differs from rest: by a spin, or in h' - h tan alpha by far more than
+    8 ulp of h."""
     short, at = min(scene.a, scene.b), well(scene)
     room = 32 * ROUNDING * short / (max(scene.a, scene.b) - short)
     far = min(abs(math.sin(scene.theta0 - each)) for each in (at.lying, at.rim))
@@ -219,10 +216,11 @@ class Line(NamedTuple):
 
 
 def line(rng: random.Random) -> Line | None:
-    """A line after 1 to 1e9 swings, or None if the scene does not swing or is not determined."""
+    """A random line with a time of 1 to 1e9 swings, or None if the scene rests or its inputs do not
+    determine the motion."""
     with UNIT_ROAD.context():
         scene = random_start(rng, random_body(rng))
-        if not is_told_from_rest(scene):
+        if not differs_from_rest(scene):
             return None
         motion = Swing(scene, UNIT_ROAD)
         t = float(motion.period * log_uniform(rng, 1.0, 1e9))
@@ -233,7 +231,7 @@ def line(rng: random.Random) -> Line | None:
 
 
 def drawn(rng: random.Random) -> Iterator[Line]:
-    """Lines of all kinds of scenes."""
+    """Random lines, one after another."""
     while True:
         with suppress(NoSwing):
             found = line(rng)

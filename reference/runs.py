@@ -1,10 +1,10 @@
-"""Drawn numbers and files, shared by the makers of tables and the judges of random scenes."""
+"""Random numbers and files, shared by the scripts that make tables and judge random scenes."""
 
 import csv
 import json
 import math
 import random
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,17 @@ ROUNDING = 2.2e-16
 
 
 def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
+    """A random number whose logarithm is uniformly distributed."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
+def difference(one: Sequence[Any], other: Sequence[Any]) -> float:
+    """The largest relative difference of two answers; absolute where the other answer is 0."""
+    return max(float(abs(p - q) / (abs(q) or 1)) for p, q in zip(one, other, strict=True))
+
+
 def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> None:
-    """Write a table as CSV; each line is written when it is computed."""
+    """Write a table as CSV, each line as soon as it is computed."""
     with path.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(columns)
@@ -25,7 +30,7 @@ def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> N
 
 
 def read_records(file: Path | None) -> list[dict[str, Any]]:
-    """Records of a run so far; a line that was not finished is left out."""
+    """The records of an earlier run; an unfinished line is left out."""
     if file is None or not file.exists():
         return []
     lines = file.read_text().splitlines(keepends=True)

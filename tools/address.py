@@ -17,7 +17,7 @@ LINK = re.compile(
 
 
 def readme(text: str, address: str) -> str:
-    """The text with absolute links; pictures are those of the raw files."""
+    """The text with absolute links; links to pictures lead to the raw files."""
 
     def absolute(found: re.Match[str]) -> str:
         kind = "raw" if found[1] else "blob"
@@ -47,14 +47,11 @@ def with_reports(text: str, address: str) -> str:
     return re.sub(r"\([^()\s]+(/security/advisories/new\))", rf"({address}\g<1>", text)
 
 
-def with_maintainers(text: str, names: list[str]) -> str:
-    listed = "".join(f"    - {name}\n" for name in names)
-    return re.sub(r"(recipe-maintainers:\n)(?: +- .+\n)+", rf"\g<1>{listed}", text)
-
-
 def recipe(text: str, address: str, site: str, maintainers: list[str]) -> str:
     text = with_field(text, "repository", address, "license: ")
-    return with_maintainers(with_field(text, "homepage", site, "license: "), maintainers)
+    text = with_field(text, "homepage", site, "license: ")
+    listed = "".join(f"    - {name}\n" for name in maintainers)
+    return re.sub(r"(recipe-maintainers:\n)(?: +- .+\n)+", rf"\g<1>{listed}", text)
 
 
 def write(root: Path, address: str, site: str, maintainers: list[str]) -> None:

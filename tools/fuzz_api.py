@@ -1,10 +1,10 @@
 """Call all public functions with odd and extreme arguments.
 
-A case is a few lines: a call, then questions about its result. Hypothesis draws the cases, the same
-for the same seed, and shortens one that fails. The cases run in a separate process, so that a crash
-or an endless call is a finding like any other. `fuzz/calls.py`, `fuzz/scenes.py` and
-`fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` define what must not happen. A finding
-is printed as lines to paste.
+A case is a few lines: a call, then expressions that use its result. Hypothesis draws the cases,
+which are the same for the same seed, and shortens a case that fails. The cases run in a separate
+process, so that a crash or an endless call is a finding like any other. `fuzz/calls.py`,
+`fuzz/scenes.py` and `fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` define what must
+not happen. A finding is printed as lines to paste.
 
 Run:  python tools/fuzz_api.py --calls 20000 --seed 1
       python tools/fuzz_api.py --code "rl.certify(1)"        (judges only these lines)
@@ -29,7 +29,7 @@ from math import inf, nan, nextafter, pi
 from pathlib import Path
 import matplotlib.pyplot as plt, numpy as np, rolling_ellipse as rl
 from fuzz import damage, promises  # with tools/ and tests/ in PYTHONPATH"""
-SLOW = ("deaf", "hang")  # findings that are not shortened: each try takes as long
+SLOW = ("deaf", "hang")  # findings that are not shortened, since each attempt takes long
 
 
 def signature(found: Finding) -> tuple[str, str, str]:
@@ -89,7 +89,10 @@ class Hunt:
 
         try:
             one()
-        except (Exception, KeyboardInterrupt):  # raised also by a case that does not fail again
+        except (
+            Exception,
+            KeyboardInterrupt,
+        ):  # or a case that does not fail again
             if target is None:
                 raise
         if target is not None:

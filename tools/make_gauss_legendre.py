@@ -58,12 +58,8 @@ def half_rule(n: int) -> list[tuple[mpf, mpf]]:
     return sorted(rule)
 
 
-def literal(value: mpf) -> str:
-    return repr(float(value))
-
-
 def braced(values: tuple[mpf, ...]) -> str:
-    return f"{{{', '.join(map(literal, values))}}}"
+    return f"{{{', '.join(repr(float(value)) for value in values)}}}"
 
 
 def main() -> None:

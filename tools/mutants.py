@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Test folders for a source folder (the innermost counts), or for a file outside of any. Folders not
-# listed here have their tests in a folder of the same name.
+# Test folders for a source folder (the innermost one counts) or for a file outside these folders.
+# The tests of other source folders are in a folder of the same name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -70,13 +70,13 @@ NEAREST = {
 # Programs of tests/core that take only seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
-# Guard for the tests: an editable installation would be imported instead of the copy.
+# The tests must not import an editable installation instead of the copy.
 NOT_EDITABLE = """\
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type(finder).__name__]
 """
 
-# Files without mutants: written by programs, or only lists of names.
+# Files without mutants: they are written by programs or only list names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "_core.pyi")
 
 

@@ -51,13 +51,6 @@ def oldest_versions() -> list[str]:
     return [oldest(needed) for needed in chain(*groups)]
 
 
-def require_oldest_python() -> None:
-    declared = PROJECT["requires-python"].removeprefix(">=")
-    running = f"{sys.version_info.major}.{sys.version_info.minor}"
-    if running != declared:
-        sys.exit(f"this must be run by the oldest Python declared, {declared}, got {running}")
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(usage="%(prog)s [--list] FOLDER [argument of pytest ...]")
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=new_folder)
@@ -69,7 +62,10 @@ def main() -> None:
         return
     if options.folder is None:
         parser.error("FOLDER is missing")
-    require_oldest_python()
+    declared = PROJECT["requires-python"].removeprefix(">=")
+    running = f"{sys.version_info.major}.{sys.version_info.minor}"
+    if running != declared:
+        sys.exit(f"this must be run by the oldest Python declared, {declared}, got {running}")
     python = environment(options.folder, sys.executable)
     install(python, *versions)
     install(python, "--no-build-isolation", "--no-deps", ROOT)

@@ -102,7 +102,7 @@ def outcome(python: str, log: Path, arguments: list[str]) -> str:
         except SystemExit:
             missing.append(re.split("[>=]", needed)[0])
     versions, gil = run(*words, "-c", VERSIONS, cwd=folder).splitlines()
-    variables = {"PYTHON_GIL": "0"} if int(gil) else {}  # other modules would turn it on
+    variables = {"PYTHON_GIL": "0"} if int(gil) else {}  # some modules would turn the GIL on
     command = [*words, "-m", "pytest", "-p", "no:cacheprovider", *arguments]
     with log.open("w") as to:
         done = subprocess.run(command, cwd=ROOT, env=os.environ | variables, stdout=to, stderr=to)

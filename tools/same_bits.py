@@ -1,4 +1,5 @@
-"""Build tests/core/golden.cpp in many ways, and compare the bits that the programs print.
+"""Build tests/core/golden.cpp with many compilers and flags, and compare the bits that the programs
+print.
 
     python tools/same_bits.py FOLDER                 all builds whose compiler is on this machine
     python tools/same_bits.py FOLDER --only clang    all builds with this word in their name

@@ -23,7 +23,7 @@ def available() -> tuple[list[Any], dict[str, str]]:
     found, missing = [], {}
     for module, library in MODULES.items():
         try:
-            # libraries warn about themselves while they load
+            # libraries emit warnings while they load
             with warnings.catch_warnings(action="ignore"):
                 found += importlib.import_module(f".{module}", __name__).peers()
         except ModuleNotFoundError as error:

@@ -1,4 +1,4 @@
-"""Boost.odeint: odeint.cpp, compiled for this machine and kept in the user's cache."""
+"""Boost.odeint: odeint.cpp, compiled for this machine and stored in the user's cache."""
 
 import ctypes
 import hashlib
@@ -26,7 +26,8 @@ Doubles = ctypes.POINTER(ctypes.c_double)
 
 
 def output(*command: str) -> str:
-    """Output of a compiler; an OSError with the first error line if it fails."""
+    """The output of a compiler; raise an OSError with the first error line if the compiler
+    fails."""
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if "error" in line]

@@ -1,4 +1,4 @@
-"""The equation for libraries that take functions in place, which numba compiles."""
+"""The equation for libraries that call a compiled function which writes into its argument."""
 
 from typing import Any
 

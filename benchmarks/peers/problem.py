@@ -1,7 +1,7 @@
 """The common problem of all peers: equation of rolling, numbers of a scene, refusals.
 
-With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B the inertia of rolling is
-D = S - AB/u, so that the equation of motion needs neither h' nor the radius of curvature:
+With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B, the inertia of rolling is D
+= S - AB/u, and the equation of motion needs neither h' nor the radius of curvature:
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
 
 
 def problem(scene: Scene, t_end: float, setting: float) -> Problem:
-    """The problem of a scene; a ValueError if the scene does not roll."""
+    """The problem of a scene; raise a ValueError if the scene does not roll."""
     at = scene.initial_state
     if at.mode is not Mode.ROLLING:
         raise ValueError(f"peers integrate rolling only, and this scene starts {at.mode.name}")
@@ -54,7 +54,8 @@ def problem(scene: Scene, t_end: float, setting: float) -> Problem:
 
 
 def rates_with(sin: Any, cos: Any, sqrt: Any) -> Rates:
-    """Function that returns theta'' and x' from theta, omega and the body, with a library's sin."""
+    """A function that computes theta'' and x' from theta, omega and the body with a library's sin,
+    cos and sqrt."""
 
     def rates(theta: Any, omega: Any, body: Any) -> tuple[Any, Any]:
         s, c = sin(theta), cos(theta)
@@ -88,11 +89,12 @@ class Peer:
     name: str
     library: str  # library with its version
     run: Callable[[Problem], Integration]  # compiles, allocates, and returns the prepared run
-    least: float = 0.0  # smallest tolerance that the library takes
+    least: float = 0.0  # smallest tolerance that the library accepts
     tags: tuple[str, ...] = ("peer", "compiled")
 
     def prepare(self, scene: Scene, t_end: float, setting: float) -> Integration:
-        """Prepare a run of a new scene; a ValueError if the peer cannot integrate it."""
+        """Prepare a run of a new scene; raise a ValueError if the peer cannot integrate the
+        scene."""
         if setting < self.least:
             raise ValueError(f"{self.name} takes tolerances from {self.least:.1e}, got {setting}")
         return self.run(problem(scene, t_end, setting))
@@ -110,7 +112,7 @@ def columns(states: Any) -> tuple[Any, Any, Any]:
 
 
 def finite(theta: float, omega: float, x: float) -> tuple[float, float, float]:
-    """The state theta, omega, x; a RuntimeError if it is not finite."""
+    """The state theta, omega, x; raise a RuntimeError if it is not finite."""
     if not math.isfinite(theta + omega + x):
         raise RuntimeError(f"the state is not finite: {theta}, {omega}, {x}")
     return theta, omega, x

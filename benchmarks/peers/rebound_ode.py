@@ -1,6 +1,7 @@
 """REBOUND's own interface for ODEs, solved by its Gragg-Bulirsch-Stoer integrator.
 
-The right-hand side is a C function made by numba; it finds the body behind `ref` of the ODE.
+The right-hand side is a C function compiled by numba, which finds the body through `ref` of the
+ODE.
 """
 
 import ctypes
@@ -33,7 +34,7 @@ def field(solver: Any, name: str) -> Any:
 
 
 class ReboundRun(Integration):
-    """A simulation that every run sets back to the start."""
+    """A simulation that every run resets to the start."""
 
     def __init__(self, given: Problem) -> None:
         self.counts, self.given = {}, given

@@ -1,7 +1,7 @@
 """SciPy's solve_ivp, with the right-hand side compiled where numba is installed.
 
-solve_ivp takes no relative tolerance below 100 ulp of 1 and would warn. Smaller tolerances are
-raised to this bound; the absolute tolerance follows the setting.
+solve_ivp warns about relative tolerances below 100 ulp of 1. Smaller tolerances are raised to this
+bound; the absolute tolerance follows the setting.
 """
 
 from functools import partial
@@ -42,7 +42,7 @@ class ScipyRun(Integration):
         right_hand_side(0.0, start, body)  # the first call compiles
 
     def integrate(self, times: Any = None) -> Any:
-        with np.errstate(all="ignore"):  # a failing run reports its failure by its status
+        with np.errstate(all="ignore"):  # the status of a run reports its failure
             found = self.solve(t_eval=times)
         if not found.success:
             raise RuntimeError(found.message)
@@ -55,7 +55,7 @@ class ScipyRun(Integration):
         return finite(*self.integrate()[:, -1].tolist())
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion; solve_ivp accepts no time twice."""
+        """Sample the motion; solve_ivp does not accept equal times."""
         once, back = np.unique(times, return_inverse=True)
         return columns(self.integrate(once).T[back])
 

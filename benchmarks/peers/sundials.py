@@ -3,7 +3,7 @@
 CVODE integrates the equation. IDA integrates the body with its constraints z = h and x' = h omega:
 the unknowns are x, z, theta, their rates, and the forces N and F per mass; the constraints are
 differentiated until the forces appear (index 1). The stabilised form of index 2 (Gear, Gupta,
-Leimkuhler) costs as much and is less accurate. Huge absolute tolerances take the forces out of the
+Leimkuhler) costs as much and is less accurate. Huge absolute tolerances exclude the forces from the
 error test.
 """
 

@@ -271,8 +271,9 @@ def test_blow_to_is_the_weakest_press_that_rolls_the_body_over(
 
 
 def test_a_harder_press_may_need_less_friction() -> None:
-    """A 1.1:1 disc needs 0.0614 at the speed of the separatrix, 0.0492 at twice that. With a
-    friction of 0.055 the press gives a speed between them, at which the motion needs 0.055."""
+    """A 1.1:1 disc needs a friction of 0.0614 at the speed of the separatrix and of 0.0492 at twice
+    this speed. With a friction of 0.055 the press gives a speed between these two, at which the
+    motion needs 0.055."""
     scene = Scene(1.1, 1.0, friction=0.055)
     blow = blow_to(scene, 0.02)
     after = replace(scene, impulse=blow)

@@ -35,7 +35,7 @@ MOTIONS: dict[str, rl.Trajectory] = {
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_curves_of_motions_with_three_samples_follow_the_motion(motion: rl.Trajectory) -> None:
-    """The motion between the points of a curve stays within the width of a line, or 0.3 %."""
+    """Between its points a curve deviates from the motion by at most the width of a line, 0.3 %."""
     shown = rl.plot(motion, figure=Figure())
     for line, name in (
         (shown.theta, "theta"), (shown.omega, "omega"), (shown.height, "z"),

@@ -197,7 +197,7 @@ def test_constraints_are_shown_only_where_the_ground_enforces_them(motion: rl.Tr
 
 
 def test_energy_lost_to_the_ground_does_not_count_as_an_error(motion: rl.Trajectory) -> None:
-    """Errors are a few roundings of the energy; the work of friction does not count."""
+    """The errors are a few roundings of the energy; the work of friction is not an error."""
     (line,) = rl.plot_energy(motion, ax=new_axes(), kind="error").error
     error, slides = data(line)[1], seen(motion, line).mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(error), slides & (motion.scene.friction > 0))
@@ -343,8 +343,8 @@ def test_the_slip_mark_lies_along_the_slope() -> None:
 
 
 def test_contact_slip_and_flight_can_be_told_apart_in_grey(jump: rl.Trajectory) -> None:
-    """The marks are white, black and a grey between; a fifth of the scale is visible at a
-    glance."""
+    """The marks are white, black and a grey between these. A difference of a fifth of the scale is
+    clearly visible."""
     (strip,) = rl.animate(jump).strips
     colours = (strip.contact.get_markerfacecolor(), strip.slip.get_markerfacecolor(),
                strip.shadow.get_color())  # fmt: skip

@@ -153,7 +153,7 @@ def test_curves_over_the_aspect_agree_with_thresholds() -> None:
             assert marked[1][i] == pytest.approx(energy, rel=1e-9)
 
 
-def test_speeds_over_the_friction_agree_with_thresholds() -> None:
+def test_speeds_plotted_against_friction_agree_with_thresholds() -> None:
     shown = phase_map("friction", "speed", b=2.0, gravity=3.0, aspect=3.0)
     for key, name in {"separatrix": "roll_over_speed", "contact loss": "contact_loss_speed",
                       "lift-off": "lift_off_speed"}.items():  # fmt: skip

@@ -376,7 +376,7 @@ def test_the_strobe_stops_a_long_roll_after_three_turns() -> None:
 def test_the_strobe_stops_rocking_after_one_swing(start: rl.Scene) -> None:
     shown = rl.plot_strobe(rl.simulate(start, 50.0), ax=new_axes(), count=600)
     angles = [body.angle for body in shown.bodies]
-    # only one way, so that no outline covers another; the angle is stationary at both ends
+    # in one direction only, so that no outline covers another; the body turns back at both ends
     assert angles[-1] == pytest.approx(max(angles), abs=0.05)
     assert max(angles) == pytest.approx(-min(angles), abs=0.05)
     assert (angles[0] == min(angles)) == (start.omega == 0)

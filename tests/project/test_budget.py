@@ -1,4 +1,5 @@
-"""Code lines of the core and of the package stay within a budget; `pytest -rP` shows the rooms.
+"""Code lines of the core and of the package stay within a budget; `pytest -rP` shows the lines of
+each room.
 
 A code line is not blank, and neither comment nor docstring. A change that needs a larger budget
 says in its commit what it replaces; a change that shrinks the code lowers the budget here.

@@ -1,4 +1,4 @@
-"""The notebooks are committed with their output, small, and run again without errors."""
+"""The notebooks are small, are committed with their output, and run again without errors."""
 
 import json
 from pathlib import Path

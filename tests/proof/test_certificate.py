@@ -338,7 +338,7 @@ def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
      (2.0, 1.0, 0.9), (1.0, 1.9, 0.8)],
     ids=["flat", "tip", "standing axes, tip", "standing axes, flat", "F = 0", "standing, F = 0"],
 )  # fmt: skip
-def test_a_little_friction_suffices_for_a_moment_where_none_is_needed(
+def test_low_friction_ends_rolling_soon_after_a_start_with_no_friction_force(
     a: float, b: float, theta: float, side: int, friction: float
 ) -> None:
     """Rolling starts in the flat position, on the tip or where F vanishes. It ends after an angle

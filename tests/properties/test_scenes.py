@@ -167,7 +167,7 @@ def turned_round(at: Sample) -> dict[str, float]:
 def test_a_reversed_motion_without_friction_returns_to_its_start(data: Any) -> None:
     """A reversed motion with e = 1 and mu = 0 passes its events in the opposite order.
 
-    The bound is the change of the start when the motion is off by roundings at any of its times.
+    The bound is the change of the start if the motion deviates by roundings at any of its times.
     """
     scene = data.draw(scenes(friction=0.0, restitution=1.0, slope=0.0)).replace(impulse=None)
     span = data.draw(powers(-2, 0.7)) * clock(scene)

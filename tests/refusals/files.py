@@ -124,7 +124,7 @@ HEADERS = [
 
 
 def broken(_: Path) -> Any:
-    """Use a name for the first time, whose module does not load."""
+    """Use a name whose module fails to load, for the first time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rl, "_import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]
         return rl.__getattr__("plot")

@@ -29,7 +29,7 @@ TABLE: list[Row] = [
     row for room in ROOMS for row in importlib.import_module(f"refusals.{room}").REFUSALS
 ]
 PACKAGE = Path(rolling_ellipse.__file__).resolve().parent
-#: Functions of the package that raise for their callers.
+#: Functions of the package that raise exceptions on behalf of their callers.
 REQUIRE = ("require", "_refuse", "_refuse_scenes")
 #: Functions and exceptions of the core whose arguments are texts of a message.
 THROW = re.compile(r"\b(?:refuse|std::(?:invalid_argument|logic_error|runtime_error))\(")
@@ -48,7 +48,7 @@ UNREACHABLE: dict[str, str] = {
 }
 
 
-# : Beginnings of the last part of a message, which shows the value or its fault.
+# : Possible starts of the last part of a message, which shows the value or its fault.
 ENDS = ("got ", ", but ", ": ", " be given", " without a blow")
 
 

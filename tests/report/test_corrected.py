@@ -37,7 +37,7 @@ def test_corrected_rejects_and_names_every_violation(options: dict[str, Any]) ->
 
 
 @pytest.mark.parametrize(("a", "theta"), [(2.0, -1.0), (100.0, -0.01)])
-def test_corrected_allows_a_start_the_rounding_of_its_coordinates(a: float, theta: float) -> None:
+def test_corrected_accepts_starts_within_rounding_of_coordinates(a: float, theta: float) -> None:
     """For f4 = psi - psi(theta), tan psi = a^2 tan theta, this is twice 16 ulp of psi and theta and
     8 eps of psi - theta, plus 16 eps of |theta| + |psi|; f4 itself is known to 1e-15."""
     q, q_dot = rl.kinematics(theta, 0.0, a=a, b=1.0)
@@ -96,8 +96,8 @@ def test_corrected_projects_to_the_nearest_state() -> None:
 @pytest.mark.parametrize("which", [3, 4])
 @pytest.mark.parametrize("off", [1.0, 1e10, -1e20, 1e50])
 def test_errors_in_psi_and_r_do_not_move_a_body(stabilization: str, which: int, off: float) -> None:
-    """psi and r have no mass and do not enter the equations of motion of a circle, which rolls
-    on."""
+    """psi and r have no mass and do not enter the equations of motion of a circle, which continues
+    rolling."""
     q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
     given = np.where(np.arange(5) == which, q + off, q)
     motion = as_given(given, q_dot, [0.01, 0.02], a=1.5, b=1.5, stabilization=stabilization)

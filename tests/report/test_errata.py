@@ -172,7 +172,7 @@ def test_the_printed_cases_are_wrong_in_the_third_quadrant() -> None:
     assert found.printed == close(-at.slope) and found.right == close(at.slope)
     fourth = numbers("section 2.2, case 2 and Figure 8")
     assert fourth.right == close(Exact(5.5).slope) and fourth.printed == -fourth.right > 0
-    # f2 has its own sign on the branches of the arctan
+    # the sign of f2 depends on the branch of the arctan
     for theta, sign in ((0.7, 1), (2.0, 1), (4.0, -1), (5.5, 1)):
         lead = float(report.case_lead(theta, **SHAPE))
         assert lead == pytest.approx(sign * Exact(theta).slope, rel=1e-14)
@@ -202,7 +202,7 @@ def test_lambda3_divides_by_zero() -> None:
     for body, theta in ((BODY, 0.0), (circle, 0.3)):
         q, q_dot = rl.kinematics(theta, flat.omega, a=body["a"], b=1.0)
         q_ddot = np.zeros(5)
-        with np.errstate(invalid="raise"):  # the caller's settings must not matter to the division
+        with np.errstate(invalid="raise"):  # the caller's settings must not affect the division
             assert math.isinf(report.eq_39(q, q_ddot, **body)[2])
             assert math.isinf(report.eq_41(q, q_ddot, **body))
         assert math.isfinite(report.multipliers(q, q_ddot, **body)[2])

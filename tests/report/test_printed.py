@@ -36,7 +36,7 @@ def test_wrong_equations_lift_the_body(printed: tuple[str, ...], gap: float, mas
     how: dict[str, Any] = {"printed": printed, "mass": mass}
     loose, tight = (run(q, q_dot, [0.25], rtol=r, atol=r, **how) for r in (1e-8, 1e-11))
     told(printed, tight.gap)
-    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # the gap is given with three decimals
+    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # the gap is printed with three decimals
     assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
     assert tight.start.violations == ()
     # constraint forces do no work on rates that their own rows allow: the energy is constant

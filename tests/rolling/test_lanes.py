@@ -1,6 +1,6 @@
 """`flow` of many scenes in the lanes of a vector equals one scene at a time bit for bit.
 
-test_flow_reference.py judges the answers of one scene in 40 digits.
+test_flow_reference.py compares the answers for one scene with 40 digits.
 """
 
 import math

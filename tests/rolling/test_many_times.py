@@ -1,6 +1,6 @@
 """`flow` at many times of one motion uses a table; neither order nor number of times matters.
 
-The bits depend only on whether there are enough times for a table (40). So the comparison of 151
+The bits depend only on whether there are enough times for a table (40). Hence the comparison of 151
 times with 40 digits in test_flow_reference.py holds for any number of times.
 """
 

@@ -94,7 +94,7 @@ def test_a_wrong_equation_is_detected() -> None:
         assert ulps(found[0], exact.acceleration, sizes.acceleration) > 500
 
 
-def test_the_public_equation_has_the_bits_of_the_core(shape: tuple[float, float]) -> None:
+def test_the_public_equation_agrees_with_the_core_bit_for_bit(shape: tuple[float, float]) -> None:
     """The rates of theta, omega and, in a third column, of x, which is h omega."""
     scene = Scene(*shape, slope=0.2)
     theta, omega = np.array([0.3, 1.2, 2.0, -0.9]), np.array([1.0, -2.0, 0.5, 3.0])

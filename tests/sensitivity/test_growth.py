@@ -45,7 +45,7 @@ def test_growth_agrees_with_saltation_matrices(scene: Scene, end: float, kinds: 
 
 
 def test_growth_agrees_with_the_exact_orbit_while_it_is_known() -> None:
-    """The exact orbit in 60 digits departs by roundings that have grown: at most 64 of them."""
+    """The difference from the exact orbit in 60 digits is at most 64 roundings that have grown."""
     for end in (9.0, 14.0, 18.0):
         motion = simulate(CHAOS, [end])
         found = math.exp(motion.growth("theta").log[-1, 0])
@@ -110,7 +110,7 @@ def test_growth_ends_with_a_message_where_there_is_no_derivative() -> None:
     assert found.message in repr(found) and found.exponents.shape == (6,)
 
 
-def test_a_body_that_settles_keeps_only_changes_of_rolling() -> None:
+def test_only_changes_of_angle_and_place_survive_summed_bounces() -> None:
     """The angle and position of the disc keep their changes; hops are summed."""
     disc = Scene(1.0, 1.0, z=2.0, omega=6.0, friction=0.2, restitution=0.5)
     found: Any = simulate(disc, 3.0).growth()

@@ -53,10 +53,11 @@ def test_equal_steps_let_the_body_sink_into_the_ground(step: float) -> None:
 @pytest.mark.parametrize("theta", [0.1, 0.3])
 def test_errors_of_a_tilted_body_scale_with_the_square_of_the_rest_speed(theta: float) -> None:
     """A tilted body turns as it bounces, which the sum neglects. The duration of the summed bounces
-    and the turn meanwhile are both proportional to the rest speed, so the slope is 2. Whole bounces
-    scatter the errors by at most e^-2; for six speeds a decade over four decades that is 0.1 of a
-    slope. Errors may be 10 times the square of rest_speed/sqrt(g b), their order according to
-    `simulate`, since they grow during the next three seconds, ten natural times."""
+    and the turn during this time are both proportional to the rest speed; hence the slope is 2. The
+    number of bounces is whole, which scatters the errors by a factor of at most e^-2. With six
+    speeds per decade over four decades, this changes the slope by 0.1. `simulate` states that the
+    errors are of the order of the square of rest_speed/sqrt(g b). They may be 10 times as large
+    here, since they grow during the next three seconds, ten natural times."""
     speeds = np.geomspace(1e-2, 1e-6, 25)
     scene = dropped(theta)
     exact = simulate(scene, [3.0], rest_speed=1e-10 * UNIT)

@@ -110,7 +110,7 @@ def test_the_energy_of_gauss_walks_at_random() -> None:
 
 
 def test_the_phase_of_gauss_walks_at_random() -> None:
-    """Delays are compared with their mean over all runs, which truncation causes.
+    """Delays are compared with their mean over all runs, because truncation causes this mean.
 
     The fit starts at 100 half swings, where the walk of the energy dominates the phase. In
     synthetic walks the exponent scatters by 0.1.

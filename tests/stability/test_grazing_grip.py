@@ -52,8 +52,9 @@ def friction(k: int, side: int) -> float:
 
 
 def test_samples_miss_shortfalls_of_friction_up_to_the_square_of_their_spacing() -> None:
-    """A maximum is flat, so the slope is -2, to within 0.05: the rms of 64 draws scatters by a
-    tenth, over two decades. A grid thus finds a lack of friction only above this shortfall."""
+    """A maximum is flat; hence the slope is -2. It scatters by 0.05, since the rms of 64 draws
+    scatters by a tenth over two decades. A grid therefore misses a lack of friction below this
+    shortfall."""
     counts = [30, 100, 300, 1000, 3000]
     places = np.random.default_rng(0).uniform(0, 1, 64)
     short = [rms(shortfall(count, places)) for count in counts]

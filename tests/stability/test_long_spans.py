@@ -23,9 +23,10 @@ ALL: dict[str, tuple[int, dict[str, Any]]] = LAWS | {
 
 @pytest.mark.parametrize("name", ALL)
 def test_the_phase_error_grows_as_a_power_of_time(name: str) -> None:
-    """Slopes are taken from 20 to 500 half turns (10 to 80 for ggl, which is slow); the next power
-    is 1/20 as large at the first span: about 0.1 of a slope there and half of it in the fit. The
-    law predicts the loss of a radian; 1e9 half turns take more steps than `max_steps` allows."""
+    """Slopes are fitted from 20 to 500 half turns (10 to 80 for ggl, which is slow). At the first
+    span the next power of time is 1/20 as large, which changes the slope by about 0.1 there and by
+    half of this in the fit. The law predicts when a radian is lost; 1e9 half turns take more steps
+    than `max_steps` allows."""
     power, how = ALL[name]
     spans = np.array([10.0, 20.0, 40.0, 80.0]) if "ggl" in name else SPANS
     missed, steps = phase_missed(spans, **how)

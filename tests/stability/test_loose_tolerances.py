@@ -68,6 +68,6 @@ def test_energy_is_conserved_only_by_construction(scene: str, name: str) -> None
 def test_satisfying_the_constraints_does_not_make_a_motion_right(scene: str, name: str) -> None:
     """dopri5 loses more than twice the tolerance of its energy and a tenth of a radian, although
     projection or rolling holds its constraints to the last digit. The losses depend on the steps
-    that are rejected, and so, after a minute, on the last bits."""
+    that are rejected, and therefore, after a minute, on the last bits."""
     found = run(scene, name)
     assert found.missed.max() < 1e-13 and found.energy.max() > 2 * RTOL and found.phase > 0.1

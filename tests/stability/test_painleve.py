@@ -130,7 +130,7 @@ def test_a_slide_that_starts_with_almost_no_contact_response_ends_at_once(distan
 
 def test_nothing_jams_below_the_critical_friction() -> None:
     """None of 300 random starts of the 2:1 disc, of every kind, level and on slopes, jams at 1 -
-    1e-9 of the critical friction; some do at three times as much, so the starts could jam."""
+    1e-9 of the critical friction; some of them jam at three times this friction."""
     jammed = {}
     for friction in (CRITICAL * (1 - 1e-9), 3 * CRITICAL):
         count = 0

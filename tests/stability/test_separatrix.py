@@ -44,9 +44,9 @@ def test_motions_that_conserve_energy_are_right(how: dict[str, Any], side: int) 
 
 @pytest.mark.parametrize("name", FAIL)
 def test_every_stepped_method_is_wrong_close_enough_to_the_separatrix(name: str) -> None:
-    """A method is wrong between its own separatrix and the true one, for k of at least
-    -log10(distance). A shift as small as rounding is known only to a unit. (ggl is too slow for a
-    bisection.)"""
+    """A method is wrong for starts between its own separatrix and the true one, that is for k of at
+    least -log10(distance). A distance as small as rounding is known only to within one k. (ggl is
+    too slow for a bisection.)"""
     above, below = (first_wrong(side, **FAIL[name]) for side in SIDES)
     assert (above is None) != (below is None)
     if "ggl" not in name:

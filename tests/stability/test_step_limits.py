@@ -58,8 +58,8 @@ def test_small_rocking_is_stable_up_to_the_limit(method: str) -> None:
 
 
 def test_the_amplitude_of_dopri5_grows_slowly_beyond_its_stability_interval() -> None:
-    """dopri5 beyond its interval grows by 1.4e-6 a step at y = 1, by 0.3 % at 1.5 and by 3 % at 2,
-    by a hundredth at 1.73. The other methods reach a hundredth within 0.5 % of their limits."""
+    """Beyond its interval dopri5 grows per step by 1.4e-6 at y = 1, 0.3 % at 1.5, 1 % at 1.73 and 3
+    % at 2. The other methods grow by 1 % within 0.5 % of their limits."""
     for y, much in ((1.0, 1.389e-6), (1.5, 3.018e-3), (2.0, 3.185e-2)):
         assert amplification("dopri5", 1j * y) - 1 == pytest.approx(much, rel=1e-3)
     by_a_hundredth = {

@@ -33,9 +33,9 @@ def test_the_cost_of_five_coordinates_grows_slower_than_the_root_of_a_over_b(nam
 
 @pytest.mark.parametrize(("method", "last"), [("rk4", 6), ("gauss", 6), ("radau", 5)])
 def test_the_number_of_equal_steps_grows_like_a_over_b(method: str, last: int) -> None:
-    """Passing the flat side takes b/a of the swing, and the step is a fraction of that: slope 1,
-    except for terms of the next order, 1/10 at a/b = 10, and factors of 2^(1/4), which at both ends
-    of a fit over a factor of 30 are 0.05 each."""
+    """Passing over the flat side takes b/a of the swing, and the step is a fraction of this time;
+    hence the slope is 1. It may differ by terms of the next order, 1/10 at a/b = 10, and by factors
+    of 2^(1/4), which contribute 0.05 at each end of a fit over a factor of 30."""
     counts = [steps_needed(ratio, method) for ratio in RATIOS[2:last]]
     slope = exponent(RATIOS[2:last], counts)
     told(f"{method}: {', '.join(f'{count:.0f}' for count in counts)}: slope {slope:.3f} (1)")

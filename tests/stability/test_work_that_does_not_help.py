@@ -103,10 +103,10 @@ ASKED: dict[str, tuple[range, range, float]] = {
 
 @pytest.mark.parametrize("method", ASKED)
 def test_tolerances_below_rounding_gain_nothing(method: Any) -> None:
-    """Down to rounding the error falls as the number of evaluations to the power of minus the order
-    (to within a third, since steps change with the tolerance); below, each further digit costs a
-    fifth to a half more, and the error stays within 16 ulp of the angle, some 32 rad after ten half
-    turns."""
+    """Above the level of rounding the error falls as the number of evaluations to the power of
+    minus the order (to within a third, since steps change with the tolerance). At this level each
+    further digit of the tolerance costs a fifth to a half more, and the error stays within 16 ulp
+    of the angle, which is about 32 rad after ten half turns."""
     falling, asked, order = ASKED[method]
     end = 10.37 * period(SPUN) / 2
     truth = simulate(SPUN, [end]).theta[0]

@@ -26,7 +26,7 @@ def faults(scene: Scene, motion: rl.Trajectory) -> list[str]:
     text, start, proof = motion.reason, scene.initial_state, rl.certify(scene)
     angles, at, least = ANGLE.findall(text), AT.search(text), LEAST.search(text)
     needs, lands, rolls = NEEDS.search(text), LANDS.match(text), start.mode in HELD
-    since = float(lands[1]) * (1 + 5e-6) if lands else 0.0  # of six digits
+    since = float(lands[1]) * (1 + 5e-6) if lands else 0.0  # t has six digits
     ends = [each for each in motion.events if each.kind in ENDS and each.t > since]
     ended = bool(at) or (rolls and bool(ends))
     numbers = NUMBER.findall(NEEDS.sub("", text))  # the blow may need what its motion needs most

@@ -192,7 +192,7 @@ def test_arrays_of_the_caller_are_left_alone() -> None:
         assert mine.flags.writeable and mode.flags.writeable
     again = dataclasses.replace(made)
     assert again.x is made.x and again.contact is not None and made.contact is not None
-    assert again.contact.z is made.contact.z  # an array that nobody can write to need not be copied
+    assert again.contact.z is made.contact.z  # a read-only array need not be copied
 
 
 @pytest.mark.parametrize("model", ["rolling", "multipliers", "contact"])

@@ -136,8 +136,8 @@ def test_events_can_be_selected_by_their_kinds() -> None:
 
 
 def test_a_distant_angle_is_found_but_a_height_passed_too_often_is_rejected() -> None:
-    """In 1e9 half turns a body passes an angle once, and this time is found quickly; it passes a
-    height too often."""
+    """In 1e9 half turns a body passes through an angle once, and this time is found quickly. The
+    body passes through a height too often."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
     (t,) = motion.when(theta=angle)

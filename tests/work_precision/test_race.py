@@ -386,7 +386,7 @@ def test_costly_contenders_take_part_in_fewer_rounds(clock: Clock) -> None:
 # ------------------------------------------------------------------------------ judged times
 
 
-def test_knowing_the_end_in_advance_does_not_win() -> None:
+def test_a_contender_with_only_the_right_end_does_not_win() -> None:
     """Wrong samples count as their error; samples that are NaN are no answer."""
     rubbish = Peer("rubbish", samples=lambda t, *_: (0 * t + 32, 0 * t, 0 * t))
     nothing = Peer("nothing", samples=lambda t, *_: (t * math.nan, 0 * t, 0 * t))

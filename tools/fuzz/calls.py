@@ -1,7 +1,8 @@
 """Cases: a call to a public function by its signature, or a motion and questions about it.
 
-A case is a list of lines of Python. Each is an expression, with a name if later lines use its
-value. A line with the word "forged" works on damaged data, which may hold NaN and break promises.
+A case is a list of lines of Python. Each line is an expression, assigned to a name if later lines
+use its value. A line with the word "forged" uses damaged data, which may contain NaN and break
+promises.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
 #: Functions with cases of their own.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
-#: Functions of files, or that take seconds per call; tests/refusals has their arguments.
+#: Functions that use files or take seconds per call; tests/refusals tests their arguments.
 SLOW = (
     "rl.examples", "rl.explore", "rl.fit_motion", "rl.read_track", "rl.work_precision",
     "rl.report.errata", "rl.report.errata_table",
@@ -322,7 +323,7 @@ def many(draw: Draw, of: Body) -> list[str]:
 
 
 _TABLE = "t,x,z,theta,x_dot,z_dot,omega\\n" + "".join(f"{t / 2},0,1,0,0,0,0\\n" for t in range(9))
-#: What files may hold: texts in other encodings, huge fields, odd bytes, damaged tables.
+#: Contents of files: texts in other encodings, huge fields, odd bytes, damaged tables.
 CONTENTS = (
     *(f"'{_TABLE}'.encode('{code}')" for code in ("utf-8", "utf-8-sig", "utf-16", "utf-32")),
     f"'{_TABLE}'.replace('omega', 'größe').encode('latin-1')", f"b'{_TABLE}' + b'1' * 200_000",
@@ -330,7 +331,7 @@ CONTENTS = (
     f"b'{_TABLE}'.replace(b',', b';')", f"b'{_TABLE}'.replace(b'0', b'\"')",
     "b'{{}}'", "b'PK\x03\x04'",
 )  # fmt: skip
-#: Readers and writers, each with a path that may hold a hostile object.
+#: Calls that read or write files at a path where a hostile object may be.
 ON_FILES = (
     *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
     *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,
@@ -349,7 +350,7 @@ NAMES_OF = {
 
 
 def files(draw: Draw, of: Body) -> list[str]:
-    """A file, or another object in its place, and a function that reads or writes there."""
+    """A file or another object in its place, and a call that reads or writes at this path."""
     line, kind = draw.pick(*ON_FILES), draw.pick(*["file"] * 8, *damage.THINGS)
     names = next((each for part, each in NAMES_OF.items() if f".{part}" in line), ("a",))
     content = filled(draw, of, draw.pick(*CONTENTS))

@@ -63,7 +63,7 @@ NAMES: dict[str, Any] = {
 
 
 class Case:
-    """The values of one case after the lines run so far."""
+    """The variables of one case after the lines that have run."""
 
     def __init__(self) -> None:
         self._values = dict(NAMES)

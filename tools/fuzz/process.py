@@ -36,7 +36,7 @@ class Finding(NamedTuple):
 
 
 def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> None:
-    """Body of the process: runs the cases that arrive, one by one.
+    """Run the cases that arrive, one by one; this is the main function of the process.
 
     It sends the number of each line before running it, and the findings at the end.
     """

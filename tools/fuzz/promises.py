@@ -1,7 +1,7 @@
 """Promises about results: finite numbers, arrays that fit together, copies that are equal.
 
-The checks of a result yield broken promises as kind and sentence; the comparisons, which are lines
-of cases, raise `Broken`.
+The checks of a result yield each broken promise as its kind and a sentence. The comparisons, which
+are lines of cases, raise `Broken`.
 """
 
 from __future__ import annotations
@@ -57,7 +57,8 @@ def marked(task: str, **environment: str) -> Any:
 
 
 def of_result(value: Any, finite: bool) -> Finds:
-    """Check any result; for `finite` arguments it must hold no NaN. A scene never holds any."""
+    """Check any result. It must not contain NaN if all arguments are finite; a scene must not in
+    any case."""
     if isinstance(value, rl.Trajectory):
         yield from of_trajectory(value)
     elif (finite or isinstance(value, rl.Scene)) and (where := _nan_in(value)) is not None:
@@ -132,7 +133,7 @@ def energy_growth(found: rl.Trajectory) -> float:
 def _blur(found: rl.Trajectory) -> float:
     """Relative error of the energy due to rounded angles and a given `rest_speed`.
 
-    The relative change per radian is 1.6 a/b for D, a/2b for h; with infinite friction forces
+    The relative change per radian is 1.6 a/b for D, a/2b for h; with infinite friction the forces
     depend on the distance to a tip; bounces below rest_speed are summed, with an error of at most
     1/100.
     """

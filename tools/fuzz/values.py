@@ -24,7 +24,7 @@ EXTREMES = (
     "nextafter(1.5, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e22", "1e6", "1e-6",
 )  # fmt: skip
 
-# Numbers of other types: the package accepts them as numbers, or refuses them by name.
+# Numbers of other types: the package accepts them, or refuses them with the name of the argument.
 DRESSED = (
     "True", "np.bool_(True)", "np.float16(1.5)", "np.float32(1.5)", "np.int8(1)",
     "np.uint64(2**64 - 1)", "np.longdouble(1) / 3", "Fraction(1, 3)", "Decimal('0.5')",
@@ -63,7 +63,7 @@ MAKES = (
     "np.array([(1, v) for v in {0}], dtype='i1,f8')['f1']",
 )  # fmt: skip
 
-# Arguments that bound the work and so get no large numbers.
+# Arguments that bound the work and therefore get no large numbers.
 WORK = ("max_steps", "max_events", "count", "max_frames", "width", "dpi")
 
 
