@@ -20,9 +20,9 @@ from ._pictures.animation.movies import film_suffix
 from ._pictures.axes import save_figure
 from ._player import animate, explore
 
-_FPS = 25.0  # frames per second, possible in every kind of film
+_FPS = 25.0  # frames per second, supported by every format of films
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-# Options for the arguments with whose names error messages of functions begin
+# Command-line options by the names of arguments with which error messages of functions start
 _OPTIONS = {"step": "--step", "t": "--time", "t_end": "--time", "source": "--scene"}
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
@@ -33,9 +33,10 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 on success; 1 if the motion could not be followed to its end (the summary covers the part
-        computed), or an answer to `benchmark` is wrong; 2 (and one line) on bad input, or if a file
-        cannot be written. Warnings of instability or of omitted blows are lines, too.
+        0 on success; 1 if the motion could not be followed to its end (the summary then covers the
+        computed part), or an answer to `benchmark` is wrong; 2 (with a message of one line) on bad
+        input, or if a file cannot be written. A StabilityWarning, or a warning of
+        omitted blows, is also printed as one line.
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {
@@ -67,7 +68,7 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
         if (path := getattr(options, name)) is not None:
             shell.require_file(f"--{name}", path)
     if options.save is not None:
-        film_suffix(options.save, _FPS, "--save")  # rejects a wrong name before any work
+        film_suffix(options.save, _FPS, "--save")  # reject a wrong name before any work
     how = {name: getattr(options, name) for name in ("model", "method", "step")}
     trajectory = simulate(shell.chosen_scene(options), options.time, **how, raise_on_failure=False)
     files = []
@@ -82,7 +83,7 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _page(options: argparse.Namespace) -> tuple[int, str]:
-    """Write the page of `explore`, open it unless `--no-open` is given; return 0 and a message."""
+    """Write the page of `explore` and open it unless --no-open is given; return 0 and a message."""
     explorer = explore(shell.chosen_scene(options), t_end=options.time, language=options.language)
     path = options.save
     if path is None:
@@ -91,7 +92,7 @@ def _page(options: argparse.Namespace) -> tuple[int, str]:
     explorer.save(path)
     message = f"written           {path}"
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
-        message += "\nno browser was found: open the file in one"
+        message += "\nno browser was found: open the file in a browser"
     return 0, message
 
 
@@ -102,8 +103,8 @@ def _examples(options: argparse.Namespace) -> tuple[int, str]:
 
 def _complain(error: Exception | Warning | str) -> None:
     if sys.stderr is not None:  # print(file=None) would write to stdout
-        argument, *said = printable(str(error)).split() or [type(error).__name__]
-        print(f"{shell.PROGRAM}:", _OPTIONS.get(argument, argument), *said, file=sys.stderr)
+        first, *others = printable(str(error)).split() or [type(error).__name__]
+        print(f"{shell.PROGRAM}:", _OPTIONS.get(first, first), *others, file=sys.stderr)
 
 
 def run() -> int:
@@ -125,7 +126,7 @@ def run() -> int:
             _complain(error)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
-        if stream is not None:  # Python flushes it again at exit, which would fail
+        if stream is not None:  # Python flushes the stream again at exit, which would fail
             os.dup2(nowhere, stream.fileno())
     return code
 

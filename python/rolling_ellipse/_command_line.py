@@ -36,7 +36,7 @@ SCENE_OPTIONS = {
     "b": "the other semi-axis [m]",
     "mass": "mass [kg]",
     "theta": "angle at the start, clockwise [rad]",
-    "omega": "angular velocity at the start [rad/s]; there is then no blow but that of --press",
+    "omega": "angular velocity at the start [rad/s]; without --press there is then no blow",
     "friction": "coefficient of friction",
     "restitution": "coefficient of restitution",
     "rolling_resistance": "lever of the rolling resistance [m]",
@@ -45,8 +45,8 @@ SCENE_OPTIONS = {
     "inertia": "moment of inertia about the centre [kg m^2] (default: a uniform disc)",
 }
 _BASE = (
-    "The scene is that of --scene, or else the report's, a = 2 m, b = 1 m, 10 kg, pressed down by "
-    "48 N s at 1.5 m from its centre; other options change it."
+    "The scene is that of --scene or, by default, that of the report: a = 2 m, b = 1 m, 10 kg, "
+    "pressed down by 48 N s at 1.5 m from its centre. The other options change it."
 )
 _ABOUT = str(benchmark.__doc__).partition("\n\nExamples")[0].replace("``", "")
 _SCRIPT = "rolling-ellipse"
@@ -75,15 +75,15 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
     parser._negative_number_matcher = _NEGATIVE
     parser.add_argument(
         "--scene", metavar="FILE|LINK|-",
-        help="JSON of Scene.to_json in a file or standard input, or a link of the live page; the "
-        "time of a link is not read",
+        help="file with the JSON of Scene.to_json (- is standard input), or a link of the live "
+        "page, whose time and blows are ignored",
     )  # fmt: skip
     for name, meaning in SCENE_OPTIONS.items():
         option = "--" + name.replace("_", "-")
         parser.add_argument(option, type=float, metavar="NUMBER", help=meaning)
     parser.add_argument(
         "--press", type=float, nargs=2, metavar=("F", "D"),
-        help="press down by F [N s] at D [m] from the centre instead",
+        help="replace the blow: press down by F [N s] at D [m] from the centre",
     )  # fmt: skip
     return parser
 
@@ -92,13 +92,13 @@ def motion_parser() -> OneLineParser:
     """Return the parser of the command that simulates a scene."""
     parser = _scene_parser(
         PROGRAM,
-        "Simulate an ellipse on the ground, and say what happens.",
+        "Simulate an ellipse on the ground and report what happens.",
         f"{PROGRAM} explore [options] writes a page to play with the scene in a browser; "
         f"{PROGRAM} benchmark tests other simulators; {PROGRAM} examples DIR writes notebooks.",
     )
     parser.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
     for name, known, meaning in (
-        ("model", MODELS, "how it moves"), ("method", METHODS, "how it is computed")
+        ("model", MODELS, "model of motion"), ("method", METHODS, "numerical method")
     ):  # fmt: skip
         parser.add_argument(
             f"--{name}", type=str.casefold, choices=known, default="auto", help=meaning
@@ -114,12 +114,12 @@ def motion_parser() -> OneLineParser:
 def explore_parser() -> OneLineParser:
     """Return the parser of `explore`."""
     parser = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
-    parser.add_argument("--time", type=float, metavar="S", help="how long motions are followed")
+    parser.add_argument("--time", type=float, metavar="S", help="time to follow motions for")
     parser.add_argument(
-        "--language", type=str.casefold, choices=LANGUAGES, default="en", help="of the page"
+        "--language", type=str.casefold, choices=LANGUAGES, default="en", help="language"
     )
-    parser.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
-    parser.add_argument("--no-open", action="store_true", help="write it and open no browser")
+    parser.add_argument("--save", metavar="FILE", help="page to write (default: a temporary file)")
+    parser.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
     return parser
 
 
@@ -127,7 +127,7 @@ def examples_parser() -> OneLineParser:
     """Return the parser of `examples`."""
     about = "Write the notebooks, without outputs, and the tables of reference states."
     parser = OneLineParser(prog=f"{PROGRAM} examples", description=about)
-    parser.add_argument("folder", metavar="DIR", help="made if it does not exist")
+    parser.add_argument("folder", metavar="DIR", help="folder, created if it does not exist")
     return parser
 
 
@@ -138,9 +138,9 @@ def require_file(option: str, path: str) -> None:
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
-    """Return the scene of --scene, or else the report's, changed by the other options.
+    """Return the scene of --scene, or else that of the report, changed by the other options.
 
-    The scene's blow is kept unless --omega sets the start or --press gives another blow.
+    The blow of the scene remains unless --omega sets the start or --press replaces the blow.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
 
 
 def _read_scene(given: str) -> Scene:
-    """Return the scene of a link, of a file, or of standard input if its name is "-"."""
+    """Return the scene of a link, of a file, or of standard input if the name is "-"."""
     if given == "-":
         return Scene.from_json(sys.stdin.read() if sys.stdin else "")
     return Scene.from_json(given if given.startswith(LINKS) else Path(given))
@@ -176,22 +176,22 @@ def benchmark_parser() -> OneLineParser:
     """Return the parser of `benchmark`."""
     parser = OneLineParser(prog=f"{PROGRAM} benchmark", description=_ABOUT)
     actions = parser.add_subparsers(dest="action", required=True, parser_class=OneLineParser)
-    actions.add_parser("list", help="print the problems and what they need")
+    actions.add_parser("list", help="print the problems and the abilities that they need")
     export = actions.add_parser("export", help="write problems and empty tables for results")
     export.add_argument("folder", metavar="DIR")
     score = actions.add_parser("score", help="score the tables of results in a folder")
     score.add_argument("folder", metavar="DIR")
-    run = actions.add_parser("run", help="run an engine, or your mine(problem, times, setting)")
+    run = actions.add_parser("run", help="run an engine or your mine(problem, times, setting)")
     run.add_argument("mine", metavar="|".join((*ENGINES, "module:function")))
     run.add_argument(
         "--ladder", type=float, nargs="+", default=[None], metavar="SETTING",
-        help="settings, such as steps [s], from coarse to fine (default: one, which is None)",
+        help="settings, such as steps [s], from coarse to fine (default: only None)",
     )  # fmt: skip
     for each in (score, run):
         each.add_argument("--json", action="store_true", help="print the scores as JSON")
-        each.add_argument("--problem", nargs="+", metavar="ID", help="these only (default: all)")
+        each.add_argument("--problem", nargs="+", metavar="ID", help="only these (default: all)")
         each.add_argument(
-            "--tags", metavar="A,B", help="problems that need no other abilities than these"
+            "--tags", metavar="A,B", help="only problems that need no other abilities"
         )
     return parser
 
@@ -216,7 +216,7 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a function; errors in the function become sentences that name the line."""
+    """Run an engine or a function; report an error in it as a sentence that gives its line."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
@@ -232,7 +232,7 @@ def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
 
 
 def _function(name: str) -> Any:
-    """Import an adapter, or a function named as module:function, also from the current folder."""
+    """Import an adapter, or a module:function, which may be in the current folder."""
     if name in ENGINES:
         try:
             return import_module(f"{benchmark.__name__}.adapters.{name}").simulate
@@ -255,17 +255,17 @@ def _function(name: str) -> Any:
 
 
 def _failed(name: str, error: Exception, hint: str = "") -> RuntimeError:
-    """Return the error of a user's code in one sentence, with the line that raised it."""
+    """Return an error in a user's code as one sentence, with the line that raised it."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     place = f"line {last.lineno} of {Path(last.filename).name}"
     return RuntimeError(f"{name} raised {type(error).__name__} in {place}: {error}{hint}")
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
-    """Return the facts of a motion by name, files written included; None for missing values."""
+    """Return the facts of a motion by name, with the files written; missing values are None."""
     scene = trajectory.scene
     certificate, start = certify(scene), scene.initial_state
-    # the certificate's numbers describe rolling, and are left out for other motions
+    # the numbers of the certificate describe rolling, and are left out for other motions
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
     facts: dict[str, Any] = {
         "scene": _scene_facts(scene),
@@ -299,7 +299,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:
-    """Return the changed fields of a scene: JSON has no infinite friction, which is the default."""
+    """Return the changed fields of a scene: JSON lacks infinite friction, which is a default."""
     facts = {name: value for name, value in asdict(scene).items() if name in scene._changed()}
     return facts | {"impulse": facts.get("impulse")}
 
@@ -319,7 +319,7 @@ def _finite(value: float | None) -> float | None:
 
 
 def as_text(facts: dict[str, Any], trajectory: Trajectory) -> str:
-    """Return the result of `summary` as text, a line for each fact."""
+    """Return the result of `summary` as text, with a line for each fact."""
     scene = {name: value for name, value in trajectory.scene._rows()}
     start, blow = scene.pop("start"), scene.pop("impulse", "none")
     rows = [
@@ -346,7 +346,7 @@ def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
         ]
     rows += [(kind, f"at {t:.9g} s") for t, kind in facts["events"][:_SHOWN_EVENTS]]
     if len(facts["events"]) > _SHOWN_EVENTS:
-        rows.append(("…", f"and {len(facts['events']) - _SHOWN_EVENTS} events more"))
+        rows.append(("…", f"and {len(facts['events']) - _SHOWN_EVENTS} more events"))
     residuals = (
         f"position {facts['largest_position_residual']:.2g}, velocity "
         f"{facts['largest_velocity_residual']:.2g}, gap {facts['largest_gap']:.2g} m, "
@@ -356,7 +356,7 @@ def _motion_rows(facts: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 
 def _repeat(facts: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
-    """Return the row with the time after which a motion repeats, or why it never does."""
+    """Return the row with the time after which a motion repeats, or why it does not."""
     if facts["period"] is not None:
         return _REPEATS.get(facts["outcome"], "swing or turn"), f"{facts['period']:.12g} s"
     name = "swing or turn"

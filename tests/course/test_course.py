@@ -81,7 +81,7 @@ def test_marks_state_which_impacts_were_used(
 ) -> None:
     rows, names = np.vstack(course.measured_impacts()).T, ",".join(IMPACTS)
     np.savetxt(tmp_path / "seen.csv", rows[::-2], delimiter=",", header=names, comments="")
-    for ending in ("(Made impacts.)", "(Measured impacts.)"):
+    for ending in ("(Synthetic impacts.)", "(Measured impacts.)"):
         mark = course.mark("8.2", TRUE["8.2"](Given("8.2")))
         assert mark and mark.sentence.endswith(ending)
         monkeypatch.setenv("ROLLING_ELLIPSE_IMPACTS", str(tmp_path / "seen.csv"))

@@ -33,7 +33,7 @@ def test_a_class_is_marked_line_by_line() -> None:
     words = [message.split()[0] for message in marked.refused.values()]
     assert words == ["answer", "seed", "task", "answer", "seed", "answer", "seed", "answer",
                      "seed", "answer"]  # fmt: skip
-    assert "'twenty'" in marked.refused[6] and "8, as in lines before" in marked.refused[7]
+    assert "'twenty'" in marked.refused[6] and "8, as in earlier lines" in marked.refused[7]
 
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])

@@ -269,7 +269,7 @@ def test_a_notebook_obeys_animation_html(short: Any, wanted: str, marks: str) ->
 
 def test_a_film_too_long_for_a_notebook_is_not_embedded(tmp_path: Path) -> None:
     film = rl.animate(rl.simulate(rl.scenes.rolling, 1e4), speed=10.0, width=64)  # 5e4 frames
-    said = "t_end must be shown by a player in at most 20000 samples, got "
+    said = "t_end must be so short that a player needs at most 20000 samples, got "
     assert film._repr_html_().startswith(f"<p>{said}") and len(film._repr_html_()) < 300
     with pytest.raises(ValueError, match=f"^{said}"):
         film.save(tmp_path / "roll.html")

@@ -43,7 +43,7 @@ def test_the_browser_gives_the_marks_of_python(number: int, opened: Callable[...
         table = f'student,seed,task,answer\nx,{SEED},{number_of},"{text}"'
         rows = course.mark_table(StringIO(table))
         if rows.refused:
-            assert mark is None and shown == "This is no number."
+            assert mark is None and shown == "This is not a number."
         else:
             ours = rows.marks["x"][number_of]
             assert mark == [ours.points, ours.sentence, ours.mistake], (number_of, text)

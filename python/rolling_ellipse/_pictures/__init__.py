@@ -1,4 +1,4 @@
-"""Pictures and films: everything that needs matplotlib, loaded on first use."""
+"""Pictures and films: all code that needs matplotlib, imported on first use."""
 
 from .animation import animate as animate
 from .curves import plot_curves as plot_curves

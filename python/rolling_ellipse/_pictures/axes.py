@@ -1,4 +1,4 @@
-"""The Axes and figures of pictures, their legends and titles, and shared parts of docstrings."""
+"""Axes and figures for pictures, their legends and titles, and shared parts of docstrings."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ _Drawn = TypeVar("_Drawn")
 
 
 class Alone:
-    """A lock for a process-wide resource, released in a forked process: `with alone(): ...`."""
+    """A lock for a process-wide resource, used as `with alone(): ...`.
+
+    A forked process gets a new, released lock.
+    """
 
     def __init__(self) -> None:
         self._renew()
@@ -50,7 +53,7 @@ _opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 _LOOKS = ("color", "linewidth", "linestyle", "alpha", "labels", "colors", "figsize", "ax", "count")
 _NARROW = 2.5  # axes narrower than this get small letters [inch]
-_NAMED = 8  # maximum number of motions named: more would fill the picture
+_NAMED = 8  # maximum number of motions in a legend: more would fill the picture
 
 _SHARED = {
     "ax": """ax : matplotlib Axes, optional
@@ -59,46 +62,48 @@ _SHARED = {
     "figsize": """figsize : (float, float), optional
     Width and height of the new figure [inch]; default: those of the style, or a suitable size.""",
     "motions": """labels : sequence of str, optional
-    Names of the motions; default: what they differ in.
+    Names of the motions; default: the parameters in which they differ.
 colors : sequence of matplotlib colours, optional
-    One for each motion.
+    One colour for each motion.
 **options
     Properties of `matplotlib.lines.Line2D` for all curves.""",
     "returns": """Returns
 -------
 {drawn}
-    The artists.
-
+    The artists of the picture.
 Raises
 ------
 ValueError
-    If an argument is out of range or not as above, or there is nothing to show.
+    If an argument is out of range or not one of the choices above, or there is nothing to show.
 TypeError
-    If something is not a trajectory, or another argument is of a wrong kind.""",
+    If a motion is not a Trajectory, or another argument has the wrong type.""",
 }
 """Parts of docstrings; each replaces its `{name}`."""
 
 
 @dataclass(frozen=True, repr=False)
 class Artists:
-    """The Axes of a picture; subclasses add the artists. Its repr has the number of each kind."""
+    """The Axes of a picture; subclasses add its artists.
+
+    The repr gives the number of artists in each field.
+    """
 
     axes: tuple[Axes, ...]
 
     @property
     def ax(self) -> Axes:
-        """The only or the first Axes."""
+        """The first Axes, or the only one."""
         return self.axes[0]
 
     @property
     def figure(self) -> Figure:
-        """The figure, or the part of one (a SubFigure), that the Axes are in."""
+        """The Figure or SubFigure that contains the Axes."""
         return self.ax.figure  # type: ignore[return-value]
 
     def savefig(self, path: Any, **options: Any) -> None:
         """Write the whole figure to a file, with the options of matplotlib's `Figure.savefig`.
 
-        The file appears whole or not at all.
+        The file is written completely or not at all.
         """
         save_figure(self.figure, path, **options)
 
@@ -113,7 +118,7 @@ class Artists:
 
 
 def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
-    """Complete the docstring of a plot function; if the function fails, close figures it opened."""
+    """Complete the docstring of a plot function, and close the figures it opened if it fails."""
 
     @wraps(draw)
     def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
@@ -139,15 +144,15 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 
 def _hint(error: Exception, args: Sequence[Any]) -> str:
-    """Return which argument was wrong and where it belongs; "" if that is unknown."""
+    """Return which argument was wrong and where it belongs, or "" if this is unknown."""
     name = str(error).partition("unexpected keyword argument ")[2].strip("'")
     if hasattr(Axes, f"set_{name}"):
-        return f"{name}, which belongs to the Axes that are drawn on: their set({name}=...)"
+        return f"{name}, which is a property of the Axes: set it with ax.set({name}=...)"
     if name:
         return f"{name}, which no artist has{meant(name, _LOOKS)}"
     files = [each for each in args if isinstance(each, str | os.PathLike)]
     if files and "positional argument" in str(error):
-        return f"a path: the picture that it returns is written by savefig({shown(files[0])})"
+        return f"a path: write the picture that it returns with savefig({shown(files[0])})"
     return ""
 
 
@@ -166,7 +171,7 @@ def require_axes(ax: Any) -> Axes:
 def panels_of(
     ax: Axes | Sequence[Axes] | None, figsize: Any, counts: Sequence[int] = (1, 2)
 ) -> list[Axes]:
-    """Return the Axes given, or the most of a new pyplot figure, which share a time axis."""
+    """Return the given Axes, or `counts[-1]` Axes of a new figure with a common time axis."""
     if ax is None:
         rows = counts[-1]
         figure = _new_figure((7, 1.8 + 1.6 * rows), figsize)
@@ -181,7 +186,7 @@ def panels_of(
 
 
 def listed(ax: Any) -> list[Any]:
-    """Return the entries of nested lists and arrays as a flat list; a single object is one."""
+    """Return the entries of nested lists and arrays as a flat list; wrap a single object."""
     rows = ax.ravel().tolist() if isinstance(ax, np.ndarray) else ax
     if not isinstance(rows, (list, tuple)):
         return [ax]
@@ -218,14 +223,14 @@ def picture_file(path: Any) -> str | None:
     name = None if path is None else file_name("path", path)
     if any(name == each.name for each in QUANTITIES):
         raise ValueError(
-            f"path must name a file such as '{name}.png', got {name!r}, which is a quantity: alone "
-            f"it is drawn by plot_curves(motion, {name!r})"
+            f"path must name a file such as '{name}.png', got {name!r}, which is a quantity: draw "
+            f"it alone with plot_curves(motion, {name!r})"
         )
     return name
 
 
 def write(drawn: Artists, name: str | None) -> None:
-    """Write the whole figure to a file, if there is a name; a new figure then leaves pyplot."""
+    """Write the whole figure to a file, if a name is given; then remove new figures from pyplot."""
     if name is not None:
         drawn.savefig(name)
         for figure in _opened.get():
@@ -233,9 +238,9 @@ def write(drawn: Artists, name: str | None) -> None:
 
 
 def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
-    """Write the figure around a figure to an object with `write`, or to a file; return its name.
+    """Write the root figure to a file and return the name, or to an object with `write`.
 
-    A name without a suffix gets the suffix of matplotlib's usual format.
+    A name without a suffix gets the suffix of matplotlib's default format.
     """
     whole: Any = figure.get_figure(root=True)
     if hasattr(path, "write"):
@@ -255,36 +260,36 @@ def close(figure: Figure) -> None:
 
 
 def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: Any) -> None:
-    """Raise ValueError unless a size is two positive numbers and for a new figure."""
+    """Raise ValueError unless `figsize` is two positive numbers and the figure is a new one."""
     if figsize is None:
         return
     wrong = shown(figsize)
     with suppress(TypeError, ValueError):
         _width, _height = (positive("figsize", side) for side in figsize)
-        wrong = "" if ax is None and figure is None else "one for a figure that has a size"
+        wrong = "" if ax is None and figure is None else "one for an existing figure"
     if wrong:
         wanted = "figsize must be the width and the height [inch] of a new figure"
         raise ValueError(f"{wanted}, got {wrong}")
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
-    """Open a pyplot figure of the given size, else of the style's, else of the suitable one."""
+    """Open a pyplot figure whose size is `figsize`, or that set by the style, or else `size`."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
     return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")
 
 
 def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
-    """Return the entries a legend has room for: all, or evenly spaced ones from first to last."""
+    """Return the entries for which a legend has room: all, or some evenly spaced ones."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
 
 
 def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None) -> None:
-    """Give the axes a legend above them on the right, where it covers nothing."""
+    """Put a legend above the axes, aligned right, where it covers no curve."""
     entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
     room = ax.get_window_extent().width
     size = size or ("small" if room > _NARROW * ax.figure.dpi else "x-small")
-    for columns in range(len(entries), 0, -1):  # as many as there is room for
+    for columns in range(len(entries), 0, -1):  # as many columns as fit into the width
         legend = ax.legend(
             handles=entries, ncols=columns, loc="lower right", bbox_to_anchor=(1, 1),
             frameon=False, fontsize=size,
@@ -296,9 +301,10 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None, size: Any = None
 
 
 class _Within:
-    """A locator of axes that keeps legend, title and labels in their box if no layout engine does.
+    """A locator that makes room for legend, title and labels if there is no layout engine.
 
-    Axes with equal scales are refitted to each box: matplotlib only widens their limits.
+    The limits of axes with equal scales are reset for each box, because matplotlib only widens
+    them.
     """
 
     def __init__(self, ax: Axes) -> None:

@@ -1,4 +1,4 @@
-"""Scores of a simulator: error over condition number, one row per problem."""
+"""A plot of the scores of a simulator: error over condition number, one row per problem."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class ScoresChart(Artists):
 def draw(scores: Scores, path: Any, ax: Axes | None, figsize: Any) -> ScoresChart:
     """Draw the scores; see `Scores.plot`."""
     if not scores:
-        raise ValueError("scores must be of at least one problem, got none")
+        raise ValueError("scores must have at least one problem, got none")
     name = picture_file(path)
-    family = {one.problem: _FAMILIES.index(one.problem.partition(".")[0]) for one in scores}
+    family = {s.problem: _FAMILIES.index(s.problem.partition(".")[0]) for s in scores}
     rows = sorted(family, key=family.__getitem__)
     ax = axes_of(ax, (7.2, 1.3 + 0.24 * len(rows)), figsize)
     palette, limit = palette_of(ax), scores[0].tolerance

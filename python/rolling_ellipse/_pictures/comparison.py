@@ -1,7 +1,7 @@
 """The motions of one picture and their styles.
 
-Several motions differ in colour (hue and lightness), and also in dashes. Where dashes mark the
-quantities, motions differ in markers instead. Thus pictures remain readable in grey.
+Several motions differ in colour (hue and lightness) and in dashes, so that pictures remain readable
+in grey. Where dashes distinguish quantities, motions differ in markers instead.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from .axes import listed, some_of
 from .palette import Palette, palette_of
 
 _ABOUT = "method", "model"
-MOST_FACTS = 3  # in one label: more would not fit a small picture
+MOST_FACTS = 3  # maximum number in a label: more would not fit into a small picture
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
 MARKERS = (".", "x", "+", "1", "2")
 
 
 @dataclass(frozen=True)
 class Style:
-    """The style of one motion among several; if it has no colour, its quantities have their own."""
+    """The style of one motion among several; without a colour, each quantity has its own."""
 
     label: str = ""
     colour: Any = None
@@ -78,13 +78,13 @@ class Comparison:
             artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
-        """Return legend entries: the curves of one motion, else motions and quantities."""
+        """Return legend entries: the curves of a single motion, or motions and quantities."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
         return [*self.motion_handles(solid=True), *self.quantity_handles(*quantities)]
 
     def quantity_handles(self, *quantities: tuple[str, str]) -> list[Line2D]:
-        """Return legend entries for quantities (name, dash) of every motion."""
+        """Return legend entries for quantities (name, dash), common to all motions."""
         grey = self.palette.grey
         return [Line2D([], [], color=grey, ls=dash, label=name) for name, dash in quantities]
 
@@ -102,7 +102,7 @@ class Comparison:
 
 
 def require_motion(trajectory: object) -> None:
-    """Raise TypeError unless the argument is a Trajectory, ValueError if it has no samples."""
+    """Raise TypeError unless the argument is a Trajectory, or ValueError if it has no samples."""
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
     if trajectory.t.size == 0:
@@ -153,7 +153,7 @@ def _styles(labels: Sequence[str], palette: Palette, colors: Any) -> tuple[Style
 
 
 def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:
-    """Return one name for each trajectory: the given ones, or what differs among them.
+    """Return a name for each trajectory: the given one, or one made of what differs among them.
 
     Without `labels` a name consists of the method, the model and the fields of the scene that
     differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". After three facts an ellipsis follows. If

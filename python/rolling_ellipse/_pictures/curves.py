@@ -1,4 +1,4 @@
-"""Any quantities of motions over time."""
+"""Plots of any quantities of motions over time."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def plot_curves(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Curves:
-    """Draw quantities of one motion or several over time, each in a panel of its own.
+    """Draw quantities of one or several motions over time, with a panel for each quantity.
 
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
@@ -51,7 +51,7 @@ def plot_curves(
         Names of arrays of a trajectory: "theta", "omega", "x", "normal_force", "energy", ...;
         default: "theta".
     ax : matplotlib Axes or a sequence of them, optional
-        Where to draw, one for each quantity; default: a new pyplot figure.
+        Where to draw, with one Axes for each quantity; default: a new pyplot figure.
     {figsize}
     {motions}
 

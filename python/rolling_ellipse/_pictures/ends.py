@@ -1,4 +1,4 @@
-"""The ends of many motions: a quantity over the one or two arguments that vary."""
+"""Plots of the ends of many motions: a quantity over the one or two arguments that vary."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NONE = -1  # code of no event
 
 @dataclass(frozen=True, repr=False)
 class EndsChart(Artists):
-    """The artist of `Ends.plot`: a line over one axis of scenes, a map of colours over two."""
+    """The artist of `Ends.plot`: a line over one axis of scenes, or a colour map over two."""
 
     values: Line2D | QuadMesh
 
@@ -36,7 +36,7 @@ def draw_ends(ends: Ends, quantity: str, path: Any, ax: Axes | None, figsize: An
     """Draw a quantity of ends; see `Ends.plot`."""
     file = picture_file(path)
     if len(ends.axes) not in (1, 2) or ends.theta.size == 0:
-        raise ValueError(f"ends must have scenes along one axis or two to be drawn, got {ends!r}")
+        raise ValueError(f"ends must have scenes along one or two axes to be drawn, got {ends!r}")
     values, names = np.array(getattr(ends, quantity), float), list[str]()
     title, kind = _CODES.get(quantity, (label_of(quantity), None))
     if kind:
@@ -65,7 +65,7 @@ def draw_ends(ends: Ends, quantity: str, path: Any, ax: Axes | None, figsize: An
 
 
 def _place(axis: Axis, label: str, at: FloatArray) -> FloatArray:
-    """Label an axis, and return where its values are; an infinite one is next to the last."""
+    """Label an axis and return the positions of its values: ranks if one of them is infinite."""
     axis.set_label_text(label)
     if np.isfinite(at).all():
         return at

@@ -1,4 +1,4 @@
-"""Energies, constraint errors and distances from the exact motion, over time."""
+"""Plots of energies, constraint errors and distances from the exact motion over time."""
 
 from __future__ import annotations
 
@@ -28,19 +28,20 @@ QUANTITIES = (
     "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
     "friction_force", "energy", "kinetic_energy", "potential_energy",
 )  # fmt: skip
-_ROUNDING = 1e-13  # the axis of errors reaches ten times this or more, so that rounding looks small
-_LEAST = 1e-17  # lower end of the axis of errors
+_ROUNDING = 1e-13  # the error axis extends to ten times this or more: rounding then looks small
+_LEAST = 1e-17  # lower end of the error axis
 
 
 def draw_errors(
     ax: Axes, shown: Comparison, errors: Iterable[Mapping[str, FloatArray]], label: str,
     none: str = "exactly 0 throughout", *, dashed: bool = False,
 ) -> tuple[Line2D, ...]:  # fmt: skip
-    """Draw the errors of each motion by name on a logarithmic axis, as lines if `dashed`.
+    """Draw the named errors of each motion on a logarithmic axis, as lines if `dashed`.
 
-    Otherwise they are dots, because rounding errors jump. The axis reaches from below rounding to
-    above the largest error. It leaves out exact zeros; the label of an error that is always 0, or
-    of an unconstrained quantity, says so, and a sentence names errors that cannot be shown.
+    Otherwise the errors are drawn as dots, because rounding errors jump. The axis extends from
+    below rounding to above the largest error. Exact zeros are left out: the label of an error that
+    is always 0, or of an unconstrained quantity, says so. If no error can be shown, a text in the
+    axes says why.
     """
     palette, lines = palette_of(ax), list[Line2D]()
     colours = *palette.curves[:3], palette.plum, palette.grey
@@ -56,7 +57,7 @@ def draw_errors(
             lines += ax.plot(t, values, color=style.colour or colours[rank], label=name, **how)
     shown.restyle(*lines)
     largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
-    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # first: a log scale cannot show only zeros
+    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # before the scale: zeros alone have none
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(label)
     if largest < _LEAST:
@@ -72,7 +73,7 @@ def draw_errors(
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
-    Those of another `kind` are empty; `lost` has the losses by rolling, sliding and impacts.
+    Tuples of another `kind` are empty; `lost` has the losses by rolling, sliding and impacts.
     """
 
     total: tuple[Line2D, ...]
@@ -94,20 +95,21 @@ def plot_energy(
     kind: Literal["energies", "error", "losses"] | None = None,
     **options: Any,
 ) -> Energy:
-    """Draw energies of motions [J], their losses, or the errors of the energy to be conserved.
+    """Draw energies of motions [J], their losses, or the error of the conserved energy.
 
-    The error is ``|E - E0|`` over the largest ``|kinetic| + |potential|`` energy of its motion, on
-    a logarithmic scale, which cannot show exact zeros; E0 is the energy of the first sample. Losses
-    by friction and impacts are not errors: then E0 is the energy of the first sample after the last
-    event, and a slide, or rolling with resistance, has no error. Losses are split into those by
-    rolling resistance, by sliding friction and by impacts, summed from the first sample on.
+    The error is ``|E - E0|`` divided by the largest ``|kinetic| + |potential|`` energy of the
+    motion, where E0 is the energy of the first sample; the scale is logarithmic and cannot show
+    exact zeros. Losses by friction and impacts are not errors: after an event that may take energy,
+    E0 is the energy of the next sample, and no error is shown while the body slides or rolls with
+    resistance. Losses by rolling resistance, sliding friction and impacts are drawn separately,
+    each summed from the first sample on.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     kind : {"energies", "error", "losses"}, optional
-        What to draw; default: energies for one motion, or for several if one loses energy, else
-        errors.
+        What to draw; default: "energies" for one motion, or for several if any loses energy,
+        otherwise "error".
     {ax}
     {motions}
 
@@ -115,7 +117,7 @@ def plot_energy(
 
     Notes
     -----
-    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
+    Dots show the samples or, if there are fewer than 100, the points of a curve.
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Examples
@@ -150,7 +152,7 @@ def plot_energy(
 
 @dataclass(frozen=True, repr=False)
 class Constraints(Artists):
-    """Artists of `plot_constraints`: lines[i] are those in axes[i], each labelled."""
+    """Artists of `plot_constraints`: lines[i] are the labelled lines in axes[i]."""
 
     lines: tuple[tuple[Line2D, ...], ...]
     marks: tuple[Artist, ...]
@@ -168,20 +170,20 @@ def plot_constraints(
 ) -> Constraints:
     """Draw the constraint errors of motions, without units, on a logarithmic scale.
 
-    Lengths are divided by the longer semi-axis, and rates by the largest ``|omega|`` of the motion
-    as well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows
-    f2, f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
-    `ConstraintResiduals`); for several motions each panel shows the worst. Exact zeros are not
-    shown, nor is anything that the ground does not constrain: slip while sliding, gap in flight.
-    Dots are at the samples or, if there are fewer than 100, as dense as the points of a curve.
+    Lengths are divided by the longer semi-axis, and rates also by the largest ``|omega|`` of the
+    motion, so that rounding errors are about 1e-16 for any body. The upper panel shows f2, f3, f4
+    and the gap; the lower panel shows f1, the rates of the others and the slip (see
+    `ConstraintResiduals`). For several motions each panel shows the largest error. Exact zeros are
+    not shown, nor the slip of a sliding body and the gap in flight, which are not constrained.
+    Dots show the samples or, if there are fewer than 100, the points of a curve.
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     ax : matplotlib Axes or two of them, optional
-        Where to draw the panels; a single one shows the worst of both. Default: a new pyplot
-        figure.
+        Where to draw the panels; a single Axes shows the largest errors of both panels. Default: a
+        new pyplot figure.
     {figsize}
     {motions}
 
@@ -211,7 +213,7 @@ def plot_constraints(
 
 
 def _errors_of(motion: Trajectory, style: Style, panels: int) -> list[Mapping[str, FloatArray]]:
-    """Return the errors of each panel by name; only the worst if there are several motions."""
+    """Return the named errors of each panel, or only the largest if there are several motions."""
     positions, velocities = constraint_errors(motion)
     if style.label:
         of_panels = [positions, velocities] if panels == 2 else [{**positions, **velocities}]
@@ -244,8 +246,8 @@ def plot_error(
 ) -> Error:
     """Draw the error of one quantity of motions over time, on a logarithmic scale.
 
-    Each motion is compared with the exact one from the same scene: exact rolling if the motion's
-    model is one of rolling, else the contact motion. Exact zeros are not shown.
+    Each motion is compared with the exact motion of its scene: exact rolling if the model of the
+    motion is a rolling model, otherwise the contact motion. Exact zeros are not shown.
     Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
@@ -255,9 +257,9 @@ def plot_error(
         "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
         "friction_force", "energy", "kinetic_energy" or "potential_energy".
     reference : Trajectory, optional
-        The motion that all others are compared with at their times; it must last as long as they
-        do. It is required for a motion that started from given coordinates or lasts longer than
-        1e15 half turns. The references used are among the artists.
+        The motion with which all others are compared at their times; it must last at least as long
+        as they do. It is required for a motion that started from given coordinates or lasts longer
+        than 1e15 half turns. The returned artists include the references used.
     {ax}
     {motions}
 

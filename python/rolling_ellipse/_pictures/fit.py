@@ -1,4 +1,4 @@
-"""Fits: tracks over the fitted motion, predicted over measured impacts, and the residuals."""
+"""Plots of fits: tracks over the fitted motion, predicted over measured impacts, and residuals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contact forces over time, and the friction that they need."""
+"""Plots of the contact forces over time, and of the friction that they need."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .panels import DASHES, draw_curves, draw_line, entries_of, events_shown, fi
 from .sampling import are_ranges, over_time, ranges
 
 Stems = tuple[Line2D, Line2D]
-"""The impulses of a motion normal to the ground and along it: stems from 0, with breaks."""
+"""Impulses of a motion normal to the ground and along it: stems from 0, separated by NaN."""
 _Lines = tuple[Line2D, ...]
 _Limits = tuple[PolyCollection | None, ...]
 _FORCES = {"normal_force": "normal", "friction_force": "friction"}
@@ -60,18 +60,19 @@ def plot_forces(
     colors: Sequence[Any] | None = None,
     **options: Any,
 ) -> Forces:
-    """Draw the normal force and friction of one motion or several, and the friction needed.
+    """Draw the normal force and friction of one or several motions, and the friction needed.
 
-    The upper panel shows N and F [N], F over the band +-friction N; if a spike towers over the
-    weight, the scale is linear up to about the weight and logarithmic beyond. Stems are impulses of
-    impacts, as mean forces over the time that the legend states. The lower panel shows ``|F|/N``
-    and the coefficient of friction; ``|F|/N`` is infinite where N <= 0.
+    The upper panel shows N and F [N], and the band between -friction N and +friction N that limits
+    F. If a force is much larger than the weight, the scale is linear up to about the weight and
+    logarithmic beyond. Stems show the impulses of impacts as mean forces over a time that the
+    legend states. The lower panel shows ``|F|/N`` and the coefficient of friction; ``|F|/N`` is
+    infinite where N <= 0.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
     ax : matplotlib Axes or two of them, optional
-        Where to draw the forces, and ``|F|/N`` if there is a second one; default: both in a new
+        Where to draw the forces and, if there is a second Axes, ``|F|/N``; default: both in a new
         pyplot figure.
     {figsize}
     {motions}
@@ -81,13 +82,13 @@ def plot_forces(
     Notes
     -----
     The background is hatched while the body slides, grey in flight, where both forces are 0, and
-    dotted at rest (each of several motions has a row at the top); dotted lines mark events, named
-    for a single motion if there is room, else counted. Where the model is not valid, the whole
-    background is grey.
+    dotted at rest; if there are several motions, each has a row at the top instead. Dotted lines
+    mark events. The events of a single motion are named if there is room, and counted otherwise.
+    Where the model is not valid, the whole background is grey.
 
     The curves show the motion itself, whatever samples the trajectory has. If there are too many
-    half turns to distinguish, ranges are drawn: from the least to the largest value in each of 800
-    equal intervals; the title then states the number of half turns.
+    half turns to distinguish, the curves show the range from the least to the largest value in each
+    of 800 equal intervals, and the title states the number of half turns.
 
     Examples
     --------
@@ -111,9 +112,9 @@ def plot_forces(
 
 
 def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, tuple[Stems, ...]]:
-    """Draw and return N and F of each motion, the band +-friction N of F, and impulses of impacts.
+    """Draw and return N and F of each motion, the limits +-friction N, and impulses of impacts.
 
-    The axis is linear, or logarithmic beyond the weight if a spike towers over it.
+    The axis is linear, or logarithmic beyond the weight if a force is much larger than the weight.
     """
     limits = tuple(_draw_limit(ax, *each) for each in shown)
     normal, friction = draw_curves(ax, shown, "force [N]", _FORCES)
@@ -135,7 +136,7 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
 
 
 def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | None:
-    """Draw the band of possible friction forces of a motion; none for infinite friction."""
+    """Draw the band of possible friction forces of a motion; return None if it is unlimited."""
     if not math.isfinite(motion.scene.friction):
         return None
     t, bound = motion.t, motion.scene.friction * motion.normal_force
@@ -148,8 +149,8 @@ def _draw_limit(ax: Axes, motion: Trajectory, style: Style) -> PolyCollection | 
 def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
     """Draw impulses as stems whose height is the mean force over a time that their label states.
 
-    The time is a power of ten below sqrt(size/gravity): over it, the impulse of a fall from the
-    body's own height becomes a force of a few weights.
+    The time is the largest power of ten below sqrt(size/gravity), so that the impulse of a fall
+    from the height of the body becomes a force of a few weights.
     """
     scene = shown.motions[0].scene
     time = 10.0 ** math.floor(0.5 * math.log10(max(scene.a, scene.b) / scene.gravity))
@@ -168,7 +169,7 @@ def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
 
 
 def _fit_lines(ax: Axes) -> None:
-    """Fit the view to the lines alone, not to a limit of friction far from them."""
+    """Fit the view to the lines alone, not to a friction limit that is far from them."""
     scale, values = ax.yaxis.get_transform(), [np.ravel(line.get_ydata()) for line in ax.lines]
     low, high = scale.transform([f(np.concatenate(values)) for f in (np.nanmin, np.nanmax)])
     air = 0.05 * (high - low)

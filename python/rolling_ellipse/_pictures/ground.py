@@ -1,7 +1,7 @@
-"""The body and its ground as matplotlib artists, for still and moving pictures alike.
+"""The body and the ground as matplotlib artists, for both still and moving pictures.
 
-Artists live in ground axes (x along the ground, z normal to it); `tilted` rotates them to the view
-on the page.
+The data of artists are in ground axes (x along the ground, z normal to it); `tilted` rotates them
+to the view on the page.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def on_slope(ax: Axes, scene: Scene) -> Transform:
 
 
 def label_lengths(axis: Axis, name: str, scene: Scene) -> None:
-    """Name an axis whose data are in metres, with figures in the unit that suits the body."""
+    """Label an axis with data in metres; its tick labels have the unit that suits the body."""
     per_metre, unit = length_unit(max(scene.a, scene.b))
     if per_metre * float(np.max(np.abs(axis.get_view_interval()))) > _LONG:
         per_metre, unit = 1.0, "m"
@@ -55,7 +55,7 @@ def label_lengths(axis: Axis, name: str, scene: Scene) -> None:
 
 
 def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
-    """Draw the body at sample i (theta is clockwise, matplotlib's angle is not)."""
+    """Draw the body at sample i (theta is clockwise, matplotlib's angle counterclockwise)."""
     centre = (float(trajectory.x[i]), float(trajectory.z[i]))
     angle, scene = -math.degrees(trajectory.theta[i]), trajectory.scene
     body = Ellipse(centre, 2 * scene.a, 2 * scene.b, angle=angle, **style)
@@ -65,12 +65,12 @@ def draw_body(ax: Axes, trajectory: Trajectory, i: int, **style: Any) -> Ellipse
 
 
 def flat_angle(scene: Scene) -> float:
-    """Return the angle at which the body lies flat, up to half turns [rad]."""
+    """Return the angle at which the body lies flat, modulo half turns [rad]."""
     return 0.0 if scene.a >= scene.b else QUARTER
 
 
 def tip(trajectory: Trajectory) -> Places:
-    """Return the end of axis a that lies on the right at theta = 0."""
+    """Return the path of the end of axis a that lies on the right at theta = 0."""
     a, theta = trajectory.scene.a, trajectory.theta
     return trajectory.x + a * np.cos(theta), trajectory.z - a * np.sin(theta)
 
@@ -83,15 +83,15 @@ def contact_points(trajectory: Trajectory, *, sliding: bool = False) -> Places:
 
 
 def touching_x(scene: Scene, state: InitialState) -> float:
-    """Return the point on the ground that the body touches, or is above, at an event [m]."""
+    """Return x of the point of the body that is on or nearest to the ground at an event [m]."""
     return state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
     """Return left, right, bottom, top [m] of a view of a body with centres at x, z [m].
 
-    The view leaves a margin around the body. ValueError is raised if a double at that distance
-    cannot resolve a thousandth of the body.
+    The view leaves a margin around the body. Raise ValueError if the body is so far away that a
+    double cannot resolve a thousandth of its size.
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
@@ -108,14 +108,14 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
 
 
 def blows_of(motion: Trajectory) -> list[tuple[float, Impulse]]:
-    """Return the blows of a motion with their times, its scene's own first."""
+    """Return the blows of a motion with their times, starting with the impulse of its scene."""
     own = motion.scene.impulse
     all_blows = *([] if own is None else [(0.0, own)]), *motion.blows
     return [(t, blow) for t, blow in all_blows if t <= motion.t_end]
 
 
 def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Polygon:
-    """Fill the ground below z = 0, well beyond `span` [m] around all positions x [m]."""
+    """Fill the ground below z = 0, far beyond all positions x [m] and `span` [m] around them."""
     left, right = float(np.min(x)) - span, float(np.max(x)) + span
     reach = right - left + 100 * max(scene.a, scene.b)
     left, right = left - reach, right + reach
@@ -130,9 +130,9 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
 
 
 class Ruler:
-    """Ticks of the ground, every fifth longer and labelled with its distance.
+    """Tick marks on the ground; every fifth is longer and labelled with its position.
 
-    They make the rolling visible. Only those within `span` [m] of a given point are drawn, so that
+    They make the rolling visible. Only ticks within `span` [m] of a given point are drawn, so that
     the cost does not grow with the distance.
     """
 
@@ -143,7 +143,7 @@ class Ruler:
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._unit = length_unit(max(scene.a, scene.b))
         self._fifths = math.ceil(span / (5 * self.step))
-        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # the rim cuts figures off
+        self._seen = span * (0.5 - 0.2 * ax.figure.dpi / ax.bbox.width)  # others would be cut off
         grey = palette_of(ax).grey
         self.ticks = LineCollection([], colors=grey, lw=1, **in_ground_axes)
         ax.add_artist(self.ticks)

@@ -1,4 +1,4 @@
-"""Labels that do not overlap: beside lines, upright at a time, or along lines."""
+"""Labels that do not overlap: beside lines, along lines, or vertical at given times."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .._ask.check import FloatArray
 from .palette import INK, palette_of
 
 _SMALL = "x-small"
-_CROSSED = 4  # maximum number of dots of lines that an optional text may cover
+_CROSSED = 4  # maximum number of points sampled on lines that an optional text may cover
 _GAP = 2.0  # gap between a line and a text beside it [points]
 _PAD = np.array([5.0, 1.0])  # minimum total gap along and across a text [points]
 _BODY = 0.7  # height of the letters in a text along a curve, relative to the whole text
 _FARTHEST = 0.6  # largest distance from the preferred point, as a share of the line
-_TALLEST = 0.35  # largest height of an upright label, as a share of the axes' height
+_TALLEST = 0.35  # largest height of a vertical label, as a share of the axes' height
 _FINE = 16  # subdivisions of a straight segment, to find where it enters the view
 
 Sides = tuple[tuple[int, int], ...]
@@ -33,8 +33,8 @@ ABOVE_FIRST, BESIDE = BELOW_FIRST[::-1], ((1, 0), (-1, 0))
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
     """Return ascending positions, at least a gap apart, close to the ascending preferred ones.
 
-    The sum of the squared moves is minimal: positions too close to each other become a block around
-    their mean.
+    The sum of the squared displacements is minimal: positions too close to each other become a
+    block around their mean.
     """
     steps = gap * np.arange(wanted.size)
     blocks: list[tuple[float, int]] = []  # mean of the members' preferred starts, and their number
@@ -54,7 +54,7 @@ def size_in_points(ax: Axes) -> FloatArray:
 
 
 def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
-    """Write names upright at given times, above the curves; none if they would crowd."""
+    """Write names vertically at given times above the curves, or none if they do not all fit."""
     if not names:
         return []
     points = FontProperties(size=_SMALL).get_size_in_points()
@@ -80,7 +80,7 @@ def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation
 
 
 def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the longest part of a line in view: points (n, 2) in axes coordinates."""
+    """Return the longest visible part of a line: points (n, 2) in axes coordinates."""
     with np.errstate(invalid="ignore"):
         corners = (ax.transData - ax.transAxes).transform(np.column_stack([x, y]))
     points = np.asarray(Path(corners).interpolated(_FINE).vertices)
@@ -92,9 +92,9 @@ def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
 class Label(NamedTuple):
     """Candidate texts for a line, longest first; the first that fits in a clear spot is drawn.
 
-    `line` is in axes coordinates, `place` is the preferred fraction of its length, and `sides` are
-    directions from the line to the text. The text is level, or runs along the line. A mandatory
-    label is bold, and its last text may cross lines.
+    `line` is in axes coordinates, `place` is the preferred position as a fraction of its length,
+    and `sides` are directions from the line to the text. The text is horizontal, or follows the
+    line if `along`. A mandatory label (`must`) is bold, and its last text may cross lines.
     """
 
     texts: Sequence[str]
@@ -108,7 +108,7 @@ class Label(NamedTuple):
 
 
 def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any, Text]:
-    """Write the labels that fit in spots clear of lines and earlier labels; `size` is in points."""
+    """Write the labels that fit without covering lines or earlier labels; `size` is in points."""
     page = size_in_points(ax)
     dots = [page[None]]
     for line in ax.lines:
@@ -134,7 +134,7 @@ def label_lines(ax: Axes, labels: Mapping[Any, Label], size: float) -> dict[Any,
 
 
 class _Spot(NamedTuple):
-    """A spot for a text on the page [points]: a point on the line, middle, direction and side."""
+    """A spot for a text on the page [points], and the point on the line that it belongs to."""
 
     foot: FloatArray
     middle: FloatArray
@@ -155,7 +155,7 @@ def _best(
     label: Label, extent: FloatArray, lines: FloatArray, taken: FloatArray, page: FloatArray,
     most: float,
 ) -> _Spot | None:  # fmt: skip
-    """Return the free spot with the least sum of lines crossed, rank of side and distance."""
+    """Return the free spot with the lowest cost: lines crossed, rank of the side, and distance."""
     line = label.line * page
     along = _along(line)
     share = np.linspace(0.0, 1.0, 2 + int(1.5 * along[-1] / extent[1]))
@@ -187,7 +187,7 @@ def _best(
 
 
 def _inside(dots: FloatArray, middle: Any, lead: Any, up: Any, extent: Any) -> Any:
-    """Return how many of the dots are inside each rectangle, (n,)."""
+    """Return the number of dots inside each rectangle, shape (n,)."""
     off = dots[None] - middle[:, None]
     near = [np.abs(np.sum(off * axis[:, None], axis=2)) for axis in (lead, up)]
     return np.sum((near[0] < extent[0] / 2) & (near[1] < extent[1] / 2), axis=1)
@@ -217,7 +217,7 @@ def _written(ax: Axes, text: str, label: Label, spot: _Spot, size: float) -> Tex
 
 
 def _along(line: FloatArray) -> FloatArray:
-    """Return the length along a line up to each of its points."""
+    """Return the arc length of a line from its start to each of its points."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 

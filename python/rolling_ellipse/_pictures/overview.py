@@ -1,4 +1,4 @@
-"""One figure of a motion: the body at evenly spaced times over curves of all its quantities."""
+"""An overview of a motion in one figure: the body at even times, over curves of its quantities."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
 
 _STATES = {"theta": "θ [rad]", "omega": "ω [rad/s]", "z": "z of centre [m]"}
-_MANY = 100.0  # from this angle on, its rounding error is drawn among the errors [rad]
+_MANY = 100.0  # beyond this angle [rad] its rounding error is drawn among the errors
 _SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
 
 
@@ -35,9 +35,11 @@ _SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
 class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
-    The first of `axes`, `ax`, has the positions; those of a curve are ``theta.axes``.
+    The first of `axes`, also `ax`, shows the positions; the Axes of a curve is its attribute, as in
+    ``theta.axes``.
 
-    `phase` is None for angles that `plot_phase` rejects, `lost_energy` without rolling resistance.
+    `phase` is None for angles that `plot_phase` rejects; `lost_energy` is None without rolling
+    resistance.
     """
 
     strobe: Strobe
@@ -69,23 +71,24 @@ def plot(
     count: int = 13,
     t_end: float | None = None,
 ) -> Overview:
-    """Draw one figure of a motion: positions, phase plane, curves over time and errors.
+    """Draw an overview of a motion: positions, phase plane, curves over time and errors.
 
     Behind the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
-    From 100 rad on, a line shows the rounding error of the angle, which limits exact motions, too.
-    Where the model is not valid, the whole background is grey. Curves are sampled as finely as they
-    are drawn, or show ranges, as in `plot_forces`; the title then says so. The lines of the result
-    are `theta`, `omega`, `height`, ...; each has its Axes: ``plot(motion).theta.axes``.
+    For angles above 100 rad, a line shows their rounding error, which limits exact motions too.
+    Where the model is not valid, the whole background is grey. The curves show the motion itself
+    or, if it is long, ranges as in `plot_forces`; the title then says so. The lines of the result
+    are `theta`, `omega`, `height`, ...; the Axes of a line is, for example,
+    ``plot(motion).theta.axes``.
 
     Parameters
     ----------
     trajectory : Trajectory
     path : path, optional
-        File to write, in any format of matplotlib: "motion.png", .pdf, .svg. A new figure is then
-        removed from pyplot.
+        File to write, in any format of matplotlib, such as "motion.png", .pdf or .svg. A new figure
+        is then removed from pyplot.
     figure : matplotlib Figure or SubFigure, optional
-        Where to draw; one without a layout engine gets the constrained one. Default: a new pyplot
-        figure.
+        Where to draw; a figure without a layout engine gets the constrained layout. Default: a new
+        pyplot figure.
     {figsize}
     count, t_end
         For the positions, as in `plot_strobe`; the curves show the whole motion.
@@ -100,7 +103,7 @@ def plot(
     >>> overview.savefig("jump.png")
     >>> plt.show()
     """
-    check_strobe(trajectory, count, t_end)  # rejects wrong arguments before anything is drawn
+    check_strobe(trajectory, count, t_end)  # reject wrong arguments before drawing
     shown = Comparison(trajectory).sampled(over_time)
     name = picture_file(path)
     whole = figure_of(figure, (8.6, 8.0), figsize)
@@ -154,7 +157,7 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
     errors = {"positions": worst(positions), "velocities": worst(velocities)}
     errors["energy"] = energy_error(trajectory)
     position, velocity, energy = draw_errors(ax, shown, [errors], "relative error")
-    if np.abs(trajectory.theta).max() > _MANY:  # an exact motion has these errors, too
+    if np.abs(trajectory.theta).max() > _MANY:  # an exact motion has these errors too
         limit = np.spacing(np.abs(trajectory.theta))
         grey = palette_of(ax).grey
         ax.plot(trajectory.t, limit, ":", color=grey, lw=1, zorder=1, label="rounding of θ")
@@ -164,7 +167,7 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
     """Give two columns of three panels a common time axis, and panels of several lines a legend."""
     for panel in panels[4:]:
-        name_curves(panel)  # before the marks, which are explained by the legend of the forces
+        name_curves(panel)  # before the marks, which only the legend of the forces explains
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)

@@ -23,7 +23,7 @@ _APART = 0.25  # smallest difference in a component between two colours that loo
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours on one background; ink is the colour of the first curve."""
+    """Colours for one background; `ink` is the colour of the first curve."""
 
     background: str
     ink: str
@@ -57,7 +57,7 @@ class Palette:
 
 
 def palette_of(ax: Any = None) -> Palette:
-    """Return the colours of the active style that suit the background of Axes, or of new ones."""
+    """Return the palette of the active style for the background of the Axes, or of new Axes."""
     colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
     if isinstance(ax, Axes):
         places = ax, ax.get_figure(), ax.get_figure(root=True)
@@ -73,7 +73,7 @@ def palette_of(ax: Any = None) -> Palette:
 
 
 def _styled(background: str) -> Palette:
-    """Return the colours of a style that has its own, those that differ most from others first."""
+    """Return a palette of the style's own colours, choosing those that differ most first."""
     plain = Palette(background, "", "", "", "", "", "", "")
     given = [properties.get("color") for properties in rcParams["axes.prop_cycle"]]
     left = [colors.to_hex(colour) for colour in given if colors.is_color_like(colour)]

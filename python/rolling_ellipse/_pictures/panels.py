@@ -1,8 +1,9 @@
-"""Curves over time and the marks under them, shared by forces, energies and errors.
+"""Curves over time and the marks under them, shared by plots of forces, energies and errors.
 
-The `style` of a curve belongs to its motion. A motion with the plain style is alone; its quantities
-differ in colour. Modes are greys with different hatches, so that they differ in print. Events are
-dotted lines with names. Where the model of a motion is not valid, the background is grey.
+The `style` of a curve is that of its motion. A single motion has the plain style, and its
+quantities differ in colour. Modes are greys with different hatches, so that they differ in print.
+Events are dotted lines with names. Where the model of a motion is not valid, the background is
+grey.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ from .labels import label_times
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns
 
-DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
-_RANGE = 0.6  # opacity of a range: ranges may overlap
+DASHES = ("-", "--", "-.")  # for the first, second and third quantity of a motion
+_RANGE = 0.6  # opacity of a range, as ranges may overlap
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
     Mode.SLIDING: (0.05, 0.28, "////"),
@@ -41,7 +42,7 @@ _SYMBOLS = {
     "theta": "θ", "omega": "ω", "omega_dot": "dω/dt", "psi": "ψ", "contact_x": "contact",
     "normal_force": "N", "friction_force": "F", "friction_needed": "F/N",
 }  # fmt: skip
-_FEW_EVENTS = 8  # more of them are counted, not named
+_FEW_EVENTS = 8  # if there are more, they are counted rather than named
 _ROW = 0.05  # height of the row of one motion, as a share of the axes' height
 
 
@@ -62,8 +63,8 @@ def draw_curves(
 ) -> tuple[tuple[Line2D, ...], ...]:  # fmt: skip
     """Draw up to three quantities of each motion, and return the lines of each quantity.
 
-    `names` maps their attributes, or the names of `values_of`, to their names in legends; `label`
-    is for the axis.
+    `names` maps attributes of a motion, or the keys that `values_of` returns, to names for the
+    legend; `label` is the label of the axis.
     """
     lines: list[list[Line2D]] = [[] for _ in names]
     for motion, style in shown:
@@ -80,26 +81,26 @@ def draw_curves(
 
 
 def draw_line(ax: Axes, motion: Trajectory, values: FloatArray, **style: Any) -> Line2D:
-    """Draw values of a motion over time, or their range in each of many intervals of time."""
+    """Draw values of a motion over time, or their range in each of many time intervals."""
     t, values = curve(motion.t, values)
     style |= dot(t) | ({"alpha": _RANGE} if are_ranges(motion) else {})
     return ax.plot(t, values, **style)[0]
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:
-    """Return line options for a few evenly spaced markers of its motion."""
+    """Return line options for a few evenly spaced markers, or none if the style has no marker."""
     return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1} if style.marker else {}
 
 
 def dress_grid(ax: Axes) -> None:
-    """Draw a pale grid, and no frame at the right and top."""
+    """Draw a pale grid, and hide the frame on the right and at the top."""
     ax.grid(color=palette_of(ax).shade(0.08), lw=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
 
 def ending_of(*motions: Trajectory) -> str:
-    """Return the title's remark on motions that stop early or are at rest; "" for others."""
+    """Return a remark for the title on motions that stop early or are at rest, otherwise ""."""
     for motion in motions:
         if motion.status not in (Status.COMPLETED, Status.VALIDITY_LOST):
             return f"ends at {motion.t_end:.4g} s: {motion.status.name}"
@@ -115,7 +116,7 @@ def events_shown(motion: Trajectory) -> list[Event]:
 def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
     """Return start and length [s] of every span of each mode except rolling, within the samples.
 
-    Only contact motions have spans: other models have one mode.
+    Only contact motions have such spans: the other models have a single mode.
     """
     spans: dict[Mode, list[tuple[float, float]]] = {mode: [] for mode in _SHADES}
     if motion.model != "contact":
@@ -132,7 +133,7 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
 
 
 def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> list[Artist]:
-    """Shade sliding, flight and rest: full height, or in a row at the top edged in `colour`."""
+    """Shade sliding, flight and rest: the full height or, if `colour` is set, a row at the top."""
     bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
     shade, shades = palette_of(ax).shade, list[Artist]()
     for mode, spans in mode_spans(motion).items():
@@ -145,7 +146,7 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[Artist]:
-    """Draw dotted lines at the events, with names if `named` and few, else counted in the label."""
+    """Draw dotted lines at the events; if `named`, label few events by name and count many."""
     events = [(event.t, EVENT_NAMES[event.kind]) for event in events_shown(motion)]
     if not events:
         return []
@@ -158,7 +159,7 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
-    """Shade the time after validity is lost, at a `share` of full opacity; `colour` adds a line."""
+    """Shade the time after validity is lost with opacity `share`; `colour` marks its start."""
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []
@@ -177,7 +178,10 @@ def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) 
 
 
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
-    """Label the time axis; mark modes, events (by name for one motion if `named`), and validity."""
+    """Label the time axis, and mark modes, events and lost validity of each motion.
+
+    If `named`, the events of a single motion are labelled.
+    """
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
     dress_grid(ax)
@@ -191,7 +195,7 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
 
 
 def note_of(shown: Comparison) -> str:
-    """Return the title's remarks on curves that show ranges, and on how a motion ends."""
+    """Return remarks for the title on curves that show ranges and on how a motion ends."""
     long = [motion for motion in shown.motions if are_ranges(motion)]
     count = f"{max(map(half_turns, long)):_.0f} half turns: ranges" if long else ""
     return "; ".join(filter(None, [count.replace("_", "\u202f"), ending_of(*shown.motions)]))
@@ -204,7 +208,7 @@ def entries_of(marks: Sequence[Artist]) -> list[Artist]:
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Style panels; the first gets the title and a legend of `handles` and marks."""
+    """Style the panels; the first panel gets the title and a legend of `handles` and marks."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])

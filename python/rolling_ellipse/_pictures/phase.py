@@ -1,6 +1,6 @@
 """The phase plane: angular velocity over angle, and the curve between rocking and rolling over.
 
-This separatrix of rolling on level ground encloses one eye for each half turn, around the flat
+The separatrix of rolling on level ground encloses one eye in each half turn, around the flat
 position.
 """
 
@@ -29,10 +29,10 @@ from .sampling import FEW, between, half_turns, is_at_hand, span_of
 
 _FEW_TURNS = 2.0  # a motion with more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
-_MOST = 1000.0  # half turns or swings in one picture
+_MOST = 1000.0  # maximum number of half turns or swings in one picture
 _TICK = 0.45  # room for a tick [inch]
-_POINTS = 801, 100_000  # points of a separatrix: in one half turn, and in all
-_SMALL = 0.1  # share of the roll-over speed: a slower motion would be a dot in the eye
+_POINTS = 801, 100_000  # maximum number of points of a separatrix: per half turn, and in all
+_SMALL = 0.1  # fraction of the roll-over speed; a slower motion would be a dot inside the eye
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,8 +40,8 @@ class Phase(Artists):
     """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
 
     `separatrices` has a line for each different body on level ground that is not a circle, and
-    `equilibria` the centres and the saddles of the first of these. Where theta is folded, a line
-    has its samples and, at each fold, two points with a break (NaN) between.
+    `equilibria` has the centres and the saddles of the first of these bodies. If theta is folded, a
+    line has two more points at each fold, separated by NaN.
     """
 
     motions: tuple[Line2D, ...]
@@ -62,19 +62,20 @@ def plot_phase(
     fold: bool | None = None,
     **options: Any,
 ) -> Phase:
-    """Draw omega over theta for one motion or several; a dot marks where each starts.
+    """Draw omega over theta for one or several motions; a dot marks the start of each.
 
     On level ground a dotted line shows the separatrix of rolling: inside its eyes the body rocks,
-    outside it turns over and over. Circles mark the flat positions, where the body can rest, and
-    crosses the tips, where it can balance. Where the model is not valid, the background is grey.
+    outside them it keeps rolling over. Circles mark the flat positions, where the body can rest,
+    and crosses mark the tips, where it can balance. Where the model is not valid, the background is
+    grey.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-        Its angles must be small enough for doubles to resolve a thousandth of a radian.
+        Their angles must be small enough for doubles to resolve a thousandth of a radian.
     fold : bool, optional
-        Whether to show theta within one half turn around the flat position, after which an
-        ellipse is the same again; default: if a motion makes more than two turns.
+        Whether to reduce theta to one half turn around the flat position, as an ellipse is
+        symmetric under half turns; default: True if a motion makes more than two turns.
     {ax}
     {motions}
 
@@ -83,8 +84,8 @@ def plot_phase(
     Notes
     -----
     The lines show the motions themselves, whatever samples the trajectories have. If there are many
-    turns, only one turn of exact rolling is drawn, as all its turns are alike, and only the first
-    1000 half turns of other motions; the title then says so.
+    turns, exact rolling is drawn for one turn only, because all turns are alike, and other motions
+    for their first 1000 half turns; the title then says so.
 
     Examples
     --------
@@ -100,8 +101,8 @@ def plot_phase(
         if not knows_turns(motion):
             farthest = float(np.abs(motion.theta).max())
             raise ValueError(
-                "trajectories must have angles of which a double knows thousandths of a radian, up "
-                f"to 4e12 rad, got theta = {farthest:.6g} rad: start as many half turns nearer to 0"
+                "trajectories must have angles up to 4e12 rad, of which a double resolves a "
+                f"thousandth of a radian, got theta = {farthest:.6g} rad: start nearer to 0"
             )
     if fold is None:
         fold = any(np.ptp(each.theta) > _FEW_TURNS * 2 * math.pi for each in shown.motions)
@@ -133,7 +134,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """Return the part of a motion that is drawn, finely sampled, and a note if it is not all."""
+    """Return the finely sampled part of a motion to draw, and a note if it is not the whole."""
     if not is_at_hand(motion):
         return motion, ""
     start, end = span_of(motion)
@@ -151,9 +152,9 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
 def _path(
     theta: FloatArray, omega: FloatArray, flat: float, fold: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return theta and omega of a line; folded, theta is within (-pi/2, pi/2] of flat.
+    """Return theta and omega of a line, with theta within (-pi/2, pi/2] of `flat` if folded.
 
-    A folded line leaves the view at one edge and comes back at the other with the same omega.
+    A folded line leaves the view at one edge and re-enters at the other with the same omega.
     """
     if not fold:
         return theta, omega
@@ -172,7 +173,7 @@ def _path(
 
 
 def folded(theta: Any, flat: float) -> Any:
-    """Return angles within (-pi/2, pi/2] of the flat position, up to half turns [rad]."""
+    """Return angles reduced by half turns to within (-pi/2, pi/2] of the flat position [rad]."""
     return theta - math.pi * np.ceil((theta - flat) / math.pi - 0.5)
 
 
@@ -182,7 +183,7 @@ def knows_turns(motion: Trajectory) -> bool:
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
-    """Return the different bodies that have a separatrix, with colours; a single one is grey."""
+    """Return the different bodies that have a separatrix, with colours; a single body is grey."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
     for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
@@ -194,7 +195,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
-    """Show whole eyes of the separatrix, unless a small motion fills the view instead."""
+    """Set the limits to whole eyes of the separatrix, or fit them to the motion if it is small."""
     theta, omega = (np.concatenate([getattr(m, n) for m in motions]) for n in ("theta", "omega"))
     fastest = float(np.max(np.abs(omega)))
     if fold:
@@ -261,13 +262,13 @@ def _flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
 
 
 def _separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return theta and speed of the curve, for the half turns around the flat positions.
+    """Return theta and speed of the separatrix in the half turns around the flat positions.
 
-    Points are dense near the flat position, where the curve of a thin body is a spike.
+    Points are dense near the flat position, where the separatrix of a thin body has a spike.
     """
     count = int(np.clip(_POINTS[1] // flats.size, 3, _POINTS[0]))
     width = min(scene.a, scene.b) / max(scene.a, scene.b)
-    reach = math.asinh(100 / width)  # to 0.01 rad from the tip; the curve is straight there
+    reach = math.asinh(100 / width)  # up to 0.01 rad from the tip; beyond, the curve is straight
     within = np.arctan(width * np.sinh(np.linspace(-reach, reach, count)))
     within[[0, -1]] = -QUARTER, QUARTER
     speed = _core.speed_to_the_tip(scene.core, flat_angle(scene) + within)

@@ -1,8 +1,8 @@
 """The phase map: the first outcome of rolling, over two of shape, energy and friction.
 
-Two quantities are along the axes of its plane, the others are fixed. Each point is a uniform disc
-that passes the flat position at some speed. Quantities have the units of the arguments of
-`plot_phase_map`. Lines over the map are thresholds of its bodies, each labelled with its name.
+Two quantities vary along the axes of the plane; the third is fixed. Each point stands for a uniform
+disc that passes the flat position at some speed. Quantities have the units of the arguments of
+`plot_phase_map`. Labelled lines over the map show the thresholds of these discs.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _WIDEST = 1e3  # largest a/b, as in the whole package
 _FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
 _SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
 _FASTEST = 2.0  # largest speed shown, in units of sqrt(g/b)
-COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
+COLOURS = {  # luminances differ by a factor of 1.25 or more, except that of EDGE, which is thin
     Outcome.RESTS: "#ffffff",
     Outcome.ROCKS: SKY,
     Outcome.ROLLS_OVER: BLUE,
@@ -51,34 +51,35 @@ COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.EDGE: GREY,
 }
 TIP_ASPECT = math.sqrt(3)
-"""The a/b of a uniform disc up to which N of rolling vanishes first at the tip.
+"""The a/b of a uniform disc up to which N of rolling first vanishes at the tip.
 
-This is exact: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
-k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: for larger a/b, N is least before the tip.
+The value is exact: at the speed at which N(h) of physics (33) vanishes at the tip, its derivative
+there, with k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2. For larger a/b, the minimum of N is
+before the tip.
 """
 LAST_ASPECT = 9.75321681656
-"""Above this a/b of a uniform disc rolling ends before the tip, whatever the friction.
+"""The a/b of a uniform disc above which rolling ends before the tip, whatever the friction.
 
-At this a/b the largest speed with N > 0 equals the roll-over speed, both as in `thresholds`.
+At this a/b, the contact-loss speed and the roll-over speed of `thresholds` are equal.
 """
 _ASPECTS = {
     "tip": (TIP_ASPECT, ("beyond √3 N fails midway", "√3")),
     "last to roll over": (LAST_ASPECT, ("beyond 9.753 none rolls over", "9.75")),
 }
-_POINTS = 49  # points of a curve; each takes a call of `thresholds`, some milliseconds
+_POINTS = 49  # points of a curve; each needs a call of `thresholds`, which takes milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
-_FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has evenly spaced ticks
-_FINEST = 10_000  # cells along an axis
+_FEW_FOLD = 5.0  # a logarithmic axis has evenly spaced ticks if the ratio of its ends is smaller
+_FINEST = 10_000  # maximum number of cells along an axis
 
 
 @dataclass(frozen=True, repr=False)
 class PhaseMap(Artists):
     """Artists of `plot_phase_map`.
 
-    The array of `cells` has the `Outcome` codes, one row per y. `marks` has the lines in view by
-    name, `names` the texts along them, where there is room: "separatrix", "contact loss",
-    "lift-off", "Painlevé", "tip" (a/b = root 3), "last to roll over" (a/b = 9.753).
+    The array of `cells` has the `Outcome` codes, one row per y. `marks` has the lines in view, and
+    `names` has those of their labels that fit. The keys of both are "separatrix", "contact loss",
+    "lift-off", "Painlevé", "tip" (a/b = root 3) and "last to roll over" (a/b = 9.753).
     """
 
     cells: QuadMesh
@@ -104,7 +105,7 @@ def plot_phase_map(
     ax: Axes | None = None,
     figsize: tuple[float, float] | None = None,
 ) -> PhaseMap:
-    """Draw a map of the outcomes of uniform discs at the flat position, over two quantities.
+    """Draw a map of the outcomes of uniform discs that start lying flat, over two quantities.
 
     The outcomes are those of `classify`; the Notes list the quantities and the lines in view.
 
@@ -113,20 +114,20 @@ def plot_phase_map(
     x, y : str
         Quantities along the axes: two of aspect, energy or speed, and friction.
     aspect, energy, speed, friction : float, optional
-        The quantity that is not along an axis, as above; default: aspect 2 (above 1, up to 1000),
-        energy 1.5, friction infinite. Give either energy or speed.
+        Value of the quantity that is not along an axis; default: aspect 2 (must be above 1, up to
+        1000), energy 1.5, friction infinite. Give energy or speed, not both.
     x_range, y_range : (float, float), optional
-        Ends of the axes; default: as above.
+        Ends of the axes; default: see the Notes.
     b : float
         Short semi-axis [m]; it only scales speeds.
     gravity : float
-        Acceleration of gravity [m/s^2]; likewise.
+        Acceleration of gravity [m/s^2]; it only scales speeds.
     resolution : int
-        Number of cells along each axis; each shows the outcome at its middle.
+        Number of cells along each axis; each cell shows the outcome at its centre.
     workers : int or executor
         Number of threads, -1 for all, or an executor, as for `classify`.
     ax : matplotlib Axes, optional
-        Where to draw; default: a new pyplot figure. Limits set before are kept.
+        Where to draw; default: a new pyplot figure. Limits that were set before are preserved.
     {figsize}
 
     {returns}
@@ -137,16 +138,16 @@ def plot_phase_map(
     quantity      meaning                                                   shown by default
     ============  ========================================================  ====================
     ``aspect``    a/b, the long semi-axis over the short one                1 to 20, logarithmic
-    ``energy``    kinetic, in units of what rolling over takes,             0 to 4
+    ``energy``    kinetic energy over that needed to roll over,             0 to 4
                   (omega/roll-over speed)^2
     ``speed``     omega [rad/s]                                             0 to 2 sqrt(gravity/b)
     ``friction``  coefficient of friction                                   0 to 2
     ============  ========================================================  ====================
 
-    Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
-    (solid), the lift-off of the body (dash-dotted, plum), and Painlevé's friction (dash-dotted).
-    Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which no
-    friction lets a disc roll over.
+    Lines show the `thresholds` in view: the roll-over speed (dashed), the speed at which N of
+    rolling reaches 0 (solid), the speed of lift-off (dash-dotted, plum), and Painlevé's friction
+    (dash-dotted). Dotted lines show the a/b up to which N first vanishes at the tip, and the a/b
+    above which a disc cannot roll over without slipping, whatever the friction.
 
     Examples
     --------
@@ -156,11 +157,11 @@ def plot_phase_map(
     >>> plt.show()
     """
     if ax is not None:
-        require_axes(ax)  # rejects a wrong ax before any work
+        require_axes(ax)  # reject a wrong ax before any work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
     count = whole_within("resolution", resolution, _FINEST)
-    columns, rows = (plane.spaced(axis, 2 * count + 1) for axis in plane.axes)  # edges, middles
+    columns, rows = (plane.spaced(axis, 2 * count + 1) for axis in plane.axes)  # edges and middles
     codes = classify(**plane.scenes(columns[1::2], rows[1::2, np.newaxis]), workers=workers)
     ax = axes_of(ax, (6.4, 4.4), figsize)
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
@@ -199,10 +200,10 @@ def _dress_map(ax: Axes, plane: Plane) -> None:
 
 
 class _Mark(NamedTuple):
-    """A line in the plane: values along one of its axes, and the corresponding ones on the other.
+    """A line in the plane: `places` along one axis, and the corresponding `values` of the other.
 
-    Its name, the longest of `names` that fits, is written at the fraction `place` of the visible
-    line, `above` it or below it on the page. `line` are properties of Line2D.
+    The longest of `names` that fits is written at the fraction `place` of the visible line, `above`
+    or below the line on the page. `line` has properties of Line2D.
     """
 
     key: str
@@ -216,7 +217,7 @@ class _Mark(NamedTuple):
 
 
 def _marks_of(plane: Plane) -> Iterator[_Mark]:
-    """Yield the marks of a plane, in view or not."""
+    """Yield the marks of a plane, whether in view or not."""
     if plane.level in plane.axes:
         yield from _level_marks(plane)
     if "friction" in plane.axes:
@@ -229,7 +230,7 @@ def _marks_of(plane: Plane) -> Iterator[_Mark]:
 
 
 def _level_marks(plane: Plane) -> Iterator[_Mark]:
-    """Yield roll-over, loss of contact and lift-off over the axis of aspect or friction."""
+    """Yield the marks of roll-over, loss of contact and lift-off, over the aspect or friction."""
     along = plane.other(plane.level)
     places = plane.spaced(along, _POINTS)
     if along == "aspect":
@@ -265,13 +266,13 @@ def _thresholds(plane: Plane, **along: float) -> Thresholds:
 
 
 def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ...]) -> _Mark:
-    """Return the line across the plane at a value of one of its axes."""
+    """Return the straight mark across the plane at one value of an axis."""
     along, line = plane.other(axis), {"ls": ":" if axis == "aspect" else "-."}
     return _Mark(key, along, np.array(plane.range_of(along)), np.full(2, at), names, line, 0.7)
 
 
 def _draw_marks(ax: Axes, plane: Plane) -> tuple[dict[str, Line2D], dict[str, Text]]:
-    """Draw the marks that are in view, and their names where there is room; both by key."""
+    """Draw the marks that are in view, and those of their names that fit; return both by key."""
     lines: dict[str, Line2D] = {}
     labels: dict[str, Label] = {}
     for mark in _marks_of(plane):
@@ -286,7 +287,7 @@ def _draw_marks(ax: Axes, plane: Plane) -> tuple[dict[str, Line2D], dict[str, Te
 
 @dataclass(frozen=True)
 class Plane:
-    """The axes x and y with their ranges, the fixed quantities by name, b [m] and gravity."""
+    """The axes x and y with their ranges, the fixed quantities, b [m] and gravity [m/s^2]."""
 
     axes: tuple[str, str]
     ranges: tuple[tuple[float, float], tuple[float, float]]
@@ -307,7 +308,7 @@ class Plane:
         return self.axes[1 - self.axes.index(name)]
 
     def spaced(self, name: str, count: int) -> FloatArray:
-        """Return evenly spaced values of an axis, with both ends; logarithmic for the aspect."""
+        """Return evenly spaced values from end to end of an axis, logarithmic for the aspect."""
         space: Any = np.geomspace if name == "aspect" else np.linspace
         places: FloatArray = space(*self.range_of(name), count)
         places[[0, -1]] = self.range_of(name)
@@ -329,7 +330,7 @@ class Plane:
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def caption(self) -> str:
-        """Return the fixed quantities as text: "μ = 0.5"; with b if speeds depend on b."""
+        """Return the fixed quantities as text, such as "μ = 0.5", with b if there are speeds."""
         values = [
             f"{AXIS_NAMES[name].split()[0]} = {value:.4g}".replace("inf", "∞")
             + " rad/s" * (name == "speed")
@@ -343,7 +344,7 @@ class Plane:
 def plane_of(
     axes: tuple[str, str], ranges: Sequence[Any], fixed: dict[str, Any], b: float, gravity: float
 ) -> Plane:
-    """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
+    """Return the plane for these arguments of `plot_phase_map`, or raise its errors."""
     known = tuple(AXIS_NAMES)
     axes = choice("x", axes[0], known), choice("y", axes[1], known)
     if axes[0] == axes[1] or set(axes) == _LEVELS:
@@ -366,7 +367,7 @@ def _values(axes: tuple[str, str], given: dict[str, float | None]) -> dict[str, 
     values = {name: number(name, value) for name, value in given.items() if value is not None}
     if values.keys() >= _LEVELS:
         raise ValueError(
-            "energy and speed must not be given both, for one follows from the other, "
+            "energy and speed must not both be given, because one follows from the other, "
             f"got {values['energy']:g} and {values['speed']:g}"
         )
     settled = {*axes}.union(_LEVELS if _LEVELS.intersection(axes) else ())

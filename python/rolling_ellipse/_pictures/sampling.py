@@ -1,8 +1,8 @@
-"""A motion sampled as finely as a picture draws it, whatever samples its trajectory holds.
+"""Samples of a motion as fine as a picture needs, whatever samples its trajectory has.
 
-A few half turns are all drawn, with more points where curves bend. If there are too many to
-distinguish, a picture over time shows ranges: the least and largest value in each of many
-intervals.
+If there are few half turns, all are drawn, with more points where curves bend. If there are too
+many to distinguish, a picture over time shows ranges: the least and the largest value in each of
+many intervals.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from .._verbs.flow import period
 from .ground import flat_angle
 
 FEW = 120.0  # maximum number of half turns or swings that are drawn one by one over time
-PARTS = 800  # number of intervals of time, for a motion with more
+PARTS = 800  # number of time intervals for a motion with more half turns than `FEW`
 _IN_A_PART = 96  # samples per interval
-_POINTS = 400, 32  # initial points of a curve: in all, and per half turn
+_POINTS = 400, 32  # initial number of points of a curve: at least, and per half turn
 _MOST_POINTS = 30_000  # maximum number of points of a curve
-_FEWEST_DOTS = 100  # fewer samples are replaced by a curve's points
+_FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
 _ROUNDS = 16  # maximum number of halvings of an interval
-_BEND = 1e-3  # a curve bends if it is farther than this from its chord, relative to its range
+_BEND = 1e-3  # a curve bends if it is farther from its chord than this fraction of its range
 _COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
 _STEADY = 1.05  # counts of half turns with a smaller ratio agree
-_EVENTS = 4000  # if there are more events, half as many are drawn as jumps at each end
+_EVENTS = 4000  # if there are more events, only the first and the last 2000 are drawn as jumps
 _SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
 _COMPARED = 64  # number of samples compared with the motion
 _SEEN = 1e-6  # no picture shows a smaller relative difference
@@ -42,9 +42,9 @@ _Places = npt.NDArray[np.intp]
 
 
 def over_time(motion: Trajectory) -> Trajectory:
-    """Return a motion at the times at which its curves are drawn, from first to last sample.
+    """Return a motion at the times used to draw its curves, from the first to the last sample.
 
-    A motion of more than `FEW` half turns has more samples than its curve has points: see `curve`.
+    A motion of more than `FEW` half turns has more samples than its curve has points; see `curve`.
     """
     if not is_at_hand(motion):
         return motion
@@ -53,7 +53,7 @@ def over_time(motion: Trajectory) -> Trajectory:
     if count <= FEW:
         return _refined(motion, start, end, count)
     part = (end - start) / PARTS
-    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, for the whole interval
+    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn of each interval
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
     starts = start + part * np.arange(PARTS) + 0.5 * (part - window)
     times = np.add.outer(starts, inside).ravel()
@@ -62,18 +62,18 @@ def over_time(motion: Trajectory) -> Trajectory:
 
 
 def for_dots(motion: Trajectory) -> Trajectory:
-    """Return a motion at its own samples, or at a curve's times if they are few or unordered."""
+    """Return a motion at its own samples or, if these are few or unordered, as `over_time` does."""
     own = motion.t.size >= _FEWEST_DOTS and bool(np.all(np.diff(motion.t) > 0))
     return motion if own else over_time(motion)
 
 
 def between(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
-    """Return a motion from `start` to `end` [s], about `count` half turns, finely sampled."""
+    """Return a motion finely sampled from `start` to `end` [s]: about `count` half turns."""
     return _refined(motion, start, end, count) if is_at_hand(motion) else motion
 
 
 def _refined(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
-    """Return a motion at even times, with more where a quantity bends by more than `_BEND`."""
+    """Return a motion at even times, and at more times where a quantity bends (see `_BEND`)."""
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
     times = np.union1d(even_times(start, end, points), _jumps(motion, start, end))
     values = _bending(motion, times)
@@ -96,14 +96,14 @@ def _refined(motion: Trajectory, start: float, end: float, count: float) -> Traj
 
 
 def halve(times: FloatArray, places: _Places) -> tuple[FloatArray, _Places]:
-    """Return rising times with the middles of some intervals, and the indices of the halves."""
+    """Return increasing times with midpoints of some intervals, and the indices of the halves."""
     middles = 0.5 * (times[places] + times[places + 1])
     first = places + np.arange(places.size)
     return np.insert(times, places + 1, middles), np.stack([first, first + 1], axis=1).ravel()
 
 
 def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a line; if too many, the least and the largest value in each part."""
+    """Return the points of a curve or, if they are too many, the range of values in each part."""
     if t.size <= _MOST_POINTS:
         return t, values
     middles, low, high = ranges(t, values)
@@ -133,12 +133,12 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 def half_turns(motion: Trajectory) -> float:
     """Return roughly how many half turns and swings the samples span.
 
-    It follows from the period, if there is one. Else half turns and turning points are counted at
-    more and more times, whose spacing is irregular, unlike any period.
+    If the motion has a period, the number follows from it. Otherwise half turns and turning points
+    are counted at more and more times, spaced irregularly so that they do not match any period.
     """
     start, end = span_of(motion)
     if motion.model != "contact" and motion.start is None:
-        with suppress(ValueError):  # downhill forever
+        with suppress(ValueError):  # a body that rolls downhill forever has no period
             swing = period(motion.scene)
             return 2 * (end - start) / swing if math.isfinite(swing) else 1.0
     turned = 0.0
@@ -155,10 +155,11 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] after `turns` turns or, if earlier, after `turns` 2 pi max(a, b) of path.
+    """Return the time [s] after `turns` turns or, if earlier, a path of `turns` 2 pi max(a, b).
 
-    It is at most the time of the last sample, and of the end of the first whole swing: the second
-    turning point, where a rate ("omega", "x_dot") changes its sign, or starts from 0.
+    The time is at most that of the last sample and that of the end of the first whole swing: the
+    second turning point. A turning point is where the rate ("omega", "x_dot") changes sign, or the
+    start if the rate is 0 there.
     """
     start, end = span_of(motion)
     if not is_at_hand(motion):
@@ -171,7 +172,7 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
-    """Return a motion at the given times [s], or its nearest samples if nothing else is known."""
+    """Return a motion at the given times [s], or its nearest samples if only those are known."""
     if is_at_hand(motion):
         return motion.sol(times)
     nearest = np.array([np.argmin(np.abs(motion.t - time)) for time in times])
@@ -179,17 +180,17 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
 
 
 def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
-    """Return samples at some indices: of an array, or of each array in a tuple."""
+    """Return the samples of an array, or of each array in a tuple, at the given indices."""
     if isinstance(values, tuple):
         return getattr(values, "_make", tuple)([_taken(part, places) for part in values])
     return None if values is None else values[places]
 
 
 def is_at_hand(motion: Trajectory) -> bool:
-    """Whether the motion of a trajectory can be sampled at any time; warns if not.
+    """Whether a trajectory can be sampled at any time; warn if it cannot.
 
-    A motion computed by `simulate` can, even if it was read from a file. Between external samples a
-    motion is unknown.
+    A motion computed by `simulate` can, even if it was read from a file. Between samples from
+    another source the motion is unknown.
     """
     some = np.unique(np.linspace(0, motion.t.size - 1, _COMPARED).round().astype(int))
     t, own = motion.t[some], np.array([motion.theta, motion.omega, motion.x])[:, some]
@@ -209,7 +210,7 @@ def is_at_hand(motion: Trajectory) -> bool:
 
 
 def _bending(motion: Trajectory, times: FloatArray) -> FloatArray:
-    """Return the quantities whose curves must look smooth, (6, n)."""
+    """Return the quantities whose curves must look smooth, shape (6, n)."""
     seen = motion.sol(times)
     rows = seen.theta, seen.omega, seen.x_dot, seen.z_dot, seen.normal_force, seen.friction_force
     return np.nan_to_num(np.array(rows), posinf=np.nan, neginf=np.nan)
@@ -224,9 +225,9 @@ def _jumps(motion: Trajectory, start: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """Return the time after `turns` turns, or of the end of the first swing if that is earlier.
+    """Return the time of `turns` turns, or of the end of the first swing if that is earlier.
 
-    It is infinite if the samples reach neither.
+    The time is infinite if the samples reach neither.
     """
     t, x, scene = seen.t, seen.x, seen.scene
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)

@@ -39,7 +39,7 @@ _EVENTS = {
     EventKind.BLOW: "*",
 }
 _PILE = 0.4  # approximate opacity where all bodies overlap
-_MOST = 10_000  # largest number of positions; each takes some milliseconds
+_MOST = 10_000  # maximum number of positions; each takes a few milliseconds
 
 
 @dataclass(frozen=True, repr=False)
@@ -74,7 +74,7 @@ def plot_strobe(
 
     The hand of each body points to the end of axis a that lies on the right at theta = 0. On a
     slope the picture is tilted, so that gravity points down. A ring marks where the body touches
-    the ground, a diamond where it slides, and a broad line on the ground how far it slides.
+    the ground, a diamond where it slides, and a broad line on the ground shows how far it slides.
     Positions for which the model is not valid are dotted.
 
     Parameters
@@ -122,7 +122,7 @@ def plot_strobe(
 
 
 def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> None:
-    """Check the arguments of `plot_strobe`, raising its errors."""
+    """Raise the errors of `plot_strobe` if its arguments are invalid."""
     require_motion(trajectory)
     whole_within("count", count, _MOST)
     first, last = span_of(trajectory)
@@ -175,7 +175,7 @@ def _draw_tracks(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
 def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, float]) -> None:
     """Show a view of the ground with equal scales and labelled axes."""
     left, right, bottom, top = view
-    ax.update_datalim([(left, bottom), (right, top)])  # the equal aspect never cuts these off
+    ax.update_datalim([(left, bottom), (right, top)])  # equal scales keep these limits in view
     ax.set_xlim(left, right, auto=True)  # auto: equal scales may widen either axis
     ax.set_ylim(bottom, top, auto=True)
     ax.set_aspect("equal", adjustable="datalim")  # lets the ground fill the whole width
@@ -214,11 +214,11 @@ def plot_paths(
 ) -> Paths:
     """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
 
-    That end is the one on the right at theta = 0. On a slope the picture is tilted, so that gravity
-    points down. The path of the contact ends where the body leaves the ground and resumes where it
-    lands; markers on it are events. Dots and an outline show the start. Only the first three turns
-    of a long path are shown, or its first swing (the title then says so). Where the model is not
-    valid, the path of the centre has a grey background.
+    The end of axis a is the one on the right at theta = 0. On a slope the picture is tilted, so
+    that gravity points down. The path of the contact ends where the body leaves the ground and
+    resumes where it lands; the markers on it show events. Dots and an outline show the start. Only
+    the first three turns of a long path, or its first swing, are shown (the title then says so).
+    Where the model is not valid, the path of the centre has a grey background.
 
     Parameters
     ----------
@@ -280,7 +280,7 @@ def _until(motion: Trajectory, end: float) -> Trajectory:
 def _draw_paths(
     ax: Axes, motion: Trajectory, style: Style, share: float
 ) -> tuple[Line2D, Line2D, Line2D]:
-    """Draw the three paths of a motion; a `share` of all motions has been drawn before."""
+    """Draw the three paths of a motion; `share` is the fraction of the motions already drawn."""
     draw = partial(ax.plot, transform=drawing.on_slope(ax, motion.scene))
     palette, name = palette_of(ax), f"{style.label}, " if style.label else ""
     drawing.draw_body(ax, motion, 0, fill=False, ec=palette.grey, lw=0.8, zorder=2)
@@ -293,7 +293,7 @@ def _draw_paths(
         *drawing.tip(motion), color=style.colour or palette.blue, ls=_TIP, lw=1.2, zorder=4,
         label=f"{name}end of axis a", **start,
     )  # fmt: skip
-    (contact,) = draw(  # narrower than the contacts below it, so that all are visible
+    (contact,) = draw(  # each path is narrower than those below it, so that all are visible
         *drawing.contact_points(motion), color=style.colour or palette.ink, lw=2.4 + 4 * share,
         solid_capstyle="butt", zorder=3 - share, label=f"{name}contact", **start,
     )  # fmt: skip

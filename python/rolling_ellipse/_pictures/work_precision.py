@@ -34,12 +34,12 @@ _NAMES = {
     "samples_time": "time of a call for all samples", "setup": "set-up",
 }  # fmt: skip
 _SECONDS = ("time", "samples_time", "setup")
-_LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn at the first; larger ones, not at all
+_LEAST, _MOST = 1e-17, 10.0  # smaller errors are drawn at _LEAST, larger errors not at all
 _TEXT = 8.0  # size of all text in the axes and below them [points]
 _LETTER = 0.63  # width of a letter of the table relative to its size
-_ROWS, _COLUMNS = 9, 70  # of a table below the axes: maximum rows, minimum letters per line
+_ROWS, _COLUMNS = 9, 70  # for a table below the axes: maximum rows, minimum letters per line
 _AROUND = (1, 0), (0, 1), (0, -1)  # sides of a label at the end of a line: right, above, below
-_NAMED = 8  # largest number of contenders named
+_NAMED = 8  # maximum number of contenders with a label
 _DECADES = tuple(10.0**-k for k in range(2, 16))
 _STAMP = ("processor", "vectors", "date")
 
@@ -50,10 +50,10 @@ Point = tuple[float, float]  # error, value
 class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
-    `lines` and `names` have the names of contenders as keys, `fronts` "highlight" and "others", and
-    `factors` the errors. `gaps` is the table of missing runs, and `below` the text at the bottom of
-    a figure of its own: this table, if it fits, and the machine. `limit` exists for errors of the
-    state.
+    The keys of `lines` and `names` are names of contenders, those of `fronts` are "highlight" and
+    "others", and those of `factors` are errors. `gaps` is the table of missing runs. `below` is the
+    text at the bottom of a new figure: this table, if it fits, and the machine. `limit` is drawn
+    for errors of the state only.
     """
 
     gaps: Gaps
@@ -80,7 +80,7 @@ def draw(
     if by is not None:
         choice("by", by, ("library",))
         if ax is not None:
-            raise ValueError(f"ax must be None where by is given, got {shown(ax)}")
+            raise ValueError(f"ax must be None if by is given, got {shown(ax)}")
         return _multiples(race)
     own_figure = ax is None
     ax = axes_of(ax, (8, 5.6))
@@ -117,7 +117,7 @@ class _Race:
             at, value = max(run.value(x), self.limit), run.value(y)
             if run.completed and value > 0 and not math.isnan(at):
                 points = self.points.setdefault(run.name, [])
-                if not points or points[-1][0] != at:  # finer settings may not gain anything
+                if not points or points[-1][0] != at:  # finer settings may gain nothing
                     points.append((at, value))
         own = {run.name for run in runs if "own" in run.tags}
         if highlight is not None:
@@ -133,7 +133,7 @@ class _Race:
         }
 
     def _front(self, names: Iterable[str]) -> dict[Point, str]:
-        """Return the points that none of these contenders beats, each with its contender."""
+        """Return the points of the contenders that no other point beats, with their names."""
         front: dict[Point, str] = {}
         least = _MOST
         for value, at, name in sorted((y, x, n) for n in names for x, y in self.points[n]):
@@ -160,7 +160,7 @@ def _least(front: dict[Point, str], error: float) -> tuple[float, str]:
 
 
 def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, Any]:
-    """Draw lines and fronts; in a small multiple its members stand out instead of a camp."""
+    """Draw lines and fronts; the `members` of a small multiple stand out, or else one camp."""
     palette = palette_of(ax)
     colors = {"highlight": palette.blue, "others": palette.orange}
     strong = race.ours if members is None else members
@@ -178,7 +178,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
     for camp, front in race.fronts.items():
         if front:
             corners = [corner for _, part in parts(front) for corner in part]
-            apart = members is None or camp == "highlight"  # orange marks members in a multiple
+            apart = members is None or camp == "highlight"  # in a multiple, orange is for members
             fronts[camp] = ax.plot(
                 *zip(*corners, strict=True), solid_capstyle="butt",
                 color=colors[camp] if apart else palette.shade(0.6),
@@ -188,7 +188,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
 
 
 def _framed(ax: Axes, race: _Race) -> Line2D | None:
-    """Set the axes, with errors from 10 to the attainable limit; mark this limit."""
+    """Set up the axes, with errors from 10 down to the attainable limit, and mark this limit."""
     palette, x, y = palette_of(ax), race.x, race.y
     across, up = f"{_NAMES.get(x, x)} (smaller →)", _NAMES.get(y, y)
     ax.set(xscale="log", yscale="log", xlabel=across, ylabel=up)
@@ -200,7 +200,7 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
     ax.set_xlim(_MOST, min(end, 1.0) / 3)
     values = np.log10([value for at, value in points if at <= _MOST] or [1.0])
     width, height = size_in_points(ax)
-    narrow = max(0.0, 1.0 - np.ptp(values)) / 2  # at least a decade is in view, with its tick
+    narrow = max(0.0, 1.0 - np.ptp(values)) / 2  # show at least a decade, with its tick
     low, high = min(values) - narrow, max(values) + narrow
     letter = _TEXT * (high - low) / max(height - 5 * _TEXT, _TEXT)
     ax.set_ylim(10 ** (low - 2.5 * letter), 10 ** (high + 2 * letter))
@@ -218,7 +218,7 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
 
 
 def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
-    """Write the factors between the fronts, and the names of the contenders and the limit."""
+    """Write the factors between the fronts, the names of contenders, and that of the limit."""
     palette = palette_of(ax)
     halo = palette.background
     ours, others = race.fronts["highlight"], race.fronts["others"]
@@ -265,7 +265,7 @@ def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
 
 
 def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Text:
-    """Write the legend of a separate figure, and below it the table of gaps and the machine."""
+    """Add a legend to a new figure, and write the table of gaps and the machine below the axes."""
     figure: Any = ax.figure
     width, height = 72 * figure.get_size_inches()
     room = int(width / (_LETTER * _TEXT)) - 2
@@ -290,7 +290,7 @@ def _below(ax: Axes, race: _Race, missing: Gaps, machine: dict[str, str]) -> Tex
 
 
 def _multiples(race: _Race) -> WorkPrecisionChart:
-    """Draw one chart per library, whose lines stand out, all with the same axes."""
+    """Draw a chart for each library, in which its lines stand out; all charts share their axes."""
     libraries: dict[str, list[str]] = {}
     for run in race.runs:
         library = "rolling_ellipse" if "own" in run.tags else run.name.split()[0]

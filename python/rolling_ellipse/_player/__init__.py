@@ -1,4 +1,4 @@
-"""The player of films in a browser, and the blows that a reader can try there."""
+"""The player of films in a browser, and the page on which blows can be tried."""
 
 from .._pictures.animation import animate
 from .explorer import Explorer, explore

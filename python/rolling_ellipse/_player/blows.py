@@ -1,4 +1,4 @@
-"""The blows that a page lets its reader try on a scene, and its texts about both."""
+"""The blows that can be tried on a scene in a page, and the data and texts of that page."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from .film import body, columns, events, sample_times
 
 WIDE = 14.0  # width of the view [longer semi-axes]
 _STRENGTHS = 16  # ratio of the strongest blow to the weakest
-_PIXEL = 2.5e-4  # tolerance per width of the view
-_SAMPLES = 100  # of a motion; up to ten times as many if positions or forces need them
-_STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
+_PIXEL = 2.5e-4  # tolerance as a share of the width of the view
+_SAMPLES = 100  # number of samples of a motion that would need more than ten times as many
+_STEPS, _EVENTS = 20_000, 200  # maximum numbers of steps and events of a motion
 _SLIDES = 240  # number of steps of a slider
 
 
 def axes(scene: Scene) -> list[dict[str, Any]]:
     """Return the ranges and steps of the position d [m] and of the strength F [N s] of blows.
 
-    Positions cover the width of the body as it lies. The strongest blow, at the rim, gives about
-    three times the speed that carries the body over its tip.
+    Positions cover the width of the body in its initial orientation. The strongest blow, at the end
+    of this width, gives about three times the speed that carries the body over its tip.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -45,7 +45,7 @@ def axes(scene: Scene) -> list[dict[str, Any]]:
 
 
 def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) -> Impulse:
-    """Return the scene's own press, or a strong one at the same point, within the axes' ranges."""
+    """Return the press of the scene, or one of medium strength, clipped to the axes' ranges."""
     own: Any = scene.impulse
     d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
     if F <= 0:
@@ -55,25 +55,25 @@ def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) ->
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion of a scene after a blow, without warnings: its message says the same."""
+    """Return the motion of a scene after a blow, without the warnings that its message repeats."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the scene's parameters in words; rarely changed ones are listed by name."""
+    """Return the scene's parameters in words; rarely changed ones follow by name if changed."""
     seldom = scene._changed().keys() - {"a", "b", "mass", "friction", "restitution", "slope"}
-    said = [
+    facts = [
         filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
                e=scene.restitution, slope=scene.slope)
     ]  # fmt: skip
     for name in sorted(seldom - {"impulse"}):
-        said.append(f"{name} = {written(getattr(scene, name), words)}")
-    return ", ".join(said)
+        facts.append(f"{name} = {written(getattr(scene, name), words)}")
+    return ", ".join(facts)
 
 
 def code(scene: Scene, t_end: float) -> str:
-    """Return the Python code of the simulation; {blow} is the first blow, {blows} the others."""
+    """Return Python code for the simulation; {blow} is the first blow, {blows} the others."""
     return (
         "import rolling_ellipse\n\n"
         "blow = {blow}\n"
@@ -92,7 +92,7 @@ def numbers(scene: Scene) -> dict[str, float | None]:
 def strip(motion: Trajectory) -> dict[str, Any]:
     """Return a motion for the player, in a window chosen for the body before the blow.
 
-    A motion that needs too many samples has evenly spaced ones.
+    A motion that would need too many samples gets a few evenly spaced ones.
     """
     scene = motion.scene
     longer, start = max(scene.a, scene.b), scene.initial_state

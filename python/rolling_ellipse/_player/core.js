@@ -1,6 +1,6 @@
-// The exact core as WebAssembly: a scene in; samples, events and sentences out. All numbers are in
-// SI units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. It needs no
-// other module.
+// The exact core as WebAssembly: it turns a scene into samples, events and sentences. All numbers
+// are in SI units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. This
+// module needs no other.
 
 const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
 
@@ -49,7 +49,7 @@ export class Core {
     return found;
   }
 
-  /** The first outcome after the last blow, as `ask` reports it; the last motion stays. */
+  /** The first outcome after the last blow, as `ask` reports it; the last motion is kept. */
   first(scene, end) {
     const answer = this.text(this.call("first", this.numbers(scene, end)));
     if (answer !== answer.toUpperCase()) throw new RangeError(answer);
@@ -85,7 +85,7 @@ export class Core {
   }
 }
 
-/** Columns for a track; between a jump and the double before it a force has the mean of both. */
+/** Columns for a track; across a jump, the force midway is the mean of both sides. */
 function trackOf(times, columns) {
   const isEnd = (_, i) => i % 2 === 0, track = { t: times.filter(isEnd) };
   for (const name in columns) track[name] = columns[name].filter(isEnd);

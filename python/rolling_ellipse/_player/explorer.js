@@ -202,7 +202,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the hand
 
-  /** How far the hand is from the point of a blow [m]. */
+  /** The distance of the hand from the point of a blow [m]. */
   length(F) {
     return (0.5 + (1.7 * F) / this.film.strongest) * Math.max(this.strip.a, this.strip.b);
   }
@@ -253,7 +253,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------ the words
 
-  /** Write what happens, and announce it if the reason has changed. */
+  /** Write what happens, and announce it if the sentences have changed. */
   tell() {
     const { headline, reasons } = this.found;
     const inWords = (sentences) => sentences.map((each) => this.say(...each)).join(" ");
@@ -319,7 +319,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the map
 
-  /** Paint the map; while it is in view, compute more of its cells, and go on in later frames. */
+  /** Paint the map; while it is in view, compute more of its cells, now and in later frames. */
   paintMap(until) {
     if (this.isMapless) return;
     const done = !this.fills || this.fill(until), ink = sized(this.map, this.map.clientHeight);

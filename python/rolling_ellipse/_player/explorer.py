@@ -1,4 +1,4 @@
-"""A page on which the reader moves a blow and sees the motion at once, without a Python kernel."""
+"""A page for moving a blow over a body and seeing its motion at once, without a Python kernel."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .._pictures.phase_map import COLOURS
 from . import blows
 from .page import core, document, escaped, fragment, packaged, words
 
-LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
+LONGEST = 40.0  # maximum t_end, in units of sqrt(longer semi-axis / gravity)
 _FILM = {"fps": 60, "speed": 1, "decimals": 2, "follows": "edge", "waits": True}
-# Colours of the map, by the first outcome; the body may also stay in the air
+# Colours of the map by first outcome, and for a body that stays in the air
 _COLOURS = {outcome.name: COLOURS[outcome] for outcome in Outcome}
 _COLOURS["IN_THE_AIR"] = COLOURS[Outcome.LOSES_CONTACT]
 
@@ -37,11 +37,11 @@ def explore(
     language: str | Mapping[str, str] = "en",
     live: bool | None = None,
 ) -> Explorer:
-    """Make a page on which the reader strikes the body by dragging a hand over it.
+    """Create a page on which the body can be struck by dragging a hand over it.
 
-    The hand sets the point and the strength, and can strike the moving body again. The page shows
-    the motion with its forces, its first outcome after the last blow with the reason, its events,
-    and a map of the outcomes of all blows. It needs no kernel and no network.
+    The hand sets the point and the strength of the blow, and can strike the moving body again. The
+    page shows the motion with its forces, its first outcome after the last blow with the reason,
+    its events, and a map of the outcomes of all blows. It needs no kernel and no network.
 
     Parameters
     ----------
@@ -67,20 +67,20 @@ def explore(
         If `scene` is not a Scene, `t_end` not a number, `live` not a bool, or `language` neither
         a name nor a mapping of strings.
     ValueError
-        If `t_end` is out of range, the body so far away that a double cannot resolve a thousandth
-        of it, or `language` unknown or without one of the keys.
+        If `t_end` is out of range, the body is so far away that a double cannot resolve a
+        thousandth of its size, or `language` is unknown or lacks one of the keys.
 
     Notes
     -----
     The page contains the core, compiled to WebAssembly, and computes all blows with the same
     results as `simulate` with ``blows``. A button copies the Python code that simulates them. The
-    whole page can be used with a keyboard alone. Where a browser or a policy forbids WebAssembly,
-    or this installation came without the file, it plays the film of the first blow, and says so.
+    whole page can be used with a keyboard alone. If a browser or a policy forbids WebAssembly, or
+    this installation lacks the file, the page only plays the film of the first blow, and says so.
 
-    The page follows the light or dark theme of the reader's system, unless it is inside an element
+    The page follows the light or dark theme of the user's system, unless it is inside an element
     (such as `<html>`) with the attribute `data-theme="light"` or `"dark"`.
 
-    In a frame it reports its height to the page around it, which only needs this::
+    Inside a frame, the page reports its height to its parent, which needs only this script::
 
         <iframe src="strike.html" style="width: 100%; border: 0"></iframe>
         <script>
@@ -107,14 +107,14 @@ def explore(
         raise ValueError(f"t_end must be at most {longest:.6g} s for this body, got {t_end!r}")
     if live is not None:
         flag("live", live)
-        text = "live has no effect and will be removed: every page carries the core"
+        text = "live has no effect and will be removed: every page contains the core"
         warnings.warn(text, DeprecationWarning, stacklevel=2)
     return Explorer(scene, chosen, words(language))
 
 
 @dataclass(frozen=True)
 class Explorer(FieldsOnly):
-    """A page on which the reader strikes the body, made by `explore`; a notebook displays it.
+    """A page on which the body can be struck, created by `explore`; a notebook displays it.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ class Explorer(FieldsOnly):
         TypeError
             If `path` is not a path.
         OSError
-            If the file cannot be written; an old file is kept.
+            If the file cannot be written; an existing file is preserved.
 
         Examples
         --------
@@ -186,9 +186,9 @@ class Explorer(FieldsOnly):
         return self._fragment("Explorer")
 
     def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
-        """Return the page's content; a class from `module` may start it, with more data.
+        """Return the page's content; a class in `module` may start it, with `more` data.
 
-        It includes the film of the first blow, for pages without the core.
+        The content includes the film of the first blow, for browsers that cannot run the core.
         """
         axes = blows.axes(self.scene)
         blow = blows.first_blow(self.scene, *axes)
@@ -215,7 +215,7 @@ class Explorer(FieldsOnly):
         return fragment(data, [shown], text, starts, self._markup(motion), module)
 
     def _markup(self, motion: Trajectory) -> str:
-        """Return the markup around the player with its texts, which describe the film."""
+        """Return the markup around the player, with texts that describe the film."""
         texts = escaped(self.words)
         _, headline, reasons = _core.describe(motion.scene.core, motion._solution)
         texts |= {

@@ -1,6 +1,6 @@
 """The player of an animation: its page, and its motions as packed samples.
 
-Samples are dense enough for cubics between them, and parabolas for forces.
+The samples are so dense that cubics between them, and parabolas for the forces, are accurate.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .._pictures.ground import blows_of, touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
-_PIXEL = 2.5e-5  # tolerance per width of the view: 1/20 pixel of a film 2000 pixels wide
+_PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of 2000
 _HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and the ruler, as shares of the width
 _TALLEST = 0.42  # maximum height of a film over its width; half of it for each of several motions
 MOST_SAMPLES = 20_000  # maximum for one motion, 1 MB
@@ -35,26 +35,27 @@ _FIRST = 17  # initial number of intervals
 
 
 def track(motion: Trajectory, parts: list[tuple[float, float]], tolerance: float) -> dict[str, Any]:
-    """Return the parts (start, end [s]) of a motion as JSON types: columns, and where parts start.
+    """Return the parts (start, end [s]) of a motion as packed columns, and each part's first index.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m]. A
-    motion that needs more than `MOST_SAMPLES` is rejected. Parts after its end have one sample.
+    motion that needs more than `MOST_SAMPLES` samples is rejected. Parts after its end have one
+    sample.
     """
-    last, found, starts = float(motion.t[-1]), np.empty(0), []
+    last, sampled, starts = float(motion.t[-1]), np.empty(0), []
     for begin, end in parts:
         times = sample_times(motion, min(end, last), tolerance, begin=min(begin, last))
-        if times is None or found.size + times.size > MOST_SAMPLES:
+        if times is None or sampled.size + times.size > MOST_SAMPLES:
             raise ValueError(
-                f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got {last:g} s"
-                " of a motion that needs more: show less by t_end, or parts of it without speed"
+                f"t_end must be so short that a player needs at most {MOST_SAMPLES} samples, got "
+                f"{last:g} s of a motion that needs more: reduce t_end, or omit speed to show parts"
             )
-        starts.append(found.size)
-        found = np.append(found, times)
-    return {"columns": columns([motion.sol(found)], tolerance), "starts": starts}
+        starts.append(sampled.size)
+        sampled = np.append(sampled, times)
+    return {"columns": columns([motion.sol(sampled)], tolerance), "starts": starts}
 
 
 def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
-    """Return the samples of motions of one body in packed columns, one motion after the other."""
+    """Return packed columns with the samples of motions of one body, one motion after the other."""
     scene = motions[0].scene
     size = max(scene.a, scene.b)
     names = ("t", *_RATES, *_RATES.values(), *FORCES, "mode")
@@ -71,15 +72,15 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
 
 
 def _middles(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return forces at the midpoints of intervals and at the end; at a jump, the mean."""
+    """Return forces at the midpoints of intervals and at the end; across a jump, their mean."""
     t = motion.t
     between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
-    found = {}
+    middles = {}
     for name, middle in _MIDDLES.items():
         forces = getattr(motion, name)
         means = (forces + np.append(forces[1:], forces[-1])) / 2
-        found[middle] = np.where(jumps > 1e-9 * t[-1], getattr(between, name), means)
-    return found
+        middles[middle] = np.where(jumps > 1e-9 * t[-1], getattr(between, name), means)
+    return middles
 
 
 def sample_times(
@@ -90,11 +91,11 @@ def sample_times(
     begin: float = 0.0,
     most: int = MOST_SAMPLES,
 ) -> FloatArray | None:
-    """Return times, from `begin` on, between which cubics are off by at most `tolerance` [m].
+    """Return times from `begin` to `end` between which cubics are off by at most `tolerance` [m].
 
-    If there are more than `most`, the result is None. Parabolas through the forces at the times and
-    midway between them are also close to the forces, provided that takes at most half of `most`.
-    The times include all events, and the doubles just before them.
+    If more than `most` times are needed, return None. Parabolas through the forces at the times and
+    midway between them are also close to the forces, if at most half of `most` times suffice for
+    that. The times include all events, and the doubles just before them.
     """
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
@@ -141,7 +142,8 @@ def _misses(
 def packed(values: FloatArray, error: float) -> dict[str, Any]:
     """Return a column, accurate to `error`, in few bytes: low + step · n, with n in base64.
 
-    The n are two-byte unsigned integers if these are fine enough, else floats of four or eight.
+    The numbers n are unsigned integers of two bytes if these are fine enough, otherwise floats of
+    four or eight bytes.
     """
     low, high = float(np.min(values)), float(np.max(values))
     step = (high - low) / 65535
@@ -175,7 +177,7 @@ def film_html(animation: RollingAnimation) -> str:
     head, foot = (1 + rows) * _HEAD, _FOOT * (1 + beside)  # bodies side by side are small
     seen = cameras(motions, None, head, foot, beside)
     if seen.shape > (most := _TALLEST * max(1, (not beside) * len(motions) / 2) + rows * _HEAD):
-        seen = cameras(motions, most, head, foot, beside)  # no taller than fits a notebook's cell
+        seen = cameras(motions, most, head, foot, beside)  # low enough for a notebook's cell
     wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
     strips = [
         {
@@ -210,7 +212,7 @@ def film_html(animation: RollingAnimation) -> str:
 
 
 def body(motion: Trajectory) -> dict[str, Any]:
-    """Return the body, its ground, its blows and its unit of length, as JSON types."""
+    """Return the body, its ground, its blows and the unit of length for it, as JSON types."""
     scene = motion.scene
     return {
         "a": scene.a,

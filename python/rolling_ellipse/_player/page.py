@@ -1,4 +1,4 @@
-"""HTML that contains the player: a fragment for notebooks, a page for files, and their texts."""
+"""HTML with the player: a fragment for notebooks, a page for files, and their texts."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def fragment(
     around: str = "{player}",
     module: str = "",
 ) -> str:
-    """Return a `div` with pictures of the motions, and a script that replaces them by the player.
+    """Return a `div` with pictures of the motions, and a script that replaces them with the player.
 
-    Where scripts are disabled, pictures and text stay. A page may hold the same fragment several
-    times. Data without words get the English ones. `around` is HTML around the player. `module` is
-    JavaScript with the class that `starts` names, if the package has no such class. No key event
-    leaves the `div`, whose JupyterLab marker keeps the notebook from acting on keys.
+    If scripts are disabled, the pictures and the text remain. A page may contain the same fragment
+    several times. Data without words get the English ones. `around` is HTML around the player.
+    `starts` is the class to start; `module` is JavaScript that defines it, if the package does not.
+    No key event leaves the `div`, whose JupyterLab marker keeps the notebook from acting on keys.
     """
     scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")
@@ -83,7 +83,7 @@ def with_player(around: str, texts: dict[str, str]) -> str:
 def document(title: str, content: str, language: str = "en") -> str:
     """Return a page that needs no other file and no network.
 
-    In a frame it posts its height [CSS px] to the page around it whenever the height changes.
+    Inside a frame, the page posts its height [CSS px] to its parent whenever the height changes.
     """
     named = {"language": html.escape(language), "title": html.escape(title), "content": content}
     return Template(packaged("page.html")).substitute(named)
@@ -97,35 +97,35 @@ def packaged(name: str) -> str:
 
 @cache
 def core() -> str:
-    """Return the core in WebAssembly, gzipped, in base64; empty if the file is missing."""
+    """Return the core as gzipped WebAssembly in base64, or "" if the file is missing."""
     file = files(__package__).joinpath("live.wasm.gz")
     return base64.b64encode(file.read_bytes()).decode() if file.is_file() else ""
 
 
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
-    """Return the table of a language, or a copy of a mapping with the keys of the English one.
+    """Return the table of a language, or a copy of a mapping with the keys of the English table.
 
-    A text must not use a placeholder that the English one lacks.
+    A text must not use a placeholder that the English text lacks.
     """
     if isinstance(language, str):
         return dict(table(choice("language", language, LANGUAGES)))
     if not isinstance(language, Mapping):
         raise TypeError(f"language must be a name or a mapping of texts, got {shown(language)}")
-    english, found = table("en"), dict(language)
-    if odd := [*(key for key in english if key not in found), *(found.keys() - english.keys())]:
+    english, texts = table("en"), dict(language)
+    if odd := [*(key for key in english if key not in texts), *(texts.keys() - english.keys())]:
         raise ValueError(
-            f"language must have the keys of explore(scene).words, got {len(found)} keys, and "
+            f"language must have the keys of explore(scene).words, got {len(texts)} keys, and "
             f"{shown(odd[0])} is {'missing' if odd[0] in english else 'unknown'}"
         )
-    for key, text in found.items():
+    for key, text in texts.items():
         where, known = f"language[{key!r}] must", BRACES.findall(english[key])
         if not isinstance(text, str):
             raise TypeError(f"{where} be a string, got {shown(text)}")
-        if re.search("[\ud800-\udfff]", text):  # cannot be written
+        if re.search("[\ud800-\udfff]", text):  # cannot be encoded in UTF-8
             raise ValueError(f"{where} have no lone surrogate, got {shown(text)}")
         if not set(BRACES.findall(text)) <= set(known):
             raise ValueError(f"{where} have no braces but {known}, got {shown(text)}")
-    return found
+    return texts
 
 
 def escaped(words: dict[str, str]) -> dict[str, str]:

@@ -4,7 +4,7 @@
 const NUDGES = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -10, ArrowUp: 10 };
 const RATES = [0.1, 0.25, 0.5, 1, 2, 4];
 const ICONS = { play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z" };
-/** True if the page, or else the reader's system, requests dark colours. */
+/** True if the page or, without a theme of its own, the user's system requests dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
@@ -249,7 +249,7 @@ export class Player {
     canvas.setAttribute("aria-label", this.label(states));
   }
 
-  /** The states in words, for readers who cannot see the picture. */
+  /** The states in words, for users who cannot see the picture. */
   label(states) {
     const near = (value, unit) => Math.round((1000 * value) / unit) * (unit / 1000);
     return states.map(({ theta, x }, i) => this.say("stage", { theta: near(theta, 1),
@@ -257,12 +257,12 @@ export class Player {
       name: this.film.strips[i].label }).trim()).join("; ");
   }
 
-  /** The text of a key in the reader's language; values replace the names in braces. */
+  /** The text of a key in the page's language; values replace the names in braces. */
   say(key, values = {}) {
     return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) => round(values[name]));
   }
 
-  /** The views of all strips; their cameras stand still, follow the middle, or their own body. */
+  /** The views of all strips: cameras stand still, follow the middle, or each follows its body. */
   viewsOf(states, width) {
     const { strips, follows, shape } = this.film;
     const feet = strips.map(({ slope }, i) =>

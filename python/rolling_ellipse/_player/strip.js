@@ -1,7 +1,7 @@
 // One strip of the picture: a body on its ruled ground in a given state. Needs track.js.
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
-const SHOWN = 6000; // last points of a trace that are drawn: earlier ones are out of sight
+const SHOWN = 6000; // maximum number of points drawn of a trace: earlier ones are out of sight
 const ROW = 17; // height of a row of a caption [px]
 const FADES = 1.2; // how long a blow or an event is visible [seconds of film]
 
@@ -78,7 +78,7 @@ export function fill(ink, colour) {
 
 export const point = { sign: "." }; // between the digits of a number
 
-/** The text of a number to a few digits; a text of digits keeps them all. */
+/** The text of a number to a few digits; a string of digits keeps all of them. */
 export function round(value, digits = 3) {
   if (value === Infinity) return "∞";
   const written = typeof value === "number" ? `${+value.toPrecision(digits)}` : `${value}`;
@@ -112,7 +112,7 @@ export function outline(ink, strip, at, view) {
     2 * Math.PI);
 }
 
-/** Draw the ground and its ticks, every fifth longer and labelled with its distance. */
+/** Draw the ground and its ticks; every fifth is longer and labelled with its position. */
 function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   const far = (2 * (width + tall)) / view.scale;
   const [x] = view.ground(width / 2, floor + tall);
@@ -206,7 +206,7 @@ function paintContact(ink, colours, { a, b }, at, view) {
   stroke(ink, colours.paper, 0.8);
 }
 
-/** Draw the force of the ground; the body's weight is as long as its longer semi-axis. */
+/** Draw the contact forces; a force equal to the weight is as long as the longer semi-axis. */
 function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (at.mode === FLIGHT) return;
   const place = at.x + support(at.theta, a, b)[1];
@@ -219,7 +219,7 @@ function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (Math.abs(at.F) > 0.02 * weight) text(ink, colours.plum, "F", along[0], along[1] - 8);
 }
 
-/** Draw the last blow at its point on the body at its time. */
+/** Draw the last blow where it struck the body, while it fades. */
 function paintBlow(ink, colours, strip, at, view, lasting) {
   const [t, jx, jz, dx, dz] = strip.blows.filter(([then]) => then <= at.t).pop() ?? [];
   const size = Math.hypot(jx, jz), age = lasting * (1 - t / Math.max(at.t, 1e-300));

@@ -17,7 +17,7 @@ export function unpacked(columns) {
     [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
 }
 
-/** Index of the last of rising times up to t, at least the first; `time` gives them by index. */
+/** Index of the last of `count` increasing times that is at most t, or 0; `time(k)` is time k. */
 export function lastUntil(t, count, time) {
   let first = 0, end = count;
   while (end - first > 1) {

@@ -1,16 +1,16 @@
 """Known answers for other simulators, integrators and gradients.
 
-This package is no general simulator of bodies and joints: nothing here competes with yours. Twenty
-problems of an ellipse on the ground have exact answers, computed by two independent programs, and
-condition numbers. SI units and radians; ``x`` lies along the ground (downhill on a slope), ``z``
-points away from it, ``theta`` is the clockwise rotation, unwrapped. States are in the order x, z,
-theta, x_dot, z_dot, omega.
+This package is not a general simulator of bodies and joints and does not compete with yours. It has
+twenty problems of an ellipse on the ground with exact answers, computed by two independent
+programs, and with condition numbers. Units are SI and radians; ``x`` is along the ground (downhill
+on a slope), ``z`` is normal to it, ``theta`` is the clockwise rotation, unwrapped. States are in
+the order x, z, theta, x_dot, z_dot, omega.
 
 Examples
 --------
 >>> rl.benchmark.problem("slide.stick").question
 'When does the slip end?'
->>> def mine(problem, times, step):  # your simulator returns such states at the times
+>>> def mine(problem, times, step):  # your simulator returns states at the times
 ...     return problem.exact(times) + 1e-4
 >>> rl.benchmark.run(mine, problems="slide.stick")[0].passed
 True

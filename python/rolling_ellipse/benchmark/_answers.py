@@ -1,11 +1,11 @@
 """Whether a simulator answers the question of a problem.
 
-The answer must follow from the simulator's output: the values at the end, or at all times, to
-within 0.01 L or 0.01 rad; the number of half swings (`_events`); and events of the right kinds, in
-order. Each event must be on time to within 2 % of sqrt(L/g), or to within a thousandth of the
-largest condition number before it, whichever is larger, but never more than 10 %. The states must
-match the motion as closely as if the inputs were off by at most 10 %, in the package's conventions
-(`_mistakes`).
+The simulator's output must agree with the answer in its values at the end, or at all times, to
+within 0.01 of their scales (0.01 L or 0.01 rad); in the number of half swings (`_events`); and in
+the kinds and order of events. The time of an event may be off by 2 % of sqrt(L/g) or, if that is
+larger, by 0.1 % of sqrt(L/g) times the largest condition number up to it, but by no more than 10 %.
+The states must match the motion as closely as if the inputs were off by at most 10 %, in the
+package's conventions (`_mistakes`).
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from ._problem import STATE, Problem, states_of
 from ._results import Rows
 
 _CLOSE = 0.01  # largest error of a value of the answer, relative to its scale
-_SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest error of the time of an event, in units of sqrt(L/g)
+_SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest errors of the time of an event, as shares of sqrt(L/g)
 _PER_CONDITION = 1e-3  # allowed share for a sensitive event, per unit of its condition number
 _NEAR = 0.1  # largest error over condition number for states of the right motion
-_APART = 3.0  # minimum ratio of the distances from the second nearest law and the nearest
+_APART = 3.0  # minimum ratio of the distance from the second nearest law to that from the nearest
 _Event = tuple[str, float]
 
 
 class Answer(NamedTuple):
     """Whether the answer is right, why or why not, and the differences of the events.
 
-    `errors` are the errors of the compared rows in units of their scales, shape (n, 6), by the
-    nearest law.
+    `errors` are the errors of the compared rows in units of their scales, shape (n, 6), relative to
+    the nearest law.
     """
 
     right: bool
@@ -45,10 +45,10 @@ class Answer(NamedTuple):
 
 
 def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
-    """Return the answer given by usable rows.
+    """Return the answer that usable rows give.
 
-    `rows` are the indices of the problem's compared rows, `places` those of the result's rows at
-    the same times.
+    `rows` are indices of the compared rows of the problem, `places` those of the rows of the result
+    at the same times.
     """
     states, law, wrong = _nearest_law(one, rows, mine.states[places])
     events: dict[str, dict[str, Any]] = {}
@@ -72,7 +72,7 @@ def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
 
 
 def _values(one: Problem, mine: Rows, which: str) -> list[str]:
-    """Compare the values required of the "last" row, or "always", of every row."""
+    """Compare the required values with the "last" row, or with every row ("always")."""
     known = one.answer[which]
     t, states = (mine.t[-1:], mine.states[-1:]) if which == "last" else (mine.t, mine.states)
     wrong = []
@@ -89,7 +89,7 @@ def _values(one: Problem, mine: Rows, which: str) -> list[str]:
 def _nearest_law(
     one: Problem, rows: Any, states: FloatArray
 ) -> tuple[FloatArray, list[str], list[str]]:
-    """Return the states by the nearest law, its name and factor, and why it may not count."""
+    """Return the states by the nearest law, a remark that names it, and why it may not count."""
     if not one.laws or not rows.size:
         return one.states[rows], [], []
     motions = {"stronge": one.states, **one.laws}
@@ -99,16 +99,16 @@ def _nearest_law(
     }
     first, second = sorted(away, key=lambda law: away[law])[:2]
     factor = away[second] / max(away[first], 1e-16)
-    said = f"nearest to {first} by a factor of {factor:.3g}"
+    nearest = f"nearest to {first} by a factor of {factor:.3g}"
     if factor > _APART:
-        return motions[first][rows], [said], []
-    return motions[first][rows], [], [f"no law is followed: {said}"]
+        return motions[first][rows], [nearest], []
+    return motions[first][rows], [], [f"no law is followed: {nearest}"]
 
 
 def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
-    """Compare given events with the known ones, or those read off both motions by one rule.
+    """Compare given events with the known ones, or events detected in both motions by one rule.
 
-    The error of the rule cancels. For bounces that settle, the first ones and the end are compared.
+    The error of the rule cancels. For bounces that die out, the first and the end are compared.
     """
     if mine.events is None:
         exact = states_of(one.trajectory.sol(mine.t))
@@ -136,7 +136,7 @@ def _differences(
 ) -> tuple[list[str], dict[str, Any]]:
     """Return what is wrong with events, and counts and errors of times by kind.
 
-    If the problem has no event, the rule may read one off both motions: its time is not compared.
+    If the problem has no event, the rule may detect one in both motions: its time is not compared.
     """
     kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in known)
     off: dict[str, float] = {}
@@ -144,7 +144,7 @@ def _differences(
     for k, ((kind, t), (other, then)) in enumerate(zip(mine, known, strict=False), 1):
         if kind == other:
             off[kind] = max(off.get(kind, 0.0), abs(t - then))
-            until = one.t_end if kind == "REST" else then  # REST is read off early
+            until = one.t_end if kind == "REST" else then  # REST is detected early
             if one.events and not abs(t - then) <= _allowed(one, until):
                 wrong.append(f"{kind} {k} at {t:.6g} s, right {then:.6g} s")
     counts = {"missed": dict(wanted - kinds), "invented": dict(kinds - wanted)}

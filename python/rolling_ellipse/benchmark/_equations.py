@@ -1,4 +1,4 @@
-"""Problems as equations: arc by arc with events, or rolling with its constraints."""
+"""Problems as equations: single arcs with events, or rolling with its constraints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
 _QUIET = 1e-3  # event-free time after SLIP and LIFT_OFF, in units of sqrt(L/g)
 _LEAST_REBOUND = 1e-7  # in units of sqrt(g L); slower rebounds are lower than an ulp of z
-#: Index, and rows: 0-2 are f2, f3, f4; 3-6 f1 and their rates; 7-10 the rates of these four.
+#: Index and rows: 0-2 are f2, f3, f4; 3-6 f1 and the rates of f2, f3, f4; 7-10 the rates of 3-6.
 FORMS = {
     "index3": (3, (3, 0, 1, 2)), "index2": (2, (3, 4, 5, 6)), "index1": (1, (7, 8, 9, 10)),
     "ggl": (2, (3, 4, 5, 6, 0, 1, 2)),
@@ -31,26 +31,27 @@ FORMS = {
 class Dae(FieldsOnly):
     """The report's five coordinates and four constraints as F(t, y, y') = 0.
 
-    q = (x, z, theta, psi, r) with the contact at the polar angle psi and distance r in the body,
-    v = q'. The Notes have the equations.
+    q = (x, z, theta, psi, r), where psi and r are polar coordinates of the contact in the body, and
+    v = q'. The Notes give the equations.
 
     Attributes
     ----------
     problem : Problem
     form, index : str, int
-        "index3", "index2", "index1" or "ggl", and its differentiation index: 3, 2, 1 or 2.
+        "index3", "index2", "index1" or "ggl", and the differentiation index: 3, 2, 1 or 2.
 
     Notes
     -----
-    The constraints are those of report eq 10 with f1 and the branch of f4 corrected:
+    The constraints are those of report eq 10, with f1 and the branch of f4 corrected:
 
         f1 = x_dot - r cos(psi - theta) theta_dot,    f2 = z - r cos(psi - theta),
         f3 = r - a b/sqrt((b sin psi)^2 + (a cos psi)^2),    f4 = psi - psi_C(theta).
 
-    M v' = weight + G^T lambda with M = diag(m, m, I, 0, 0), where G v are f1 and the rates of f2,
-    f3, f4. "index3" has f1, f2, f3, f4; "index2" has G v, and "index1" its rate; "ggl" has G v, f2,
-    f3, f4 with q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput.
-    Appl. Math. 12 (1985) 77). f1 constrains velocities: alone it would have index 2, not 3.
+    The equation of motion is M v' = weight + G^T lambda with M = diag(m, m, I, 0, 0), where G v
+    consists of f1 and the rates of f2, f3, f4. The constraints of "index3" are f1, f2, f3, f4;
+    those of "index2" are G v, and those of "index1" its rate; "ggl" has G v, f2, f3, f4 and
+    q' = v + (f2, f3, f4)_q^T mu (C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12
+    (1985) 77). f1 constrains velocities: alone it would have index 2, not 3.
 
     Examples
     --------
@@ -75,7 +76,7 @@ class Dae(FieldsOnly):
 
     @property
     def algebraic(self) -> Any:
-        """Mask of entries whose derivatives are not in F; psi_dot and r_dot move no mass."""
+        """Mask of the entries whose derivatives are not in F; psi_dot and r_dot carry no mass."""
         return np.arange(10 + len(self.rows)) >= (10 if self.form == "index1" else 8)
 
     @property
@@ -105,7 +106,7 @@ class Dae(FieldsOnly):
         return y if np.ndim(t) else y[0]
 
     def states(self, y: Any) -> FloatArray:
-        """Return x, z, theta, x_dot, z_dot, omega of y, shape (..., 6) for (..., n).
+        """Return x, z, theta, x_dot, z_dot, omega of y, shape (..., 6) for y of shape (..., n).
 
         Examples
         --------
@@ -117,7 +118,7 @@ class Dae(FieldsOnly):
         return array("y", y)[..., [0, 1, 2, 5, 6, 7]]
 
     def residual(self, t: Any, y: Any, yp: Any) -> Any:
-        """Return F, shape (n,) or (m, n): q' and M v' minus right sides, and the constraints.
+        """Return F, shape (n,) or (m, n): q' and M v' minus their right sides, and constraints.
 
         Examples
         --------
@@ -128,7 +129,7 @@ class Dae(FieldsOnly):
         """
         if np.ndim(y) == 1:
             return self.residual(t, np.array([y]), np.array([yp]))[0]
-        # No operation below depends on the layout or the number of states
+        # No operation below depends on the memory layout or the number of states
         y, yp = (np.array(np.transpose(one), order="C") for one in (y, yp))
         scene = self.problem.scene
         a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
@@ -172,9 +173,9 @@ class Dae(FieldsOnly):
 
 @dataclass(frozen=True, eq=False)
 class Ode:
-    """One arc of a motion, ready for `scipy.integrate.solve_ivp` or a similar solver.
+    """One arc of a motion, for `scipy.integrate.solve_ivp` or a similar solver.
 
-    States are x, z, theta, x_dot, z_dot, omega; the equations are those of a rigid body with
+    States are x, z, theta, x_dot, z_dot, omega. The equations are those of a rigid body with
     Coulomb friction, written independently of the package's solver.
 
     Attributes
@@ -187,9 +188,9 @@ class Ode:
     y0 : ndarray, shape (6,)
         State at t0.
     kind : str
-        Event with which the arc starts, "" for the first arc.
+        Event with which the arc starts, or "" for the first arc.
     side : int
-        Sign of the slip, 0 without slip.
+        Sign of the slip, or 0 without slip or friction.
     quiet : float
         Time from the start during which event functions are kept positive [s]; see `events`.
     xp : module
@@ -230,11 +231,12 @@ class Ode:
 
     @property
     def events(self) -> list[Callable[[float, Any], Any]]:
-        """Functions of t and y that fall through zero where the arc ends.
+        """Functions of t and y that decrease through zero where the arc ends.
 
-        They have `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a rebound they start
-        at zero, so that a solver would miss a bounce within its first step: they are kept at 1 for
-        0.001 sqrt(L/g), or after a rebound for a tenth of its time to the top.
+        They have the attributes `kind`, `terminal` and `direction`. After SLIP, LIFT_OFF and a
+        rebound they start at zero, and a solver would miss a bounce within its first step.
+        Therefore they return 1 for the first 0.001 sqrt(L/g) or, after a rebound, for a tenth of
+        the time to its apex if this is shorter.
         """
         arcs: dict[str, dict[str, Callable[[Any], Any]]] = {
             ROLLING: {"SLIP": self._grip},
@@ -255,7 +257,7 @@ class Ode:
         return [event(kind, function) for kind, function in ends.items()]
 
     def jump(self, t: float, y: Any, index: int) -> Ode:
-        """Return the arc that starts with event number `index` of this one.
+        """Return the arc that starts with event number `index` of this arc.
 
         Examples
         --------
@@ -302,7 +304,7 @@ class Ode:
 
     @property
     def switching_times(self) -> FloatArray:
-        """Exact times of all events of the problem [s]."""
+        """The exact times of all events of the problem [s]."""
         return np.array([event.t for event in self.problem.events])
 
     def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
@@ -331,12 +333,12 @@ class Ode:
         """Return the support function h, its derivative, and the radius of curvature."""
         a, b = self.problem.scene.a, self.problem.scene.b
         sin, cos = self.xp.sin(y[2]), self.xp.cos(y[2])
-        up, along = a * sin, b * cos  # products: powers of scalars and arrays differ
+        up, along = a * sin, b * cos  # powers of scalars and arrays would round differently
         h = self.xp.sqrt(up * up + along * along)
         return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / (h * h * h)
 
     def _weight(self, y: Any) -> Any:
-        """Return the contact's acceleration into the ground in the absence of contact forces."""
+        """Return the acceleration of the contact into the ground without contact forces."""
         h, _, radius = self._geometry(y)
         return self._gravity[1] + (radius - h) * y[5] * y[5]
 

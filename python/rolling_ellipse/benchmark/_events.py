@@ -1,19 +1,21 @@
-"""Events read off the states of a motion by one rule, for simulators that report none.
+"""Events detected in the states of a motion by one rule, for simulators that report none.
 
-With L = max(a, b), a row flies if the gap is above L/500, slips if it does not fly and the slip's
-magnitude is above sqrt(g L)/100, and rolls otherwise. Rows of one kind form a run; a push of the
-centre by more than sqrt(g L)/10 between two rows, while the gap turns from closing to opening,
-divides a run of flying rows. Runs on the ground shorter than sqrt(L/g)/10, and rolling ones up to
-twice as long between opposite slips, belong to the run before. Two runs are joined by an IMPACT if
-the first one flies: at the time at which the free flight from its last row touches the ground. All
-other events are where the gap or the slip passes its limit, linear between two rows: LIFT_OFF if
-the second run flies, STICK if it rolls, SLIP if the first one rolls, and REVERSE, at zero slip, if
-both slip.
+With L = max(a, b), a row flies if the gap is above L/500, slips if it does not fly and the
+magnitude of the slip is above sqrt(g L)/100, and rolls otherwise. Consecutive rows of the same kind
+form a run. A run is also divided where the velocity of the centre is pushed up by more than
+sqrt(g L)/10 between two rows while the gap changes from closing to opening. Runs on the ground that
+are shorter than sqrt(L/g)/10 belong to the run before, as do rolling runs up to twice as long
+between opposite slips.
 
-With rolling resistance the last event is REST, if it is followed by sqrt(L/g)/10 or more without a
-velocity above its limit: sqrt(g L)/500, of the rotation sqrt(g/L)/500. It is where the last
-velocity passes its limit. A half swing ends where the rotation turns and exceeds the limit on both
-sides.
+If a run flies, an IMPACT ends it, when the free flight from its last row touches the ground. All
+other events are where the gap or the slip passes its limit, by linear interpolation between two
+rows: LIFT_OFF if the second run flies, STICK if it rolls, SLIP if the first run rolls, and REVERSE,
+at zero slip, if both slip.
+
+With rolling resistance the last event is REST if no velocity exceeds its limit in the last
+sqrt(L/g)/10 or longer; the limits are sqrt(g L)/500, and sqrt(g/L)/500 for the rotation. REST is
+where the last velocity passes its limit. A half swing ends where the rotation reverses, with speeds
+above the limit on both sides.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ _ROLLS, _FLIES = 0, 2  # codes of rows; 1 and -1 mean slip
 
 
 def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[str, float]]:
-    """Return the kinds and times of the events in rows of states."""
+    """Return the kinds and times of the events that the rows of states show."""
     scene, length, speed = problem.scene, float(problem.scales[0]), float(problem.scales[3])
     gap, slip = gap_and_slip(problem, states)
     least_gap, least_slip = _LEAST_GAP * length, _LEAST_SLIP * speed
@@ -72,13 +74,13 @@ def read_off(problem: Problem, t: FloatArray, states: FloatArray) -> list[tuple[
 
 
 def half_swings(problem: Problem, states: FloatArray) -> int:
-    """Return how often a body swings from one side to the other."""
+    """Return the number of swings of a body from one side to the other."""
     omega = states[:, 5][np.abs(states[:, 5]) > _LEAST_SPEED * problem.scales[5]]
     return int(np.count_nonzero(np.diff(np.sign(omega)))) + bool(omega.size)
 
 
 def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> list[int]:
-    """Return the first rows of the runs, and the number of rows."""
+    """Return the first row of each run except the first run, and the number of rows."""
     scene, (_, _, theta, _, z_dot, omega) = problem.scene, states.T
     opening = z_dot - support_slope(theta, a=scene.a, b=scene.b) * omega
     pull = scene.gravity * math.cos(scene.slope)
@@ -88,7 +90,7 @@ def _starts(problem: Problem, t: FloatArray, states: FloatArray, kinds: Any) -> 
 
 
 def _passing(t: FloatArray, values: FloatArray, level: float, start: int) -> float:
-    """Return the last time, at or before a row, at which values pass a level."""
+    """Return the last time at which values pass a level, up to row `start`."""
     sides = np.sign(values[: start + 1] - level)
     changes = np.nonzero(sides[1:] != sides[:-1])[0]
     if not changes.size:
@@ -99,14 +101,14 @@ def _passing(t: FloatArray, values: FloatArray, level: float, start: int) -> flo
 
 
 def gap_and_slip(problem: Problem, states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the distance from the ground, and the slip as if the body touched it."""
+    """Return the gap to the ground, and the slip that the body would have if it touched it."""
     _, z, theta, x_dot, _, omega = states.T
     height = support(theta, a=problem.scene.a, b=problem.scene.b)
     return z - height, x_dot - height * omega
 
 
 def _touch(problem: Problem, t: float, state: FloatArray) -> float:
-    """Return the time at which the free flight from a state close to the ground touches it."""
+    """Return the time at which a free flight from a state close to the ground ends on it."""
     scene = problem.scene
     since = np.linspace(0.0, _SHORTEST * math.sqrt(problem.scales[0] / scene.gravity), 2001)
     height = state[1] + (state[4] - scene.gravity * math.cos(scene.slope) * since / 2) * since

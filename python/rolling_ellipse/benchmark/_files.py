@@ -1,4 +1,4 @@
-"""Files for programs in any language: problems to read, and results that they write."""
+"""Files for programs in any language: problems that they read, and results that they write."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ SYNONYMS = {"vx": "x_dot", "vz": "z_dot", "N": "normal_force", "F": "friction_fo
 
 
 def export(folder: Any) -> list[Path]:
-    """Write the scored problems, their scenes and empty tables of results into a folder.
+    """Write the scored problems, their scenes and empty tables for results into a folder.
 
     Parameters
     ----------
     folder : path
-        Created if it does not exist. An existing table of results is kept, as are files equal to
-        those to be written.
+        Folder to write to, created if it does not exist. An existing table of results is preserved,
+        and files equal to those to be written are left alone.
 
     Returns
     -------
@@ -36,10 +36,10 @@ def export(folder: Any) -> list[Path]:
     Raises
     ------
     ValueError
-        If the folder has a different file with one of the names, or a link; nothing is written
-        then.
+        If the folder has a different file, or a link, with one of the names; no file is then
+        written.
     OSError
-        If a file cannot be written. Each file appears whole or not at all.
+        If a file cannot be written. Each file is written completely or not at all.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def export(folder: Any) -> list[Path]:
     for one in problems():
         files[f"{one.id}.json"] = (FOLDER / f"{one.id}.json").read_bytes()
         for suffix, text in ((".sdf", one.scene.to_sdf), (".xml", one.scene.to_mjcf)):
-            with suppress(ValueError):  # coefficients of restitution that MJCF lacks
+            with suppress(ValueError):  # the format lacks a property of the scene
                 files[one.id + suffix] = text().encode()
         if not (place / f"{one.id}.csv").is_file():
             files[f"{one.id}.csv"] = _empty_table(one).encode()
@@ -60,7 +60,7 @@ def export(folder: Any) -> list[Path]:
 
 
 def _empty_table(one: Problem) -> str:
-    """Return a table with the times and no states."""
+    """Return the text of a table with the times but without states."""
     empty = "," * (len(COLUMNS) - 1)
     rows = [",".join(COLUMNS), *(f"{t!r}{empty}" for t in one.output_times.tolist())]
     return "\n".join(rows) + "\n"
@@ -90,7 +90,7 @@ class _Row(NamedTuple):
 
 
 def read_folder(results: Any) -> dict[str, Result]:
-    """Return the results in a folder; a table without a state has no result yet.
+    """Return the results in a folder; a table without states counts as no result.
 
     Raises
     ------
@@ -118,9 +118,9 @@ def read_folder(results: Any) -> dict[str, Result]:
 def read(problem: Problem, path: Path) -> Result:
     """Read a result from a file of comma-separated columns, with their names in the first row.
 
-    Rows without a time or without a state are left out. Two rows at one time are the sides of a
-    jump: the second is kept. Unknown columns are ignored. An empty file has no rows. Events are in
-    `<id>.events.csv` with the columns kind, t, if it exists and is not empty.
+    Rows without a time or without a state are skipped. Two rows at the same time are the two sides
+    of a jump; the second one is used. Unknown columns are ignored. An empty file has no rows. The
+    events are in `<id>.events.csv` with the columns kind, t, if this file exists and is not empty.
 
     Raises
     ------
@@ -128,14 +128,14 @@ def read(problem: Problem, path: Path) -> Result:
         If a file is not a table of UTF-8 text, a column is missing, or an entry is not a number;
         the message names problem, column and row.
     """
-    kept: list[list[float]] = []
+    records: list[list[float]] = []
     for row in _rows(problem, path, COLUMNS[:7]) or []:
         if row.entries["t"] and any(row.entries[name] for name in STATE):
             numbers = [row.number(name) for name in COLUMNS]
-            if kept and kept[-1][0] == numbers[0]:
-                kept.pop()
-            kept.append(numbers)
-    columns = np.array(kept).reshape(-1, len(COLUMNS)).T
+            if records and records[-1][0] == numbers[0]:
+                records.pop()
+            records.append(numbers)
+    columns = np.array(records).reshape(-1, len(COLUMNS)).T
     listed, kind = path.with_name(f"{problem.id}.events.csv"), f"kind of {problem.id}"
     events = None
     if listed.exists() and (rows := _rows(problem, listed, ("kind", "t"))) is not None:
@@ -144,9 +144,9 @@ def read(problem: Problem, path: Path) -> Result:
 
 
 def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] | None:
-    """Return the rows of a table that are not blank; None for a file without any.
+    """Return the rows of a table that are not blank, or None for a file without any.
 
-    Of two columns with the same name, the first counts.
+    Of two columns with the same name, the first is used.
     """
     try:
         text = Path(readable("results", path)).read_bytes().decode("utf-8-sig")
@@ -158,7 +158,7 @@ def _rows(problem: Problem, path: Path, columns: tuple[str, ...]) -> list[_Row] 
         ) from None
     if not rows:
         return None
-    names = [SYNONYMS.get(one.strip(), one.strip()) for one in rows[0][1]]
+    names = [SYNONYMS.get(head.strip(), head.strip()) for head in rows[0][1]]
     for name in columns:
         if name not in names:
             raise ValueError(f"{name} of {problem.id} must be a column of {path.name}, got {names}")

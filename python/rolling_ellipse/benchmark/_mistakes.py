@@ -1,7 +1,7 @@
 """Mistakes of convention and of output that a simulator's states reveal, in words.
 
-A mistake is named if undoing it leaves a twentieth of the error, or less. Errors are relative to
-scale and condition number: thus a simulator's own errors stay small compared with its mistakes.
+A mistake is reported if correcting it leaves at most a twentieth of the error. Errors are relative
+to scale and condition number, so that numerical errors are small compared with mistakes.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from ..geometry import support
 from ._problem import STATE, Problem
 from ._results import Rows
 
-_LEFT = 0.05  # largest share of an error left once its mistake is undone
+_LEFT = 0.05  # largest share of an error that may remain once a mistake is corrected
 _LEAST = 0.02  # smallest error of a mistaken variable
 _LEAST_SHIFT = 1e-3  # smallest error of rows shifted in time, perhaps by only one row
-_FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped
+_FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped [rad]
 _SHIFTS = {1: "one", 2: "two", 3: "three"}
 _DEGREE = math.pi / 180
 _LENGTHS = {0.01: "centimetres", 0.001: "millimetres"}
@@ -40,10 +40,10 @@ class _Known(NamedTuple):
 
 
 def mistakes(one: Problem, mine: Rows, rows: Any, places: Any) -> list[str]:
-    """Return the mistakes, relative to the motion by the law of restitution that shows one.
+    """Return the mistakes, relative to the nearest motion of a law of restitution that reveals any.
 
-    `places` are the indices of given times in the rows of the result, `rows` in those of the
-    problem.
+    `places` are the indices of the compared times in the rows of the result, `rows` are those in
+    the rows of the problem.
     """
     if len(mine.t) < 2 or not rows.size:
         return []
@@ -51,9 +51,9 @@ def mistakes(one: Problem, mine: Rows, rows: Any, places: Any) -> list[str]:
     motions = [one.states[rows], *(states[rows] for states in one.laws.values())]
     errors = [_largest((mine.states[places] - states) / units) for states in motions]
     for k in np.argsort(errors, kind="stable"):
-        said = list(_named(one, mine, _Known(motions[k], units, places)))
-        if said or errors[k] < _LEAST:
-            return said
+        remarks = list(_named(one, mine, _Known(motions[k], units, places)))
+        if remarks or errors[k] < _LEAST:
+            return remarks
     return []
 
 
@@ -95,7 +95,7 @@ def _other_times(mine: Rows, known: _Known) -> str:
 
 
 def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool:
-    """Return whether the states at other indices, where they exist, are much closer."""
+    """Return whether the states at other indices, as far as these exist, are much closer."""
     there = (places >= 0) & (places < len(states))
     right, units = known.states[there], known.units[there]
     now = _largest((mine.states[known.places[there]] - right) / units)
@@ -104,9 +104,9 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
 
 
 def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
-    """Return what the values of a variable look like; zeros look the same in any unit.
+    """Return what the values of a variable look like, or "" if the mistake is unknown.
 
-    `height` is the height of the centre of a body on the ground.
+    Zeros are the same in any unit. `height` is that of the centre of a body on the ground.
     """
     name, right, units = STATE[k], known.states[:, k], known.units[:, k]
     error, size = _largest((values - right) / units), _largest(right / units)

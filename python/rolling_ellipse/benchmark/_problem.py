@@ -77,28 +77,28 @@ class Problem(FieldsOnly):
         "rolling-resistance", "slope", "spin" (a start whose spin is not that of rolling),
         "stiction" (a contact that does not slip).
     scored : bool
-        False for a problem for display only.
+        False if the problem is for display only.
     scene : Scene
         Body, ground and start.
     t_end, horizon : float
-        End, and time before which states are scored [s]: from the horizon on, a 0.1 % error of the
-        inputs causes an error of the state as large as the motion.
+        End, and time before which states are scored [s]: after the horizon, a 0.1 % error of the
+        inputs causes an error of the state as large as the motion itself.
     answer : dict
-        What the question asks: whether the body passes over its tip (``"over"``); values of the
-        last state (``"last"``) or of all (``"always"``); kinds of events in order (``"events"``);
-        for bounces that come to an end, the first ones and the time of that end (``"end"``); for a
-        body that comes to rest, how often it swings from one side to the other
-        (``"half_swings"``); or the laws of impact that it may follow (``"law"``).
+        What the question asks for: whether the body passes over its tip (``"over"``); values of the
+        last state (``"last"``) or of all states (``"always"``); kinds of events in order
+        (``"events"``); for bounces that die out, the first ones and the time of their end
+        (``"end"``); for a body that comes to rest, the number of swings from one side to the other
+        (``"half_swings"``); or the laws of impact that a simulator may follow (``"law"``).
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
-        Given times [s]; their condition numbers (change of the state, in its scales, per relative
-        change of all inputs except mass and inertia), and the forces on the body [N].
+        Tabulated times [s]; condition numbers there (change of the state, in its scales, per
+        relative change of all inputs except mass and inertia), and the forces on the body [N].
     states : ndarray, shape (n, 6)
-        States at the given times.
+        States at these times.
     events : tuple of KnownEvent
     laws : dict of ndarray, shape (n, 6)
-        States at the given times by other laws of restitution.
+        States at these times according to other laws of restitution.
 
     Examples
     --------
@@ -146,7 +146,7 @@ class Problem(FieldsOnly):
         Parameters
         ----------
         t : float or array_like, shape (n,)
-            Times from 0 to `t_end` [s]. At the time of an event: just after it.
+            Times from 0 to `t_end` [s]; at the time of an event, the state is that just after it.
 
         Returns
         -------
@@ -164,7 +164,7 @@ class Problem(FieldsOnly):
         return states if np.ndim(t) else states[0]
 
     def ode(self, xp: Any = np) -> Ode:
-        """Return the first arc as differential equations with events.
+        """Return the first arc of the motion as differential equations with events.
 
         Parameters
         ----------
@@ -174,7 +174,7 @@ class Problem(FieldsOnly):
         Raises
         ------
         ValueError
-            If the problem has rolling resistance: its equations jump where the rotation turns.
+            If the problem has rolling resistance: the equations jump where the rotation reverses.
 
         Examples
         --------
@@ -193,7 +193,7 @@ class Problem(FieldsOnly):
         Parameters
         ----------
         index : {1, 2, 3, "ggl"}
-            Index, or the stabilised form of index 2; or the name of a form, as in `Dae`.
+            Index, or "ggl" for the stabilised form of index 2; or the name of a form, as in `Dae`.
 
         Raises
         ------
@@ -222,7 +222,8 @@ class Problem(FieldsOnly):
 class Gradient:
     """The known derivative of a state with respect to one argument of the scene.
 
-    The other arguments stay as given: on the ground, z, x_dot and z_dot follow from rolling.
+    The other arguments are constant, except that on the ground z, x_dot and z_dot follow from
+    rolling.
 
     Attributes
     ----------
@@ -248,7 +249,7 @@ class Gradient:
     value: FloatArray
 
     def error(self, value: Any) -> float:
-        """Return the relative error of a derivative, with both values scaled like the states.
+        """Return the relative error of a derivative, in the scales of the states.
 
         Parameters
         ----------
@@ -332,8 +333,8 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
     Parameters
     ----------
     tags : str or iterable of str, optional
-        Abilities of a simulator, or one text with commas; problems that need others are left out.
-        Default: all.
+        Abilities of a simulator, as names or one string with commas; problems that need other
+        abilities are left out. Default: all abilities.
 
     Raises
     ------
@@ -356,7 +357,7 @@ def problems(tags: str | Iterable[str] | None = None) -> list[Problem]:
 def scored_ones(
     problems: str | Problem | Iterable[str | Problem] | None, name: str = "problems"
 ) -> list[Problem]:
-    """Return scored problems, given as one or more ids or problems; by default all."""
+    """Return the scored problems given by one or more ids or problems, or all by default."""
     names = tuple(name for name, data in _read().items() if data["scored"])
     if problems is None:
         problems = names

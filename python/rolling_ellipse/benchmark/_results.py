@@ -1,4 +1,4 @@
-"""Results of a simulator, and the rows of them that can be scored."""
+"""Results of a simulator, and those of their rows that can be scored."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class Result:
     Attributes
     ----------
     states : array_like, shape (n, 6)
-        x, z, theta, x_dot, z_dot, omega; theta counts turns (unwrapped). A row with a number that
-        is not finite fails the problem.
+        x, z, theta, x_dot, z_dot, omega; theta is not wrapped. The problem is failed if a number is
+        not finite.
     t : array_like, shape (n,), optional
         Increasing times [s]; default: the requested times. Only rows from 0 to the end count.
     events : iterable of (kind, t), optional
-        Events with finite times, kinds as names of `EventKind`. If missing, events are read off the
-        states.
+        Events with finite times; kinds are names of `EventKind`. If missing, events are detected in
+        the states.
     normal_force, friction_force : array_like, shape (n,), optional
-        Forces of the ground on the body [N]; NaN where there is none.
+        Forces of the ground on the body [N]; NaN where they are unknown.
     note : str
         A remark on the result, for tables.
 
@@ -55,8 +55,8 @@ class Result:
 class Rows:
     """The rows of a result that are finite and within the time of the problem.
 
-    Forces that are not given are NaN. Two texts state which given times are missing, and the first
-    number that is not finite.
+    Missing forces are NaN. `missing` states how many tabulated times are missing, and `not_finite`
+    the first number that is not finite.
     """
 
     t: FloatArray
@@ -75,8 +75,8 @@ def checked(problem: Problem, mine: Any, times: FloatArray) -> Rows:
     Raises
     ------
     TypeError, ValueError
-        If its arrays are not numbers or have wrong shapes, times do not increase, or an event is of
-        an unknown kind or has no finite time. The message names the problem and the argument.
+        If its arrays are not numbers or have wrong shapes, times do not increase, or an event has
+        an unknown kind or no finite time. The message names the problem and the argument.
     """
     result = mine if isinstance(mine, Result) else Result(mine)
     states = _states(problem, result.states)
@@ -124,7 +124,7 @@ def _times(problem: Problem, given: Any, default: FloatArray, count: int) -> Flo
 
 
 def _column(problem: Problem, name: str, values: Any, count: int) -> FloatArray:
-    """Return numbers, one for each row; NaN if none are given."""
+    """Return one number for each row, or NaN if there are no values."""
     column = np.full(count, np.nan) if values is None else array(f"{name} of {problem.id}", values)
     if column.shape != (count,):
         raise ValueError(
@@ -135,13 +135,13 @@ def _column(problem: Problem, name: str, values: Any, count: int) -> FloatArray:
 
 
 def _not_finite(t: FloatArray, within: Any, columns: dict[str, FloatArray]) -> str:
-    """Return where the first number that is not finite is, and how many rows have one."""
+    """Return the place of the first number that is not finite, and how many more rows have one."""
     bad = {name: within & ~np.isfinite(values) for name, values in columns.items()}
     rows = np.nonzero(np.any(list(bad.values()), axis=0))[0]
     if not rows.size:
         return ""
     name = next(name for name, wrong in bad.items() if wrong[rows[0]])
-    more = f", and {rows.size - 1} rows more have such numbers" if rows.size > 1 else ""
+    more = f", and {rows.size - 1} more rows have such numbers" if rows.size > 1 else ""
     value, then = columns[name][rows[0]], t[rows[0]]
     return f"{name} is {value!s} in row {rows[0]} (t = {then:.6g} s){more}"
 

@@ -1,4 +1,4 @@
-"""Scoring of a simulator that is called, and of existing results."""
+"""Scores of a simulator that is run on the problems, or of existing results."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def run(
     mine : callable
         ``mine(problem, times, setting)`` returns states of shape (n, 6) at the times, or a
         `Result`. It raises NotImplementedError for a problem that it does not support. The setting
-        comes from `ladder`: a step, a tolerance, or None for the simulator's default.
+        is one of `ladder`: a step, a tolerance, or None for the simulator's default.
     problems : id, Problem or iterable of them, optional
-        Default: all scored ones.
+        The problems; default: all scored problems.
     tags : str or iterable of str, optional
-        Abilities of the simulator, as in `Problem`: "non-round,stiction"; problems that need others
-        are "not supported".
+        Abilities of the simulator, as in `Problem`, such as "non-round,stiction"; problems that
+        need other abilities count as "not supported".
     ladder : iterable of float
         Settings, such as steps [s], from coarse to fine. Default: only None.
     tolerance : float
@@ -112,8 +112,8 @@ def score(
     Parameters
     ----------
     results : mapping or path
-        Results by problem id, or the folder of their files ``<id>.csv``. A problem without a result
-        is "not supported".
+        Results by problem id, or a folder with their files ``<id>.csv``. A problem without a result
+        counts as "not supported".
     problems, tags, tolerance
         As in `run`.
 

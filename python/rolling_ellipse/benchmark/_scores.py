@@ -1,4 +1,4 @@
-"""Scores of a simulator: the answer, errors and lost energy for each problem; and their table."""
+"""Scores of a simulator: the answer, errors and lost energy for each problem, and a table."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ._results import Rows
 if TYPE_CHECKING:
     from .._pictures.benchmark import ScoresChart
 
-TOLERANCE = 1e-3  # error over condition: as if the inputs were known to 0.1 %
+TOLERANCE = 1e-3  # error over condition number: as if the inputs were known to 0.1 %
 _HEAD = ("problem", "setting", "answer", "error", "digits", "over condition", "passed", "why")
 RIGHT, WRONG, UNSUPPORTED, FAILED = "right", "wrong", "not supported", "failed"
 
@@ -39,29 +39,29 @@ class Score:
     setting : float or None
         Setting of the ladder.
     answer : str
-        "right", "wrong", "not supported", or "failed": no rows, none at the end or at the given
-        times, or rows that are not finite.
+        "right", "wrong", "not supported", or "failed": there are no rows, none at the end or at the
+        tabulated times, or some that are not finite.
     passed : bool
-        Whether the answer is right, no given time is missing and `over_condition` is at most the
-        tolerance.
+        Whether the answer is right, no tabulated time is missing and `over_condition` is at most
+        the tolerance.
     reason : str
-        Why an answer is not right, or rows are missing.
+        Why the answer is not right, or which rows are missing.
     errors : ndarray, shape (6,)
-        Largest error of each variable over its scale, at the given times before the horizon.
+        Largest error of each variable over its scale, at the tabulated times before the horizon.
     error, over_condition : float
-        Largest error, and largest error over condition number.
+        Largest error, and largest ratio of error to condition number.
     events : dict
-        ``"missed"`` and ``"invented"`` count events by kind; ``"times"`` has the largest error of
-        time by kind [s].
+        ``"missed"`` and ``"invented"`` count events by kind; ``"times"`` has the largest error in
+        time for each kind [s].
     energy_gained, energy_lost : float
         Largest excess and deficit of energy relative to the exact motion, divided by m g L.
     penetration, hop, slip : float
-        Deepest overlap with the ground, and largest distance from it while the exact body touches
-        it, both divided by L; largest slip while the exact body rolls, divided by sqrt(g L).
+        Deepest overlap with the ground, and largest gap while the exact body touches the ground,
+        both divided by L; largest slip while the exact body rolls, divided by sqrt(g L).
     cone_excess, normal_force_error, friction_force_error : float
-        For forces in the result, divided by m g: largest excess of abs(F) over friction times N and
-        of -N over 0, in all rows (for infinite friction only of -N); largest errors at the given
-        times before the horizon. NaN without forces.
+        For forces in the result, divided by m g: largest excess of abs(F) over friction times N, or
+        of -N over 0, in all rows (for infinite friction only that of -N); largest errors of N and F
+        at the tabulated times before the horizon. NaN without forces.
     tolerance : float
         Largest `over_condition` that passes.
 
@@ -132,15 +132,15 @@ class Scores(tuple[Score, ...]):
 
     @property
     def wrong(self) -> list[str]:
-        """Ids of problems with a wrong answer or none, at the last setting of each."""
+        """Ids of problems whose answer at their last setting is wrong or failed."""
         last = {score.problem: score for score in self}
         return [name for name, score in last.items() if score.answer in (WRONG, FAILED)]
 
     def order(self, problem: str | Problem) -> tuple[float, str]:
         """Return the fitted order of the error of a problem, and whether smaller settings help.
 
-        The order is the slope of log error over log setting, NaN for fewer than two settings. The
-        second is "yes", "plateau at <error>" or "worse".
+        The order is the slope of log error over log setting. The second value is "yes", "plateau at
+        <error>" or "worse". For fewer than two settings with an error, they are NaN and "".
 
         Raises
         ------
@@ -182,14 +182,14 @@ class Scores(tuple[Score, ...]):
         """
         last = list({score.problem: score for score in self}.values())
         count = Counter(score.answer for score in last)
-        said = f"{count[RIGHT]} of {len(last)} answers are right"
+        answers = f"{count[RIGHT]} of {len(last)} answers are right"
         if self.wrong:
-            said += f"; wrong: {', '.join(self.wrong)}"
+            answers += f"; wrong: {', '.join(self.wrong)}"
         if count[UNSUPPORTED]:
-            said += f"; not supported: {count[UNSUPPORTED]}"
+            answers += f"; not supported: {count[UNSUPPORTED]}"
         known = [score for score in last if math.isfinite(score.error)]
         if not known:
-            return f"{said}. No state can be compared."
+            return f"{answers}. No state can be compared."
         worst = max(known, key=lambda score: score.over_condition)
         passed = sum(score.passed for score in last)
         exact = f"{passed} pass; the largest error over condition is {worst.over_condition:.1e}"
@@ -198,14 +198,14 @@ class Scores(tuple[Score, ...]):
         words = {"yes": "better", "plateau": "no better", "worse": "worse"}
         helped = ", ".join(f"{n} become {words[name]}" for name, n in trends.items())
         ladder = f" With smaller settings {helped}." if helped else " One setting shows no trend."
-        return f"{said}. {exact}, in {worst.problem}.{ladder}"
+        return f"{answers}. {exact}, in {worst.problem}.{ladder}"
 
     def plot(self, path: Any = None, *, ax: Any = None, figsize: Any = None) -> ScoresChart:
         """Draw error over condition number, one row per problem, and return the artists.
 
-        Marks of several settings are joined, from pale to dark. The column on the right has the
-        digits of the last one, or its answer. Errors below 1e-17 and above 1000 are drawn at these
-        limits.
+        Marks of several settings are joined by a line, from pale to dark. The column on the right
+        shows the digits at the last setting or, if its answer is not right, this answer. Errors
+        below 1e-17 and above 1000 are drawn at these limits.
 
         Parameters
         ----------
@@ -279,18 +279,18 @@ def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) ->
     over = (answer.errors.max(axis=1) / one.condition[rows]).max() if rows.size else math.nan
     ends = f"ends at {mine.t[-1]:.6g} s" if mine.t[-1] < (1 - 1e-9) * one.t_end else ""
     failed = bool(ends or mine.not_finite or not rows.size)
-    said = [ends, mine.not_finite, *answer.reasons, mine.missing, mine.note]
+    reasons = [ends, mine.not_finite, *answer.reasons, mine.missing, mine.note]
     return Score(
         one.id, setting, FAILED if failed else RIGHT if answer.right else WRONG,
         not failed and answer.right and not mine.missing and bool(over <= tolerance),
-        "; ".join(text for text in said if text), errors, float(over), answer.events,
+        "; ".join(text for text in reasons if text), errors, float(over), answer.events,
         **_losses(one, mine.states, one.trajectory.sol(mine.t)),
         **_forces(one, mine, rows, places), tolerance=tolerance,
     )  # fmt: skip
 
 
 def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, float]:
-    """Return energies gained and lost, penetration, hop and slip of rows against exact samples."""
+    """Return energy gained and lost, penetration, hop and slip of rows against exact samples."""
     scene, length = one.scene, float(one.scales[0])
     mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
     unit = scene.mass * scene.gravity * length

@@ -1,6 +1,6 @@
-"""A course of ten sheets, docs/course, with numbers of its own for each student, and marks.
+"""A course of ten sheets (docs/course), with different numbers for each student, and its marks.
 
-The package computes the right answers, and those of usual mistakes by making the mistake.
+The package computes the right answers, and also those that result from common mistakes.
 
 Examples
 --------

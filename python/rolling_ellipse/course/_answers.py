@@ -1,4 +1,4 @@
-"""The right answers to the tasks, by the rooms before."""
+"""The right answers to the tasks, computed by the rest of the package."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ Formula = Callable[[Scene, dict[str, Any], str], Any]
 def answer(
     of: Task, changes: dict[str, float] | None = None, formula: Formula | None = None
 ) -> float:
-    """Return the answer to a task, with changed data or by another formula if given."""
+    """Return the answer to a task, optionally with changed data or by another formula."""
     data, (kind, _, name) = of.data | (changes or {}), of.source.partition(".")
     return float((formula or _FORMULAS[kind])(scene_of(data), data | {"seed": of.seed}, name))
 
 
 def runs(s: Scene, d: dict[str, Any], name: str, rates: Callable[[float, Any], Any]) -> float:
-    """Return theta after classical Runge-Kutta steps, or the order that 1, 2 and 4 parts show."""
+    """Return theta by the classical Runge-Kutta method, or the order that halved steps show."""
 
     def end(parts: int) -> float:
         y, step = np.array([s.theta, s.omega]), d["step"] / parts
@@ -77,17 +77,18 @@ def _impacts(s: Scene, d: dict[str, Any], name: str) -> float:
 
 @lru_cache(512)
 def _error(seed: int | None, measured: str | None, a: float, b: float, k2: float) -> float:
-    """Return the least root mean square error by Stronge's law; `measured` names the file used."""
+    """Return the least rms error of a fit by Stronge's law; `measured` names the file, if any."""
     series: Any = measured_impacts(seed)
     return impacts.fit(*series, a=a, b=b, gyration2=k2, minimise="rms").rms_error
 
 
 @lru_cache(512)
 def fitted(seed: int | None, doubled: bool = False) -> tuple[dict[str, float], dict[str, float]]:
-    """Return what fits the film best, with chi^2 per degree of freedom, and standard errors.
+    """Return the best fit to the film, with chi^2 per degree of freedom, and standard errors.
 
-    With k^2 twice too large, the start has less friction, with which the body slides throughout the
-    impact: with more, the contact may stick and the minimum be worse.
+    If k^2 is twice too large (`doubled`), the fit starts from half the friction, for which the body
+    slides throughout the impact. With more friction the contact may stick, and the fit may end in a
+    worse minimum.
     """
     from scipy.optimize import least_squares
 

@@ -1,4 +1,4 @@
-"""Marks for answers: right, or the mistakes that explain them."""
+"""Marks for answers: whether they are right, or which mistakes explain them."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ from ._answers import answer, fitted
 from ._mistakes import usual
 from ._tasks import DATA, FILE, NUMBERS, checked, numbered, sheet_of
 
-_ROUNDING = 1e-4  # relative; rounding the fourth digit changes at most 5e-4
-_MOST = 5e-3  # largest tolerance, and largest miss beyond it that counts as nearly right; relative
-_NOTHING = 1e-9  # tolerance where a mistake leads to 0
-_STEP = 1e-6  # relative step of the differences for the condition
-_BY_HAND = 3  # tolerances within which an answer from the film is a good estimate
+_ROUNDING = 1e-4  # relative error of the data; rounding to four digits causes at most 5e-4
+_MOST = 5e-3  # relative: largest tolerance, and largest excess that counts as nearly right
+_NOTHING = 1e-9  # magnitude assumed for an answer of 0
+_STEP = 1e-6  # relative step of the finite differences for the condition
+_BY_HAND = 3  # number of tolerances within which an answer from the film is a good estimate
 
 
 @dataclass(frozen=True)
 class Mark:
-    """The mark of an answer in words; as a truth value, whether the answer is right.
+    """The mark of an answer, with a sentence; its truth value is whether the answer is right.
 
-    The mistake is "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (forgotten
+    The mistake is "none", "sign", "degrees", "inertia" (k^2 twice too large), "friction" (neglected
     in a blow or an impact), "angle" (theta = 0), "small" (formula for small angles), "torque"
-    (I_C omega_dot about the contact), "freedom" (chi^2 by the number of data), "task 4.1" (its
-    answer), "by hand" (an estimate), "per mille" (nearly right) or "other"; "sign and inertia" if
-    both were made, "angle or task 4.1" if either explains it. `points` are all points of the task,
-    or half of them, rounded down, if one mistake other than "task 4.1" and "other" explains it.
+    (I_C omega_dot about the contact), "freedom" (chi^2 divided by the number of data), "task 4.1"
+    (the answer to that task), "by hand" (an estimate), "per mille" (nearly right) or "other". It is
+    "sign and inertia" if both mistakes were made, and "angle or task 4.1" if either explains the
+    answer. `points` are all points of the task if the answer is right, and half of them, rounded
+    down, if a single mistake other than "task 4.1" and "other" explains it.
 
     Examples
     --------
@@ -41,9 +42,9 @@ class Mark:
     >>> mark.right, mark.mistake, mark.points
     (True, 'none', 2)
     >>> print(rl.course.mark("3.2", 1.91).sentence)
-    The sign is wrong: mind which way x, z and theta (clockwise) grow. Wrong moment of
-    inertia: k^2 is twice too large. (a^2 + b^2)/4 belongs to a uniform elliptic plate
-    or cylinder.
+    The sign is wrong: check in which directions x, z and theta (clockwise) increase.
+    Wrong moment of inertia: k^2 is twice too large. (a^2 + b^2)/4 belongs to a uniform
+    elliptic plate or cylinder.
     """
 
     task: str
@@ -57,7 +58,7 @@ class Mark:
 
 
 class Key(NamedTuple):
-    """Marks of all numbers: of those below the first end, between two ends, ..., above the last."""
+    """The marks of all numbers: below the first end, between consecutive ends, above the last."""
 
     ends: list[float]
     marks: list[Mark]
@@ -66,19 +67,20 @@ class Key(NamedTuple):
 def mark(task: str, answer: float, *, seed: int | None = None) -> Mark:
     """Return whether an answer is right, or which mistake explains it.
 
-    Answers are in SI units and radians. One is right within half a unit of its fourth digit plus
-    1e-4 of its condition, the root sum of squares of its changes per relative change of the data;
-    at most 0.5 %, which holds for the answers from impacts. Those from the film are right within
-    twice their standard error.
+    Answers are in SI units and radians. The tolerance is half a unit of the fourth digit plus a
+    relative error of 1e-4 times the condition number: the root sum of squares of the relative
+    changes of the answer per relative change of each datum. It is at most 0.5 %, which is the
+    tolerance of answers from impacts. Answers from the film are right within twice their standard
+    error.
 
     Parameters
     ----------
     task : str
         Number of the task, such as "3.2".
     answer : float
-        What the student found.
+        The student's answer.
     seed : int, optional
-        That of the student's sheets; None: the printed numbers.
+        Seed of the student's sheets; None means the printed numbers.
 
     Raises
     ------
@@ -86,7 +88,7 @@ def mark(task: str, answer: float, *, seed: int | None = None) -> Mark:
         If there is no such task, the answer is not finite, the seed is out of range, or the table
         of impacts lacks a column or has no answer.
     TypeError
-        If the answer is not a number, or the seed no whole number.
+        If the answer is not a number, or the seed is not a whole number.
     ImportError
         If SciPy is not installed (sheet 10).
 
@@ -140,7 +142,7 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
         words = [[says.get(n, f"This is the answer to {n}.") for n in names] for names in ways]
         sentence = " Or: ".join(map(" ".join, words)).format(within=1e2 * allowed / abs(right))
         if task[0] == "8":
-            sentence += f" ({'Made' if measured is None else 'Measured'} impacts.)"
+            sentence += f" ({'Synthetic' if measured is None else 'Measured'} impacts.)"
         half = any(len(names) == 1 and names[0] in says and names != ("other",) for names in ways)
         points = of.points if ways == [("none",)] else of.points // 2 * half
         name = " or ".join(" and ".join(names) for names in ways)
@@ -153,9 +155,10 @@ def _key(task: str, seed: int | None, measured: str | None) -> Key:
 def _known(
     task: str, seed: int | None, measured: str | None
 ) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
-    """Return the relative tolerance before rounding, and answers with the mistakes behind them.
+    """Return the relative tolerance without rounding, and answers with their mistakes.
 
-    The right answer comes first, then those of mistakes, of pairs of them, and of other tasks.
+    The right answer comes first, then those that follow from mistakes and from pairs of mistakes,
+    and those to other tasks.
     """
     of = numbered(seed)[task]
     right = answer(of)
@@ -184,7 +187,7 @@ def _known(
 
 
 def _allowed(value: float, share: float) -> float:
-    """Return how far an answer may be off: half a unit of its fourth digit, plus a share of it."""
+    """Return the tolerance of an answer: half a unit of its fourth digit, plus a share of it."""
     size = abs(value) or _NOTHING
     digit = 10.0 ** (math.floor(math.log10(size)) - 3)
     return min(digit / 2 + share * size, max(share, _MOST) * size)

@@ -23,11 +23,11 @@ class Mistake(NamedTuple):
 
 
 _BLOWS = ("5.1", "5.2", "5.3", "5.4", "7.4", "8.6")  # blows and impacts with friction
-_RESTS = ("2.2", "2.4", "3.5")  # releases, from which nothing moves at theta = 0
+_RESTS = ("2.2", "2.4", "3.5")  # releases from rest: at theta = 0 the body would not move
 
 
 def usual(of: Task) -> list[Mistake]:
-    """Return the mistakes that a task allows, each by wrong data, a formula, or a factor."""
+    """Return the mistakes that are possible in a task, as wrong data, a formula, or a factor."""
     number, data, radian = of.number, of.data, 180 / math.pi
     a, b, mass = (data.get(name, 1.0) for name in ("a", "b", "mass"))
     angles = {name: radian * v for name, v in data.items() if name in ("theta", "slope")}
@@ -85,7 +85,7 @@ def _torque(s: Scene, d: dict[str, Any], name: str) -> float:
 
 
 def _small(s: Scene, d: dict[str, Any], name: str) -> float:
-    """Return the period of small rocking, or the time of its half swings until the couple holds."""
+    """Return the period of small rocking, or the time until rolling resistance holds the body."""
     half = math.pi / float(thresholds(s)["rocking_rate"])
     held = s.rolling_resistance * s.b / (s.a**2 - s.b**2)  # largest angle of rest
     return half * (2 if name == "period" else math.ceil((abs(s.theta) - held) / (2 * held)))

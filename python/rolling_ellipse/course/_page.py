@@ -1,4 +1,4 @@
-"""A sheet as a page to print, which marks answers in the browser; formulas are pictures."""
+"""A sheet as a page to print, which also marks answers in the browser; formulas are pictures."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from typing import Any
 from ._marks import key
 from ._tasks import DATA
 
-_SIZE = 10.0  # of the letters of a formula, in its own units
+_SIZE = 10.0  # font size of a formula, in units of its picture
 _SPELLED = (  # TeX as matplotlib needs it
     (r"\\tfrac", r"\\frac"), (r"\\frac(\w)", r"\\frac{\1}"), (r"(\\frac{\w})(\w)", r"\1{\2}"),
     (r"\\mathrm (\w)", r"\\mathrm{\1}"), (r"\\([lg])e\b", r"\\\1eq"), (r"\\Big\b|\n", " "),
 )  # fmt: skip
-_ASIDE = re.compile(  # what has a syntax of its own
+_ASIDE = re.compile(  # parts with a syntax of their own
     r"^```\w*\n(?P<pre>.*?)^```$|`(?P<code>[^`]+)`|!\[(?P<alt>.*?)\]\((?P<name>.*?)\)|"
     r"\$\$(?P<display>.+?)\$\$|\$(?P<inline>.+?)\$",
     re.DOTALL | re.MULTILINE,
 )
-_MARKUP = (  # Markdown in HTML; links lead to other pages
+_MARKUP = (  # Markdown and its HTML; links would lead to other pages and become plain text
     (r"\*\*(.+?)\*\*", r"<strong>\1</strong>"), (r"\*(.+?)\*", r"<em>\1</em>"),
     (r"\[([^\]]+)\]\([^)]*\)", r"\1"), (r"\\$", "<br>"), (r"^# (.*?)$", r"<h1>\1</h1>"),
     (r"^## (.*?)$", r"<h2>\1</h2>"), (r"^\|( --- \|)+\n|^\|(---\|)+\n", ""), (r" \| ", "<td>"),
@@ -51,7 +51,7 @@ def page(markdown: str, seed: int | None, pictures: dict[str, bytes]) -> str:
 
 
 def _marks(number: str, seed: int | None) -> dict[str, Any]:
-    """Return where the mark changes, and the marks between, each stored once."""
+    """Return the numbers at which the mark changes, and the marks between, each stored once."""
     ends, marks = key(number, seed)
     distinct = list(dict.fromkeys(marks))
     shown = [[mark.points, mark.sentence, mark.mistake] for mark in distinct]
@@ -59,7 +59,7 @@ def _marks(number: str, seed: int | None) -> dict[str, Any]:
 
 
 def _hidden(key: dict[str, Any], salt: bytes) -> str:
-    """Return the key as text that nobody reads at a glance: it is no secret."""
+    """Return the key as text that cannot be read at a glance; it is not a secret."""
     mixed = bytes(a ^ b for a, b in zip(json.dumps(key).encode(), cycle(salt), strict=False))
     return json.dumps([base64.b64encode(text).decode() for text in (salt, mixed)])
 

@@ -1,4 +1,4 @@
-"""The sheets, with the numbers of a seed."""
+"""The sheets of the course, with the numbers of a seed."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .._verbs.examples import packed
 from ._tasks import DATA, Task, checked, film, measured_impacts, numbered, sheet_of
 
 _TASKS = re.compile(r"(<!-- tasks ([\d. ]+) -->\n).*?(<!-- end of tasks -->\n)", re.DOTALL)
-_OWN = "*Numbers of seed {}. Pictures and examples in the text keep numbers of their own.*"
-_TABLES = {  # heads of the numbers that all tasks of a sheet share
+_OWN = "*Numbers of seed {}. Pictures and examples in the text have their own numbers.*"
+_TABLES = {  # column heads of the table that all tasks of a sheet share
     "8": ["θ [rad]", "ẋ [m/s]", "ż [m/s]", "ω [rad/s]", "ẋ⁺ [m/s]", "ż⁺ [m/s]", "ω⁺ [rad/s]"],
     "10": ["t [s]", "x [m]", "z [m]", "θ [rad]"],
 }
@@ -26,7 +26,7 @@ _TABLES = {  # heads of the numbers that all tasks of a sheet share
 class Sheet:
     """A sheet of the course: its number, seed, Markdown, and pictures (PNG) by their names.
 
-    ``html`` is a page to print, which also marks answers: the same marks as `mark`, without a
+    ``html`` is a page to print. It also marks answers, with the same marks as `mark` and without a
     network. It needs SciPy for sheet 10.
 
     Examples
@@ -48,16 +48,16 @@ class Sheet:
         return page(self.markdown, self.seed, self.pictures)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the page to a file ``.html``, or the Markdown to ``.md``, with its pictures beside.
+        """Write the page to a file ``.html``, or the Markdown to ``.md``, with pictures beside it.
 
         Raises
         ------
         ValueError
-            If the name ends otherwise.
+            If the name has another suffix.
         TypeError
             If `path` is not a path.
         OSError
-            If a file cannot be written. Each file appears whole or not at all.
+            If a file cannot be written. Each file is written completely or not at all.
 
         Examples
         --------
@@ -80,12 +80,12 @@ def sheet(number: int, *, seed: int | None = None) -> Sheet:
     number : int
         From 1 to 10.
     seed : int, optional
-        As in `tasks`; None: the printed numbers.
+        As in `tasks`; None means the printed numbers.
 
     Raises
     ------
     ValueError, TypeError
-        If there is no such sheet, or as `tasks`.
+        If there is no such sheet, or the seed is invalid, as in `tasks`.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def sheet(number: int, *, seed: int | None = None) -> Sheet:
 
 
 def filled(text: str, seed: int | None) -> str:
-    """Return the text of a sheet with the tasks of a seed between its marks."""
+    """Return the text of a sheet with its blocks of tasks replaced by the tasks of a seed."""
 
     def block(found: re.Match[str]) -> str:
         parts = [_written(numbered(seed)[number]) for number in found[2].split()]
@@ -130,7 +130,7 @@ def _datum(name: str, value: float) -> str:
 
 
 def _table(sheet: str, seed: int | None) -> str:
-    """Return the numbers that all tasks of a sheet share."""
+    """Return the table of numbers that all tasks of a sheet share, or "" if it has none."""
     if not (head := _TABLES.get(sheet, [])):
         return ""
     rows = [*film(seed).values()] if sheet == "10" else np.vstack(measured_impacts(seed))

@@ -28,9 +28,9 @@ class MarkedTable:
     points : dict of int
         Sum of the points of each student.
     mistakes : dict of int
-        How often each mistake was made, "none" and "other" included, the most frequent first.
+        Number of times each mistake was made, including "none" and "other", most frequent first.
     refused : dict of str
-        Why a line of the table has no mark, by its number in the file; the head is line 1.
+        Reason why a line of the table has no mark, by line number in the file; the head is line 1.
 
     Examples
     --------
@@ -53,17 +53,18 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
     Parameters
     ----------
     table : path or file
-        CSV with the columns student, seed, task and answer, between commas, semicolons or tabs,
-        in any order, and with others that are ignored. An empty seed stands for the printed
-        numbers. Decimals may follow a comma. Of several answers to one task the last counts.
+        CSV with the columns student, seed, task and answer in any order, separated by commas,
+        semicolons or tabs; other columns are ignored. An empty seed means the printed numbers. The
+        decimal separator may be a comma. Of several answers to the same task, the last counts.
 
     Raises
     ------
     ValueError
-        If a column is missing. Lines that cannot be marked are reported in `refused`: a seed that
-        is no whole number or not that of the student's lines before, no such task, no number.
+        If a column is missing. Lines that cannot be marked are reported in `refused` instead: the
+        seed is not a whole number or not that of the student's earlier lines, the task does not
+        exist, or the answer is not a number.
     TypeError
-        If `table` is no path and no file.
+        If `table` is neither a path nor a file.
     OSError
         If the file cannot be read.
 
@@ -102,14 +103,14 @@ def mark_table(table: str | os.PathLike[str] | IO[Any]) -> MarkedTable:
         if (first := seeds.setdefault(student, seed)) == seed:
             of[task] = given
         else:
-            refused[reader.line_num] = f"seed must be {first}, as in lines before, got {word}"
+            refused[reader.line_num] = f"seed must be {first}, as in earlier lines, got {word}"
     points = {student: sum(m.points for m in each.values()) for student, each in marks.items()}
     kinds = Counter(m.mistake for each in marks.values() for m in each.values())
     return MarkedTable(marks, points, dict(kinds.most_common()), refused)
 
 
 def number_in(text: str) -> Any:
-    """Return the number of a text, as the page of a sheet reads it, or else the text."""
+    """Return the number in a text, read as on the page of a sheet, or else the text."""
     word = text.replace("−", "-", 1)
     is_number = re.fullmatch(DATA["number"], word, re.ASCII)
     return float(word.replace(",", ".")) if is_number else text

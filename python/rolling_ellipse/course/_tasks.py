@@ -26,15 +26,15 @@ from .._verbs.simulate import simulate
 DATA = json.loads(resources.files(__package__).joinpath("tasks.json").read_text("utf-8"))
 FILE = "ROLLING_ELLIPSE_IMPACTS"
 _KEPT = ("gravity", "slope", "T", "step")  # the same for all seeds
-_SPREAD = 0.06  # numbers differ by at most this share from the printed ones
-_MOST = 2**53  # seeds are exact as numbers of JSON and of spreadsheets
+_SPREAD = 0.06  # maximum relative difference of numbers from the printed ones
+_MOST = 2**53  # maximum seed: larger ones would not be exact in JSON and in spreadsheets
 _EGG: dict[str, Any] = {"a": 0.035, "b": 0.025}  # the body of the film and of the impacts
-_COUNT, _NOISE = 24, (0.05, 0.05, 1.5)  # of impacts; noise of velocities [m/s, m/s, rad/s]
+_COUNT, _NOISE = 24, (0.05, 0.05, 1.5)  # impacts; noise of their velocities [m/s, m/s, rad/s]
 
 
 @dataclass(frozen=True)
 class Task:
-    """A task: number, points, question, unit of the answer, data in SI units, and their seed.
+    """A task: number, points, question, unit of the answer, data in SI units, source and seed.
 
     Examples
     --------
@@ -64,14 +64,14 @@ def tasks(seed: int | None = None) -> tuple[Task, ...]:
     Parameters
     ----------
     seed : int, optional
-        Whole number from 0 to 2^53, such as a student's number: the data differ from the printed
-        ones by up to 6 %, so that each task keeps the kind of its answer. Equal numbers of a sheet
-        stay equal. Sheets 8 and 10 have other impacts and another film instead.
+        Whole number from 0 to 2^53, such as a student's number. The data differ from the printed
+        data by up to 6 %, so that the answer to each task remains of the same kind. Equal numbers
+        on a sheet stay equal. Sheets 8 and 10 have other impacts and another film instead.
 
     Raises
     ------
     ValueError, TypeError
-        If the seed is out of range, or no whole number.
+        If the seed is out of range, or not a whole number.
 
     Examples
     --------
@@ -100,9 +100,9 @@ def scene_of(data: dict[str, float]) -> Scene:
 
 
 def _draws(seed: int, sheet: str) -> Iterator[Random]:
-    """Yield generators for a sheet's numbers, until they keep the kind of the answers.
+    """Yield random generators for the numbers of a sheet, one for each attempt.
 
-    Python promises the same `random()` for the same text in all versions.
+    Python guarantees the same `random()` for the same text in all versions.
     """
     return (Random(f"{seed} {sheet} {attempt}") for attempt in count())
 
@@ -149,14 +149,14 @@ def _slips(motion: Trajectory) -> list[float]:
 
 
 def film(seed: int | None = None) -> dict[str, FloatArray]:
-    """Return the film of sheet 10: t [s], x, z [m] and theta [rad], as `fit_motion` takes them.
+    """Return the film of sheet 10: t [s], x, z [m] and theta [rad], as `fit_motion` expects them.
 
-    It has noise of 0.5 mm and 0.01 rad. Each seed makes another throw.
+    The film has noise of 0.5 mm and 0.01 rad. Each seed gives another throw.
 
     Raises
     ------
     ValueError, TypeError
-        As `tasks`.
+        If the seed is invalid, as in `tasks`.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def film(seed: int | None = None) -> dict[str, FloatArray]:
 
 @lru_cache(1024)
 def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
-    """Return what was thrown, and the film of it."""
+    """Return the scene of the throw, and its film."""
     times = DATA["film"]["t"]
     if seed is None:
         return Scene(**_EGG | DATA["thrown"]), DATA["film"]
@@ -177,7 +177,7 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
         thrown = Scene(**_EGG | _varied(DATA["thrown"], rng))
         motion = simulate(thrown, times)
         first, last = _slips(motion)
-        # one impact, late enough, that keeps over a quarter of the slip
+        # a single impact, late enough, after which more than a quarter of the slip remains
         if len(motion.events) == 1 and last / first > 0.25 and times[7] < motion.events[0].t:
             break
     tracks = {"t": times}
@@ -188,15 +188,15 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
 
 
 def measured_impacts(seed: int | None = None) -> tuple[FloatArray, FloatArray]:
-    """Return the impacts of sheet 8 before, (4, n), and after, (3, n), as `impacts.fit` takes them.
+    """Return the states of sheet 8 before, (4, n), and after its impacts, (3, n).
 
-    They are synthetic; without a seed, the environment variable ROLLING_ELLIPSE_IMPACTS may name a
-    CSV file of measured ones.
+    The arrays have the form that `impacts.fit` expects. The impacts are synthetic; without a seed,
+    the environment variable ROLLING_ELLIPSE_IMPACTS may name a CSV file of measured impacts.
 
     Raises
     ------
     ValueError, TypeError
-        As `tasks`, or if the file is no table of impacts.
+        If the seed is invalid, as in `tasks`, or the file is not a table of impacts.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def measured_impacts(seed: int | None = None) -> tuple[FloatArray, FloatArray]:
 
 @lru_cache(256)
 def _struck(seed: int) -> FloatArray:
-    """Return impacts by Stronge's law with noise, for a body whose k^2 is not a plate's."""
+    """Return noisy impacts by Stronge's law, for a body whose k^2 is not that of a plate."""
     rng = next(_draws(seed, "8"))
     law: dict[str, Any] = _EGG | _varied(DATA["law"], rng)
     ranges = DATA["ranges"]

@@ -12,7 +12,7 @@ function unhidden([salted, mixed]) {
     return JSON.parse(new TextDecoder().decode(plain));
 }
 
-/** The mark of an answer, [points, sentence, mistake], or null if the text is no number. */
+/** The mark of an answer, [points, sentence, mistake], or null if the text is not a number. */
 function markOf(key, task, text) {
     const word = text.trim().replace("\u2212", "-");
     if (!new RegExp(`^(?:${key.number})$`).test(word)) return null;
@@ -22,7 +22,7 @@ function markOf(key, task, text) {
     return marks[which[ends.filter(end => end <= given).length]];
 }
 
-/** Answer to every change of a field. */
+/** Show the marks now and after every change of a field. */
 function start(key) {
     const total = document.querySelector("#points");
     const fields = [...document.querySelectorAll("[data-task]")];
@@ -30,7 +30,7 @@ function start(key) {
         let sum = 0;
         for (const field of fields) {
             const mark = field.value.trim() && markOf(key, field.dataset.task, field.value);
-            const [points, sentence] = mark || [0, mark === null ? "This is no number." : ""];
+            const [points, sentence] = mark || [0, mark === null ? "This is not a number." : ""];
             const shown = field.closest("label").querySelector("output");
             shown.textContent = mark ? `${points} point${points === 1 ? "" : "s"}. ${sentence}` : sentence;
             sum += points;

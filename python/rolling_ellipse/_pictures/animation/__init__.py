@@ -1,4 +1,4 @@
-"""Trajectories as a film with exact timing, for files, windows and notebooks."""
+"""Films of trajectories with exact timing, for files, windows and notebooks."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def animate(
     panel: Literal["phase", "forces", "energy"] | None = None,
     progress: bool | None = None,
 ) -> RollingAnimation:
-    """Make an exactly timed film of one motion or several, for a file, a window or a notebook.
+    """Make an exactly timed film of one or several motions, for a file, a window or a notebook.
 
-    Frame i shows t = i · speed / fps and lasts 1 / fps; the body is where the motion puts it then.
-    The Notes say what a long film, a fast one, and one of several motions show.
+    Frame i shows the motion at t = i · speed / fps and is visible for 1 / fps seconds. The Notes
+    explain how long, fast and several motions are shown.
 
     Parameters
     ----------
@@ -56,22 +56,23 @@ def animate(
         One motion, or several to compare.
     path : path, optional
         File to write: .gif; .html, a page with a player that needs no network; or .mp4 or .webm,
-        which need ffmpeg (the extra rolling_ellipse[video]). Without a path nothing is written: a
-        notebook displays that player, and where matplotlib has windows, `plt.show()` shows the
-        film.
+        which need ffmpeg (the extra rolling_ellipse[video]). Without a path no file is written: a
+        notebook displays the same player, and `plt.show()` shows the film if matplotlib can open
+        windows.
     labels : sequence of str, optional
-        Names of the motions; by default, several are named by what differs among them: method,
-        model, fields of the scene, else 1, 2, 3.
+        Names of the motions. By default, several motions are named after what differs among them
+        (method, model, fields of the scene), otherwise 1, 2, 3.
     t_end : float, optional
         Last time shown [s]; default: the latest end.
     fps : float, optional
         Frames per second, 0.001 to 1000; default: 60 for videos and .html, 50 for .gif and without
         a path. A GIF counts time in 1/100 s, so 100 / fps must be whole and at least 2. The player
-        draws at the screen's rate; its keys step by one frame.
+        draws at the refresh rate of the screen; its keys step by one frame.
     speed : float, optional
-        Seconds of motion per second of film, which then shows all of it; 0.1 is slow motion.
+        Seconds of motion per second of film; 0.1 is slow motion. If it is given, the film shows the
+        whole motion.
     max_frames : int, optional
-        Largest number of frames, at most a million; a longer film is rejected.
+        Maximum number of frames, at most a million; a longer film is rejected.
     width : int
         Width of the picture [pixels], 16 to 16384; the height follows from the content. The player
         fills the width available.
@@ -82,50 +83,52 @@ def animate(
     ax : matplotlib Axes, optional
         Where to draw one motion, instead of `figure`.
     forces : bool
-        Draw normal force and friction; the weight is as long as the longer semi-axis.
+        Draw the normal force and friction as arrows; a force equal to the weight is as long as the
+        longer semi-axis.
     blow : bool
-        Draw the impulse of the scene for the first 1.2 s. The player always does.
+        Draw the impulse of the scene, and each later blow, for 1.2 s of film. The player always
+        does so.
     layout : {"over", "side by side"}
         How the strips of several motions are arranged.
     panel : {"phase", "forces", "energy"}, optional
-        Draw these curves below, with a moving mark. A player has no panel.
+        Curves to draw below the strips, with a moving mark. A player has no panel.
     progress : bool, optional
-        Show the progress of writing (with tqdm where it is installed); default: on a terminal, for
+        Show the progress of writing (with tqdm if it is installed); default: on a terminal, for
         films of more than 400 frames, which take seconds.
 
     Returns
     -------
     RollingAnimation
-        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`; `frame(t, path)`
-        writes one picture of it. Its figure keeps it alive.
+        A matplotlib FuncAnimation. `strips` has its artists, `draw(i)` draws a frame, and
+        `frame(t, path)` writes a frame as a picture. Its figure keeps the animation alive.
 
     Raises
     ------
     ValueError
         If an argument is out of range, there is nothing to show, the motions and their labels
-        differ in number, the film has more frames than `max_frames` or a million, `path` has
-        another suffix, a GIF cannot keep the time, or at this `speed` the body would seem to roll
-        backwards.
+        differ in number, the film has more frames than `max_frames` or a million, `path` has an
+        unknown suffix, a GIF cannot have this frame rate, or the body would seem to roll backwards
+        at this `speed`.
     TypeError
         If an object to show is not a Trajectory, or another argument has the wrong type.
     FileNotFoundError
-        If there is no such folder, or no ffmpeg for a video.
+        If the folder does not exist, or ffmpeg is missing for a video.
     OSError
-        If the file cannot be written; an old file is kept.
+        If the file cannot be written; an existing file is preserved.
 
     Notes
     -----
     A film that would last more than a minute (30 s for a GIF, whose frames are all held in memory)
     shows up to five parts of the motion in real time: start, end and middle, and the first and last
     event between them; captions then count turns ("turn 500 of 1000"). A body that would turn by
-    more than a quarter turn per frame, and seem to roll backwards, is shown in slow motion, as the
-    clock then states.
+    more than a quarter turn per frame, and thus seem to roll backwards, is shown in slow motion;
+    the clock then states the speed.
 
     Several motions are shown in strips, stacked or side by side, with one clock, one scale and the
-    same stretch of ground, so that it is clear which is ahead. The camera stands still if all
-    motions fit into about three turns; else it follows their middle. Motions too far apart for that
-    are each followed in their own strip, and the captions state where they are. A motion that ends
-    before the others stays where it ended, and its caption says so.
+    same stretch of ground, so that it is clear which body is ahead. The camera stands still if all
+    motions fit into about three turns; otherwise it follows their middle. If the bodies are too far
+    apart for that, each is followed in its own strip, and the captions state the positions. A body
+    whose motion ends before the others stays where it is, and its caption says so.
 
     Examples
     --------

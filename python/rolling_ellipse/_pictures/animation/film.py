@@ -1,4 +1,4 @@
-"""The film that `animate` makes."""
+"""The film that `animate` returns."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from .movies import Pace, Pixels, ffmpeg, film_suffix, write_gif, write_video
 from .strip import ROW, Strip, cameras, in_rows
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
-TICKS, FIGURES = 0.03, 0.16  # heights: ruler, over the width; its figures [inch]
+TICKS, FIGURES = 0.03, 0.16  # heights: of the ruler over the width, of its numbers [inch]
 PANEL = 0.36  # height of a panel below the strips, as a share of the width
 _drawing_late = Alone()
-_with_settings = Alone()  # lock of rcParams, which matplotlib's own writers change
+_with_settings = Alone()  # lock for rcParams, which matplotlib's own writers change
 
 
 class RollingAnimation(FuncAnimation):
-    """The film that `animate` makes; a notebook displays it.
+    """The film that `animate` returns; a notebook displays it.
 
     Attributes
     ----------
@@ -51,16 +51,16 @@ class RollingAnimation(FuncAnimation):
     fps, speed : float
         Frames per second, and seconds of motion per second of film.
     strips : tuple of Strip
-        One for each motion, from top to bottom: its `ax`, `motion` (whose sample i is what frame
-        i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
+        One for each motion, from top to bottom, with its `ax`, its `motion` (frame i shows sample
+        i) and the artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
         `centre_trace`, `tip_trace`, `skid_trace`, `arrows`, `names`, `ruler` and `caption`.
     labels : tuple of str
         Names of the motions.
     clock : Text
         The time.
     figure : Figure or SubFigure
-        Where it is drawn; it keeps the animation alive. A film that `animate` wrote as .html is
-        drawn when this or another artist is first used.
+        The figure of the film; it keeps the animation alive. A film that `animate` wrote as .html
+        is drawn when this attribute or an artist is first used.
     """
 
     #: The player as a page and as a fragment of HTML; bound by `_player.film`.
@@ -96,10 +96,10 @@ class RollingAnimation(FuncAnimation):
     if not TYPE_CHECKING:  # with a __getattr__ type checkers would accept every name
 
         def __getattr__(self, name: str) -> Any:
-            """Draw a film that was only written, when one of its artists is first used.
+            """Draw a film that was only written as a page, when one of its artists is first used.
 
-            A page needs no figure. The reference cycles of a figure take long to collect, and a
-            Ctrl-C meanwhile is lost in the callback of a weak reference.
+            A page needs no figure. Collecting the reference cycles of a figure takes long, and a
+            Ctrl-C during that time is lost in the callback of a weak reference.
             """
             with _drawing_late():
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
@@ -111,7 +111,7 @@ class RollingAnimation(FuncAnimation):
             return object.__getattribute__(self, name)
 
     def _make_picture(self, place: Any, width: int, dpi: float) -> None:
-        """Draw the first frame, and become matplotlib's animation of its figure."""
+        """Draw the first frame, and initialize matplotlib's animation of the figure."""
         shape, columns = self.cameras.shape, self.cameras.columns
         if callable(place):
             height = 2 * math.ceil(width * (shape + PANEL * bool(self.panel)) / 2)  # even for video
@@ -119,7 +119,7 @@ class RollingAnimation(FuncAnimation):
             place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
         self._root: Any = place.get_figure(root=True)
-        share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of height
+        share = shape * place.bbox.width / place.bbox.height if self.panel else 1.0  # of the height
         if isinstance(place, Axes):
             place.set_aspect("equal", adjustable="datalim")
             axes = [place]
@@ -146,7 +146,7 @@ class RollingAnimation(FuncAnimation):
         self.figure._rolling_animation = self  # type: ignore[attr-defined]
 
     def __del__(self) -> None:
-        """Do not warn, as matplotlib does, that the animation was never shown."""
+        """Suppress matplotlib's warning that the animation was not shown."""
 
     def _add_panel(self, place: Any, height: float) -> list[Line2D]:
         """Draw curves of the motions below the strips; return the lines that mark the time."""
@@ -168,9 +168,9 @@ class RollingAnimation(FuncAnimation):
         return [ax.axvline(0.0, color=palette_of(ax).ink, lw=1.5)]
 
     def _fit_captions(self) -> None:
-        """Shrink captions to leave room for the clock, to a third at most.
+        """Shrink captions to leave room for the clock, to no less than a third of their size.
 
-        For strips side by side, the clock is above the captions.
+        If strips are side by side, the clock is above the captions.
         """
         self.clock.set_text(self._clock(float(self.t[-1])))
         room = 0.92 * self.strips[0].ax.bbox.width
@@ -213,10 +213,10 @@ class RollingAnimation(FuncAnimation):
         progress: bool | None = None,
         **options: Any,
     ) -> None:
-        """Write a file by its suffix: .gif, .mp4 or .webm (need ffmpeg), .html (a player).
+        """Write the film to a .gif, an .mp4 or .webm (both need ffmpeg), or an .html with a player.
 
         An existing file is replaced only by a complete film. `progress` is as in `animate`.
-        `writer` and `options` are matplotlib's, for use of another writer.
+        `writer` and `options` are those of matplotlib's `Animation.save`, for another writer.
         """
         path, count = file_name("filename", filename), self.t.size
         if progress is None:  # 400 frames take two seconds
@@ -231,7 +231,7 @@ class RollingAnimation(FuncAnimation):
                 options = {"dpi": self.figure.dpi, **options}
                 options["progress_callback"] = lambda i, n: advance(i + 1, n)
                 known = _known(writer)
-                in_place = known == "html" or isinstance(known, HTMLWriter)  # writes a folder, too
+                in_place = known == "html" or isinstance(known, HTMLWriter)  # also writes a folder
                 with _with_settings(), nullcontext(path) if in_place else replacing(path) as new:
                     super().save(new, writer=known, **options)
                 return
@@ -248,7 +248,7 @@ class RollingAnimation(FuncAnimation):
         return int(self._root.bbox.width), int(self._root.bbox.height)
 
     def _pixels(self, frames: Sequence[int], advance: Any = None) -> Iterator[Pixels]:
-        """Yield the pixels of frames in one buffer: static parts are drawn once."""
+        """Yield the pixels of each frame in the same buffer; static parts are drawn once."""
         root, still = self._root, BytesIO()
         seen = [artist for artist in self.draw(frames[0]) if artist.get_visible()]
         for artist in seen:
@@ -271,10 +271,10 @@ class RollingAnimation(FuncAnimation):
         return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
-        """Return the player, or the form that matplotlib's `rcParams["animation.html"]` names.
+        """Return the player's HTML, or what matplotlib's `rcParams["animation.html"]` requests.
 
-        A film that is too long for a player becomes a sentence with the reason; a film with a panel
-        is shown by matplotlib's player of pictures.
+        For a film that is too long for the player, return a sentence with the reason. A film with a
+        panel is shown by matplotlib's player of pictures.
         """
         wanted = rcParams["animation.html"]
         if wanted == "none" and not self.panel:

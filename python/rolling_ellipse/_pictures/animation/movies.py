@@ -39,17 +39,17 @@ FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)
 GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last at least 2/100 s
 # Longest films [s] if the speed is free. All frames of a GIF are in memory at once.
 LONGEST_GIF, LONGEST_VIDEO = 30.0, 60.0
-PARTS = 5  # largest number of parts of a longer one
+PARTS = 5  # maximum number of parts of a longer film
 BACKWARDS = math.pi / 2  # turn per frame [rad] beyond which an ellipse seems to roll backwards
 
 
 def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels) -> None:
-    """Write a GIF with exact delays and one palette for all `colours`: small files."""
+    """Write a GIF with exact delays and one palette for all `colours`, which keeps it small."""
     delay = gif_delay(fps)
     assert delay is not None
-    # maximum coverage keeps the colours of thin lines, and averages those near an area's colour
+    # maximum coverage keeps the colours of thin lines, and merges those near an area's colour
     palette = Image.fromarray(colours).convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE, 1)
-    first, *rest = (  # all are held as palette images: RGB takes three times the memory
+    first, *rest = (  # all frames are held as palette images: RGB takes three times the memory
         Image.fromarray(pixels).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE)
         for pixels in frames
     )
@@ -59,14 +59,14 @@ def write_gif(path: Path, frames: Iterable[Pixels], fps: float, colours: Pixels)
 def write_video(
     path: Path, frames: Iterable[Pixels], fps: float, size: tuple[int, int], name: str
 ) -> None:
-    """Write a video of pictures of a size (width, height) with ffmpeg; errors show its `name`."""
+    """Write frames of `size` (width, height) as a video with ffmpeg; errors show `name`."""
     command = [
         ffmpeg(), "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba",
         "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.17g}", "-i", "-",
         "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p",  # all players support it
         "-c:v", *ENCODERS[path.suffix.lower()], str(path),
     ]  # fmt: skip
-    with TemporaryFile() as said, Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said) as writer:
+    with TemporaryFile() as log, Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=log) as writer:
         assert writer.stdin is not None
         try:
             with suppress(BrokenPipeError):  # ffmpeg has ended and stated why
@@ -79,25 +79,25 @@ def write_video(
             with suppress(BrokenPipeError):
                 writer.stdin.close()
         if writer.wait() != 0:
-            said.seek(0)
-            why = said.read().decode(errors="replace").strip().splitlines()
+            log.seek(0)
+            why = log.read().decode(errors="replace").strip().splitlines()
             code = f"exit code {writer.returncode}"
             raise OSError(f"ffmpeg could not write {name!r}: {why[-1] if why else code}")
 
 
 def gif_delay(fps: float) -> int | None:
-    """Return the delay between frames of a GIF [1/100 s]; None if that is not a whole number.
+    """Return the delay between frames of a GIF [1/100 s], or None if a GIF cannot have it.
 
-    The least delay is 2: viewers slow down shorter ones. The file stores it in two bytes.
+    The delay is a whole number of two bytes, and at least 2, as viewers slow down shorter delays.
     """
     delay = round(100 / fps)
     return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
 
 
 def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -> str:
-    """Return the suffix of a file, which names its format.
+    """Return the suffix of a file, which determines its format.
 
-    The errors of `animate` about the file are raised here, before anything is written.
+    Raise the errors of `animate` about the file before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()
@@ -113,7 +113,7 @@ def film_suffix(path: str | PathLike[str], fps: float, argument: str = "path") -
         delay = min(max(2, round(100 / fps)), 2**16 - 1)
         raise ValueError(
             "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
-            f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
+            f"counted in 1/100 s; got {fps!r}; close to it is 100 / {delay} = {100 / delay:.4g}"
         )
     program = ffmpeg() if suffix in ENCODERS else ""
     if suffix == ".webm":
@@ -160,7 +160,7 @@ def pace(
     path: str | PathLike[str] | None, motions: Sequence[Trajectory], last: float, *,
     fps: float | None, speed: float | None, max_frames: int | None,
 ) -> Pace:  # fmt: skip
-    """Return the frames that show motions up to a `last` time [s], as `animate` documents.
+    """Return the frames that show motions up to the time `last` [s], as documented in `animate`.
 
     Without a path the frame rate is that of a GIF, which every format supports.
     """
@@ -182,14 +182,14 @@ def pace(
     if speed is None and last > longest:
         starts = _parts(motions, last, longest / PARTS)
         parts = [(round(start, decimals), start + longest / PARTS) for start in starts]
-    # 0.58 s · 50 / s is 29, not 28.99…
+    # The factor 1 + 1e-12 makes 0.58 s · 50 / s count as 29, not 28.99…
     counts = [math.floor(1 + (end - start) / step * (1 + 1e-12)) for start, end in parts]
     most = MOST_FRAMES if max_frames is None else max_frames
     most = whole_within("max_frames", most, MOST_FRAMES)
     if sum(counts) > most:
         raise ValueError(
-            f"max_frames must hold the whole film, {sum(counts):.7g} frames at fps = {fps:g} and "
-            f"speed = {chosen:g}, got {most}: show less by t_end, or faster by speed"
+            f"max_frames must be enough for the film, {sum(counts):.7g} at fps = {fps:g} and "
+            f"speed = {chosen:g}, got {most}: reduce t_end or increase speed"
         )
     first = np.repeat(np.cumsum([0, *counts[:-1]]), counts)
     t = np.repeat([start for start, _ in parts], counts)
@@ -205,7 +205,7 @@ def _spin(motion: Trajectory, last: float, fps: float) -> float:
 
 
 def _parts(motions: Sequence[Trajectory], last: float, span: float) -> list[float]:
-    """Return the start times of parts of length `span`: start, end, two events, and middle."""
+    """Return start times of parts of length `span`: at the start, end, two events and middle."""
     events = sorted(each.t - span / 4 for motion in motions for each in motion.events)
     events = [start for start in events if span <= start <= last - 2 * span]
     starts: list[float] = []

@@ -1,4 +1,4 @@
-"""The body of one motion on its ground in the frames of an animation, and where cameras look."""
+"""The body of one motion on the ground in the frames of an animation, and the cameras' views."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ _Ends = tuple[float, float]
 
 @dataclass(frozen=True)
 class Cameras:
-    """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down.
+    """Views of the strips at one scale: left, right, bottom, top [m], with gravity downwards.
 
-    The strips are side by side in `columns`, or stacked if that is 1.
+    The strips are side by side in `columns`, or stacked if there is only one column.
     """
 
     columns: int
@@ -59,10 +59,11 @@ def cameras(
 ) -> Cameras:
     """Return the views of motions sampled at the same frames.
 
-    The camera stands still if all motions fit into about three turns (side by side, fewer). Else it
-    follows the middle between the first and the last body. If these are too far apart, every strip
-    follows its own body. The picture's height, `shape` (None to choose it), and the free heights
-    `head` and `foot` at the top and bottom of each strip are relative to the picture's width.
+    The camera stands still if all motions fit into about three turns (fewer if side by side).
+    Otherwise it follows the middle between the first and the last body or, if these are too far
+    apart, every strip follows its own body. The height of the picture, `shape` (None to choose it),
+    and the free heights `head` and `foot` at the top and bottom of each strip are relative to the
+    width of the picture.
     """
     sizes = [max(motion.scene.a, motion.scene.b) for motion in motions]
     size = max(sizes)
@@ -87,7 +88,7 @@ def cameras(
             (-0.35 * own, float(np.max(motion.z + np.minimum(motion.z, own))) + 0.3 * own)
             for motion, own in zip(motions, sizes, strict=True)
         ]
-    if beside:  # one row as wide as a strip
+    if beside:  # all strips share one window
         depths = [(min(bottom for bottom, _ in depths), max(top for _, top in depths))]
     windows, heights, shape = _framed(
         (left, right), depths, shape and shape * columns, head * columns, foot * columns, beside
@@ -101,7 +102,7 @@ def cameras(
 
 
 def _below(motion: Trajectory) -> FloatArray:
-    """Return the points on the ground below the centre, in the axes of the picture, (n, 2)."""
+    """Return the points on the ground below the centre, in axes of the picture, shape (n, 2)."""
     along = np.column_stack([motion.x, np.zeros_like(motion.x)])
     return np.array(drawing.tilted(motion.scene).transform(along))
 
@@ -109,7 +110,7 @@ def _below(motion: Trajectory) -> FloatArray:
 def _framed(
     ends: _Ends, depths: list[_Ends], shape: float | None, head: float, foot: float, narrow: bool
 ) -> tuple[tuple[View, ...], tuple[float, ...], float]:
-    """Return windows of one scale that fill a column of strips, their heights, and its shape."""
+    """Return windows at one scale that fill a column of strips, their heights, and the shape."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
@@ -125,7 +126,7 @@ def _framed(
 
 
 class Strip:
-    """The body of one motion on its ground, frame by frame.
+    """The body of one motion on the ground, frame by frame.
 
     It is strip k of a `film`, a RollingAnimation. Frame i shows sample i of the motion (a motion
     that ends earlier stays at its last sample); traces start with the current part of the film.
@@ -133,10 +134,11 @@ class Strip:
     The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
     theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
     ground axes: x along the ground, z normal to it [m]. `contact` marks where the body touches.
-    While the body slides, `slip` is visible too and points in the direction of sliding. In flight
-    only the `shadow` below the body is visible instead. `ruler` has the ticks of the ground and
-    their figures, `caption` the name of the motion and remarks on this frame. `arrows` are N, F
-    (the weight is as long as the longer semi-axis) and the blow, if the film shows them.
+    While the body slides, `slip` is also visible and points in the direction of sliding. In flight
+    the `shadow` below the body is visible instead of these marks. `ruler` has the ticks of the
+    ground and their labels, `caption` the name of the motion and remarks on this frame. `arrows`
+    are N, F (a force equal to the weight is as long as the longer semi-axis) and the blow, if the
+    film shows them.
     """
 
     def __init__(self, ax: Axes, film: Any, k: int) -> None:
@@ -174,7 +176,7 @@ class Strip:
         self.tip = line(6, blue, marker="o", ms=6)
         self.contact = line(7, ink, ls="none", marker="o", ms=6, mfc=paper, mew=1.5)
         self.slip = line(8, plum, ls="none", ms=11, mec=paper, mew=0.8)
-        below = ScaledTranslation(0, -ROW * self._beside, ax.figure.dpi_scale_trans)  # the clock
+        below = ScaledTranslation(0, -ROW * self._beside, ax.figure.dpi_scale_trans)  # clock
         top_left = ax.transAxes + below
         self.caption = ax.text(0.015, 0.95, "", transform=top_left, va="top", color=ink)
         self.arrows = ax.quiver(
@@ -220,7 +222,7 @@ class Strip:
         return [*changing, *moving, self.body, self.arrows, *self.names]
 
     def _point(self, i: int) -> None:
-        """Make the arrows show the forces of the ground, and the blow while it fades."""
+        """Set the arrows to the contact forces, and to the last blow while it fades."""
         motion, scene = self.motion, self.motion.scene
         size, texts = max(scene.a, scene.b), ["", "", ""]
         feet, arrows = np.zeros((3, 2)), np.zeros((3, 2))
@@ -242,12 +244,12 @@ class Strip:
         self.arrows.set_offsets(seen(feet))
         self.arrows.set_UVC(*seen(arrows).T)
         self.arrows.set_alpha([1, 1, fresh])
-        places = seen(feet + [[1], [1], [0]] * arrows)  # tips of forces, foot of the blow
+        places = seen(feet + [[1], [1], [0]] * arrows)  # at tips of forces, at the foot of the blow
         for name, text, place, alpha in zip(self.names, texts, places, (1, 1, fresh), strict=True):
             name.set(text=text, position=place, alpha=alpha)
 
     def _shadow(self, i: int) -> tuple[list[float], list[float]]:
-        """Return the ends of the shadow below the body: x and z; empty if it touches the ground."""
+        """Return x and z of the shadow's ends below the body, or none if it is on the ground."""
         if self.motion.mode[i] != Mode.FLIGHT:
             return [], []
         scene, x = self.motion.scene, float(self.motion.x[i])

@@ -21,15 +21,15 @@ Run = tuple[Any, ...]  # what `start` of `engine` returns
 
 
 def engine(start: Callable[..., Run]) -> Callable[..., Result]:
-    """Return `simulate` of an engine.
+    """Return the function `simulate` of an engine.
 
-    ``start(scene, step, **options)`` returns a function that makes a number of steps, one that
-    returns the state (and N and F of the last step, if the engine has them), and a note. A scene
-    that it refuses is not supported.
+    ``start(scene, step, **options)`` returns a function that makes a number of steps, a function
+    that returns the state (with N and F of the last step if the engine has them), and a note. A
+    scene for which it raises ValueError is not supported.
     """
 
     def simulate(problem: Any, times: FloatArray, setting: Any = None, **options: Any) -> Result:
-        """Return the states of a problem or a scene at times, with a time step [s]."""
+        """Return the states of a problem or a scene at times, computed with a time step [s]."""
         step = 1e-3 if setting is None else positive("setting", setting)
         counts = np.rint(times / step).astype(int)
         if not np.allclose(counts * step, times, rtol=0, atol=1e-6 * step):

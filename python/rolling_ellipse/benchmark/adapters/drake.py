@@ -1,9 +1,9 @@
 """Drake with the body of `Scene.to_sdf`.
 
-Drake's defaults are used: point contact of a discrete plant with stiffness 1e6 N/m and
-Hunt-Crossley dissipation 50 s/m, instead of a coefficient of restitution; the approximation
-"lagged", which its manual prefers unless impacts must be resolved. The option `approximation`
-selects another one.
+Drake's defaults are used: point contact of a discrete plant with a stiffness of 1e6 N/m and a
+Hunt-Crossley dissipation of 50 s/m instead of a coefficient of restitution, and the approximation
+"lagged", which the manual prefers unless impacts must be resolved. The option `approximation`
+selects another approximation.
 """
 
 import logging

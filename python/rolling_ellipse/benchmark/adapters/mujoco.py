@@ -1,10 +1,11 @@
 """MuJoCo with the body of `Scene.to_mjcf`, whose `contact_steps` is an option.
 
-MuJoCo locates the contact of ellipsoid and plane exactly; its contact is soft. Friction cones are
-elliptic, which the manual calls more accurate. Contacts have a time constant of four steps:
-with two, the least that the manual allows, sliding bodies hop more. Restitution 1 is stiffness
-without damping, as in the manual, which offers no smaller value. Other integrators change little.
-Rolling resistance shares one cone with friction: both are too weak while a body slides and turns.
+MuJoCo locates the contact between ellipsoid and plane exactly, but the contact is soft. Friction
+cones are elliptic, which the manual calls more accurate. Contacts have a time constant of four
+steps; with two steps, the minimum that the manual allows, sliding bodies hop more. A restitution of
+1 is stiffness without damping, as in the manual, which offers no smaller value. Other integrators
+change little. Rolling resistance shares one cone with friction: both are too weak while a body
+slides and turns.
 """
 
 import mujoco

@@ -1,7 +1,7 @@
 """Newton with its solver SolverMuJoCo, which is made for robots, and the body of `Scene.to_mjcf`.
 
-Contacts are set as in `adapters.mujoco`; numbers have single precision. The first call takes
-minutes to compile.
+Contacts have the settings of `adapters.mujoco`; numbers are in single precision. The first call
+compiles for minutes.
 """
 
 import newton

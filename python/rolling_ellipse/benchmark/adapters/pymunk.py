@@ -1,9 +1,9 @@
 """pymunk, the Python interface of Chipmunk.
 
-It has no ellipse: the body is a polygon of 2048 vertices, or pymunk's circle. The number of
+Chipmunk has no ellipses: the body is a polygon of 2048 vertices, or a circle. The number of
 iterations is the default, since one contact needs no more; the allowed overlap is 0.001 max(a, b),
-since the default of 0.1 is meant for pixels. The ground has friction and restitution 1, by which
-pymunk multiplies the body's values.
+since the default of 0.1 is meant for pixels. Friction and restitution of the ground are 1, because
+pymunk multiplies them by the values of the body.
 """
 
 import math
