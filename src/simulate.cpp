@@ -197,7 +197,7 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
                  settings, t_end);
     end_validity(0.0, t_end, result);
     if (result.ending == Ending::validity_lost) {
-        result.message = "the start violates the constraints, as no body on the ground does";
+        result.message = "the start violates the constraints, unlike any body on the ground";
     }
     return result;
 }

@@ -127,7 +127,7 @@ def test_a_motion_that_starts_off_the_constraints_is_never_valid() -> None:
     exert."""
     motion = lifted(0.5)
     assert motion.valid_until == 0 and motion.status is rl.Status.VALIDITY_LOST
-    assert motion.message == "the start violates the constraints, as no body on the ground does"
+    assert motion.message == "the start violates the constraints, unlike any body on the ground"
     assert motion.reason == "It starts off the constraints, unlike any body on the ground."
     assert motion.normal_force.min() > 0
 
