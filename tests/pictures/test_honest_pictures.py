@@ -76,6 +76,14 @@ def test_the_phase_curve_of_1000_turns_follows_its_energy() -> None:
     assert ax.get_title(loc="left") == "one turn of 1\u202f000, all alike"
 
 
+def test_every_turn_of_a_body_that_accelerates_downhill_is_drawn() -> None:
+    motion = rl.simulate(rl.Scene(1.0, 1.0, slope=0.1, omega=1.0), 60.0)
+    ax = new_axes()
+    (line,) = rl.plot_phase(motion, ax=ax).motions
+    assert motion.turns[-1] > 100 and ax.get_title(loc="left") == ""
+    assert np.nanmax(line.get_ydata()) == pytest.approx(motion.omega[-1], rel=1e-12)
+
+
 def inches(ax: Any, axis: int) -> float:
     """Length of a unit of an axis [inch]."""
     corners = ax.transData.transform([(0, 0), (1, 1)])

@@ -25,7 +25,7 @@ from .comparison import Comparison
 from .ground import QUARTER, flat_angle
 from .palette import palette_of
 from .panels import draw_invalid_ground, dress_grid, ending_of
-from .sampling import FEW, between, half_turns, is_at_hand, span_of
+from .sampling import FEW, between, half_turns, is_at_hand, period_of, span_of
 
 _FEW_TURNS = 2.0  # a motion with more turns is folded into one half turn
 _COARSE = 1e-3  # largest accepted ulp of theta [rad]
@@ -84,8 +84,8 @@ def plot_phase(
     Notes
     -----
     The lines show the motions themselves, whatever samples the trajectories have. If there are many
-    turns, exact rolling is drawn for one turn only, because all turns are alike, and other motions
-    for their first 1000 half turns; the title then says so.
+    turns, exact periodic rolling is drawn for one turn only, because all turns are alike, and other
+    motions for their first 1000 half turns; the title then says so.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
         return motion, ""
     start, end = span_of(motion)
     count, drawn, note = half_turns(motion), end, ""
-    if count > FEW and motion.method == "exact" and motion.model == "rolling":
+    if count > FEW and motion.method == "exact" and math.isfinite(period_of(motion)):
         drawn = start + 2 * (end - start) / count
         kind = "turn" if np.all(motion.omega * motion.omega[0] > 0) else "swing"
         note = f"one {kind} of {count / 2:_.0f}, all alike".replace("_", "\u202f")

@@ -130,6 +130,14 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
     return float(np.min(motion.t)), float(np.max(motion.t))
 
 
+def period_of(motion: Trajectory) -> float:
+    """Return the period of a motion [s]; NaN if it has none or may leave the model of rolling."""
+    if motion.model != "contact" and motion.start is None:
+        with suppress(ValueError):  # a body that rolls downhill forever has no period
+            return period(motion.scene)
+    return math.nan
+
+
 def half_turns(motion: Trajectory) -> float:
     """Return roughly how many half turns and swings the samples span.
 
@@ -137,10 +145,8 @@ def half_turns(motion: Trajectory) -> float:
     are counted at more and more times, spaced irregularly so that they do not match any period.
     """
     start, end = span_of(motion)
-    if motion.model != "contact" and motion.start is None:
-        with suppress(ValueError):  # a body that rolls downhill forever has no period
-            swing = period(motion.scene)
-            return 2 * (end - start) / swing if math.isfinite(swing) else 1.0
+    if not math.isnan(swing := period_of(motion)):
+        return 2 * (end - start) / swing if math.isfinite(swing) else 1.0
     turned = 0.0
     for count in _COUNTS:
         places = (np.arange(count) + (np.arange(count) * _GOLDEN) % 1) / count
