@@ -200,3 +200,11 @@ def test_a_motion_on_the_separatrix_creeps_to_the_tip_and_never_passes(direction
         rates = np.diff(np.log(math.pi / 2 - theta[near])) / np.diff(times[near])
         rate = thresholds(2.0, 1.0).tip_rate
         assert np.median(rates) == pytest.approx(-rate, rel=1e-4)
+
+
+def test_a_motion_may_last_1e15_half_turns_and_not_an_ulp_longer() -> None:
+    body = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
+    longest = 1e15 * (0.5 * period(Scene(**body)))
+    assert np.isfinite(flow(longest, **body)).all()
+    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns or swings, "):
+        flow(np.nextafter(longest, np.inf), **body)

@@ -226,6 +226,16 @@ def test_touches_between_two_evaluations_of_a_function_are_found() -> None:
     assert touch == pytest.approx([once], abs=1e-7)
 
 
+def test_close_zeros_are_found_anywhere_in_a_motion() -> None:
+    """Between the two zeros is the only turning point of the function; one part of the search has
+    all three, wherever they are."""
+    motion = simulate(Scene(2.0, 1.0, theta=0.5, friction=1.0), 10.0)
+    for first in np.linspace(0.01, 9.95, 43):
+        with pytest.warns(CompletenessWarning):
+            pair = motion.when(function=lambda m, c=first: (m.t - c) * (m.t - c - 1e-3))
+        assert pair == pytest.approx([first, first + 1e-3], rel=1e-9)
+
+
 def test_a_function_with_values_of_any_size_is_searched() -> None:
     """The search gives no other warning (an error here) although products of changes overflow."""
     motion = simulate(Scene(1.7, 1.0, theta=math.pi / 2, friction=0.0), [1e299, 1e300])
