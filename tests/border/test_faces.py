@@ -288,7 +288,7 @@ def test_infinite_friction_is_not_given_as_the_reason_of_a_slip() -> None:
     assert kinds[:2] == [rl.EventKind.SLIP, rl.EventKind.LIFT_OFF]
     assert "pull" in events[0].state_after.reason
     limited = rl.simulate(rl.scenes.jump, 1.0).events[0]
-    assert "friction cannot hold" in limited.state_after.reason
+    assert "friction can no longer hold" in limited.state_after.reason
 
 
 MOTIONS = {

@@ -60,15 +60,20 @@ KINDS = {
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"],
                       ("python/rolling_ellipse/_pictures/comparison.py",
-                       "tests/player/test_site.py", "tests/project/test_gallery.py")),
+                       "tests/player/test_site.py", "tests/project/test_docstrings.py",
+                       "tests/project/test_gallery.py")),
     "a verb": Kind(of_room("_verbs"), (
         "python/rolling_ellipse/__init__.py", "tests/project/test_docstrings.py",
-        "tests/border/test_layout.py",
+        "tests/border/test_layout.py", "tests/border/test_stub.py", "tests/oracles/every_verb.py",
+        "tests/player/test_site.py",
     )),
     "a column of a motion": Kind([each.name for each in QUANTITIES],
-                                 ("tests/export/test_tables.py",)),
+                                 ("tests/export/test_tables.py", "src/outcome/passages.hpp",
+                                  "python/rolling_ellipse/_pictures/errors.py",
+                                  "python/rolling_ellipse/_pictures/panels.py")),
     "a setting": Kind([field.name for field in fields(Settings)], (
         "tests/border/test_fields.py", "tests/batches/test_simulate_many.py",
+        "tests/core/motions.hpp", "tests/export/test_old_files.py", "tools/live/live.cpp",
     )),
     "a field of Scene": Kind([field.name for field in fields(Scene)], (
         "python/rolling_ellipse/_command_line.py",
@@ -78,7 +83,10 @@ KINDS = {
         "tests/batches/test_folders.py",
         "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
         "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
-        "tests/oracles/golden.py", "tools/fuzz/calls.py",
+        "tests/oracles/golden.py", "tools/fuzz/calls.py", "docs/makers/live.py",
+        "python/rolling_ellipse/_motion/export/strict.py", "tests/export/test_old_files.py",
+        "python/rolling_ellipse/_verbs/films/film.py",
+        "python/rolling_ellipse/_verbs/films/starts.py",
     )),
     "a law of restitution": Kind(["Stronge", "Poisson", "Newton"], (
         "src/contact/contact.cpp", "src/contact/flight.cpp", "tests/border/test_stub.py",
@@ -100,7 +108,7 @@ PLACES = {
 }
 UNTESTED = {
     "another law of rolling resistance", "another shape than the ellipse", "a way out of Python",
-    "a word of a page", "a sentence of a reason", "a stored quantity",
+    "a word of a page", "a sentence of a reason", "a stored quantity", "a format of films",
 }  # fmt: skip
 
 
