@@ -1,4 +1,4 @@
-"""Time and bytes per motion of large runs into files: python benchmarks/bench_batches.py
+"""Time and bytes per motion of large runs that write files: python benchmarks/bench_batches.py
 
 The figures help to plan a large run: time on one core and bytes per motion, for exact motions and
 for motions with slips and jumps, and the rate of a pool of processes.
@@ -19,7 +19,7 @@ from rolling_ellipse import simulate_many
 
 ROUNDS = 3
 T_END = 3.0  # end of each motion [s]
-STARTS = {  # friction and spins [rad/s]: "exact" only rocks and rolls, "contact" slips and jumps
+STARTS = {  # friction and omega [rad/s]: "exact" only rocks and rolls, "contact" slips and jumps
     "exact": (10.0, np.linspace(0.5, 3.0, 200_000)),
     "contact": (1.0, np.linspace(5.5, 6.5, 5_000)),
 }
@@ -27,7 +27,7 @@ MORE = 101  # number of samples of the larger files
 
 
 def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float]:
-    """Time per motion, the shortest of a few calls [s], and bytes per motion."""
+    """Time per motion [s], from the fastest of a few calls, and bytes per motion."""
     friction, speeds = STARTS[kind]
     if samples > 1:
         speeds = speeds[:: samples // 2]

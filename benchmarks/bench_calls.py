@@ -2,11 +2,11 @@
 
     python benchmarks/bench_calls.py [--rounds 20] [--only flow]
 
-Each case is timed once in each of many rounds, in turn, and the least time counts. Machines and
-their load differ: compare ratios (to the first line of a table) within one run. A line with the
-words "the core" has the time of the core alone; the difference from the whole call is Python's
-share. Imports of the package and of NumPy are timed in new interpreters. bench_peers.py measures
-the cost of accuracy.
+All cases are timed in turn, once in each of many rounds, and the shortest time of a case counts.
+Since machines and their load differ, compare only ratios (to the first line of a table) within one
+run. A line with the words "the core" has the time of the core alone; the rest of the whole call is
+spent in Python. Imports of the package and of NumPy are timed in new interpreters. bench_peers.py
+measures the cost of accuracy.
 """
 
 import subprocess
@@ -45,7 +45,7 @@ def calls() -> dict[str, Case]:
     settings = DEFAULTS.core
     for kind, scene in {"rolling": ROLLING, "10 events": BOUNCING, "on a slope": DOWNHILL}.items():
         end, core = END, scene.core
-        if scene is not ROLLING:  # time just after the last of the first EVENTS events
+        if scene is not ROLLING:  # `end` is just after event number EVENTS
             end = simulate(scene, END).events[EVENTS - 1].t + 1e-6
             last = f"simulate, {kind}, its events"
             found[last] = Case(lambda s=scene, t=end: simulate(s, [t]).events)
@@ -121,14 +121,14 @@ def batches() -> dict[str, Case]:
 
 # ---------------------------------------------------------------------------- exact rolling
 
-STATES = 2000  # motions in one timing of a set-up through arrays
+STATES = 2000  # motions in one call with arrays, each of which needs a set-up
 SAMPLES = 1_000_000
 COLUMNS = ("theta", "omega", "x")
 HALF_TURNS = 1.37
 
 
 def starts() -> dict[str, dict[str, Any]]:
-    """The start of every case."""
+    """The starts of the cases, by name."""
     speed = thresholds(2.0, 1.0).roll_over_speed
     return {
         "R: ordinary rotation": R,
@@ -142,8 +142,8 @@ def starts() -> dict[str, dict[str, Any]]:
 
 
 def among_many(start: dict[str, Any], t: float) -> Case:
-    """End states of motions whose omega differs in the last digits, so that each motion needs a
-    set-up."""
+    """End states of motions whose omega differs in the last digits, so that each motion needs its
+    own set-up."""
     omega = start["omega"] * (1 + np.arange(STATES) * 2.0**-50)
     columns = {name: np.full(STATES, value) for name, value in start.items()} | {"omega": omega}
     return Case(partial(flow, np.full(STATES, t), **columns), STATES)
@@ -182,19 +182,19 @@ def flows() -> dict[str, dict[str, Case]]:
     kept: dict[str, Any] = {}
 
     def into_known_memory(case: Case) -> Case:
-        """The same call, with its last answer stored; the call after next reuses the memory of this
-        answer."""
+        """The same call, whose answer is stored until the next one replaces it. The call after that
+        reuses its memory."""
         return Case(lambda: kept.update(answer=case.call()), case.count)
 
     of_many = {
         "R: 1e6 samples of 100 half turns": into_known_memory(samples(100)),
         "R: 1e6 samples of 1 half turn": into_known_memory(samples(1)),
         "R: as the first, into fresh memory": samples(100),
-        # time in which the system allocates and clears the memory of an answer
+        # time that the system takes to allocate and clear the memory of an answer
         "filling as much fresh memory": Case(
             lambda: [np.full(SAMPLES, 1.0) for _ in COLUMNS], SAMPLES
         ),
-        # lower bound for every method
+        # lower bound on the time of every method
         "np.copyto of 3 doubles": Case(partial(np.copyto, target, source), SAMPLES),
     }
     return {
@@ -209,7 +209,7 @@ def flows() -> dict[str, dict[str, Case]]:
 
 ROCKING = Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=1.0)
 TURNING = Scene(2.0, 1.0, theta=0.2, omega=3.2)
-HALF_SWINGS = 400.37  # span so long that the overhead of a call is negligible
+HALF_SWINGS = 400.37  # this span makes the overhead of a call negligible
 STEPS = 4000  # a call takes milliseconds; overhead and one sample are 1 % of that
 STEP = 2.0**-8  # fixed step [s]; 422 steps in half a turn
 EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
@@ -226,7 +226,8 @@ HOW: dict[str, dict[str, Any]] = {
 
 
 def steps() -> dict[str, dict[str, Case]]:
-    """A table for each cost of rolling, and one for each method in five coordinates."""
+    """Tables of one evaluation and one step in rolling; and for each method a table that compares
+    steps of rolling with steps in five coordinates."""
     theta, omega = np.random.default_rng(0).uniform(-1, 1, (2, SAMPLES))
     equation = partial(_core.rolling_equation, ROCKING.core, theta, omega)
     evaluation, step = {"equation and Jacobian, 1e6 states": Case(equation, SAMPLES)}, {}

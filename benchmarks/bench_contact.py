@@ -1,11 +1,11 @@
 """Cost of motions with impacts, slip and flight: python benchmarks/bench_contact.py
 
-Problems with known answers (`rolling_ellipse.benchmark`) are computed by `simulate`, and by SciPy's
-solve_ivp (DOP853) as `Problem.ode` shows: arc by arc, with right-hand sides in plain floats, which
-take a fifth of the time. Both give the events, and the states at the same 1001 times. SciPy
-integrates flights, too; both use the package's impacts. Before timing, each motion is compared with
-the known answer; if the events differ, the table has a gap. Every case runs in each of many rounds;
-compare ratios within one run.
+Problems with known answers (`rolling_ellipse.benchmark`) are solved with `simulate`, and with
+SciPy's solve_ivp (DOP853) as `Problem.ode` shows: arc by arc. Right-hand sides use plain floats,
+which take a fifth of the time of NumPy. Both solvers give the events, and the states at the same
+1001 times. SciPy integrates flights, too; both solvers use the package's impacts. Before timing,
+each motion is compared with the known answer; if the events differ, the table lists them instead of
+times. Every case runs in each of many rounds; compare ratios within one run.
 """
 
 import math
@@ -62,8 +62,8 @@ def by_scipy(one: benchmark.Problem, rtol: float) -> Found:
 
 
 def compared(one: benchmark.Problem, found: Found) -> str:
-    """The largest errors of the event times and of the last state; raise an exception if the events
-    differ."""
+    """The largest errors of the event times and of the last state; raise an ArithmeticError if the
+    events differ."""
     kinds, times = zip(*found.events, strict=True)
     if list(kinds) != [event.kind.name for event in one.events]:
         raise ArithmeticError("other events: " + ", ".join(kinds))

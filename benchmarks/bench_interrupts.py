@@ -122,7 +122,7 @@ def usable() -> bytes:
 
 
 class Notebook:
-    """A kernel started as by Jupyter."""
+    """A kernel that is started in the same way as by Jupyter."""
 
     def __init__(self) -> None:
         self.manager, self.client = start_new_kernel(kernel_name="python3")
@@ -139,7 +139,7 @@ class Notebook:
 
     def delay(self, code: str, after: float) -> float:
         """Time from the button "Interrupt" to the reply [s]."""
-        # otherwise Jupyter drops the next request
+        # with stop_on_error, Jupyter would drop the next request
         asked = self.client.execute(code, stop_on_error=False)
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
         time.sleep(after)
@@ -163,7 +163,7 @@ class Notebook:
 
 
 def print_delays(name: str, delays: list[float]) -> bool:
-    """Print the delays; return whether they are short enough."""
+    """Print the delays of a kind of work; return whether they are short enough."""
     median, most, longest = 1e3 * np.percentile(delays, [50, 95, 100])
     print(f"{name:50} {median:7.0f} {most:7.0f} {longest:7.0f}", flush=True)
     return bool(most <= 1e3 * MOST)

@@ -2,11 +2,12 @@
 
 Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers); missing
 ones are named. All integrate theta, omega and x with compiled right-hand sides and with a series of
-tolerances or steps, in turn (`rolling_ellipse.work_precision`). The error is the largest one at the
-samples and at the end, compared with 40 digits. The preparation of a new scene, with its
-compilation, is timed separately. A table before the races of a scene has the times of three calls
-of each contender: an empty call (a millionth of the span), a call with a known scene, and a call
-with a new scene and its preparation. Machines and their load differ: compare ratios within one run.
+tolerances or steps, in turn (`rolling_ellipse.work_precision`). The error of a run is the largest
+difference, at the samples and at the end, from a reference with at least 40 digits. The preparation
+of a new scene, with its compilation, is timed separately. A table before the races of a scene has
+the times of three calls of each contender: an empty call (a millionth of the span), a call with a
+known scene, and a call with a new scene, which includes its preparation. Since machines and their
+load differ, compare only ratios within one run.
 """
 
 import argparse
@@ -48,14 +49,14 @@ TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
 COLUMNS = ("theta", "omega", "x")
 WIDTH = 14  # width of a column in characters
-EMPTY = 1e-6  # span of an empty call, as a part of the whole span
-SETTING = 1e-6  # tolerance of the calls of known and new scenes
-BEHIND = " behind"  # after a ratio below 1
-AHEAD = " is ahead of "  # in the lines of a verdict about peers
+EMPTY = 1e-6  # span of an empty call, as a fraction of the whole span
+SETTING = 1e-6  # tolerance of the calls with known and new scenes
+BEHIND = " behind"  # follows a ratio below 1
+AHEAD = " is ahead of "  # words of a verdict if a peer leads
 
 
 def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
-    """theta, omega and x to 40 digits by an independent quadrature, the judge of all contenders."""
+    """theta, omega and x to 40 digits from a quadrature: the reference on level ground."""
     with reference.mp.workdps(40):
         start = (scene.a, scene.b, scene.gyration2, scene.gravity, scene.theta, scene.omega)
         motion = reference.motion(reference.Scene(*start), reference.gauss_rule(28, 1.8))
@@ -69,7 +70,7 @@ def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
-    """theta, omega and x on a slope by power series in other coordinates, the judge on slopes."""
+    """theta, omega and x from power series in other coordinates: the reference on slopes."""
     numbers = (scene.a, scene.b, scene.mass, scene.gyration2 * scene.mass, scene.gravity)
     start = slope_reference.Scene(*numbers, scene.slope, scene.theta, scene.omega)
     road = slope_reference.TABLE_ROAD
@@ -83,7 +84,8 @@ def by_series_in_60_digits(scene: Scene) -> Callable[[Any], Any]:
 
 
 def end_of(scene: Scene, half_turns: float) -> float:
-    """Time of a number of half turns or half swings [s]; downhill, counted from the start."""
+    """Time in which a scene makes a number of half turns or half swings [s]. On a slope, half turns
+    are counted from the start."""
     with suppress(ValueError):  # a run downhill does not repeat itself
         return half_turns * period(scene) / 2
     low, high = 0.0, 1e3
@@ -98,7 +100,7 @@ def race(
     name: str, half_turns: float, found: Sequence[Any], *, rounds: int, max_seconds: float,
     tolerances: Sequence[float] = TOLERANCES,
 ) -> WorkPrecision:  # fmt: skip
-    """Race of all contenders over a number of half turns or half swings."""
+    """Run the race of all contenders over a number of half turns or half swings."""
     scene = SCENES[name]
     end = end_of(scene, half_turns)
     half_turn = end / half_turns
@@ -125,7 +127,7 @@ def costs(
             prepare(scene.replace(omega=omega), end, SETTING)()
 
         name = each.run.name
-        with suppress(ValueError):  # some take no tolerance that large
+        with suppress(ValueError):  # some contenders reject such a large tolerance
             calls[name, 0] = each.prepare(scene, EMPTY * end, DECADES[0])
         calls[name, 1], calls[name, 2] = each.prepare(scene, end, SETTING), new
     known = interleaved({key: call for key, call in calls.items() if key[1] < 2}, rounds)
@@ -144,7 +146,7 @@ def table_of_calls(found: dict[str, list[float]]) -> str:
 
 
 def commit() -> str:
-    """Short name of the commit that is checked out."""
+    """Abbreviated name of the current commit, with "-dirty" if files have changed."""
     folder = Path(__file__).parent
     command = ["git", "describe", "--always", "--dirty"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
@@ -152,7 +154,7 @@ def commit() -> str:
 
 
 def microseconds(seconds: float) -> str:
-    """A time with at least three digits, without an exponent."""
+    """Text of a time in microseconds: to three digits, or to a whole number from 1000 on."""
     return f"{seconds * 1e6:.3g}" if seconds < 1e-3 else f"{seconds * 1e6:.0f}"
 
 
@@ -194,7 +196,7 @@ def factor(found: WorkPrecision, decade: float) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], WorkPrecision]:
-    """Race, print, and return the results of every scene and span."""
+    """Run the races, print the tables, and return the results of every scene and span."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--quick", action="store_true", help="one span, few settings and rounds")
     options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")

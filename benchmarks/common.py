@@ -21,8 +21,8 @@ _LEVELS = {"avx512f": "AVX-512", "avx2": "AVX2", "avx": "AVX", "asimd": "NEON"}
 
 
 def machine() -> dict[str, str]:
-    """Facts about the machine by name: the processor, its widest vectors, the compiler,
-    versions."""
+    """Facts about the machine by name: the processor, its widest vectors, the number of cores, the
+    system, the compiler, the versions and the date."""
     text = ""
     with suppress(OSError):  # the file exists only on Linux
         text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
@@ -43,7 +43,7 @@ def machine() -> dict[str, str]:
 
 
 def options(about: str | None, default: int = 20) -> argparse.ArgumentParser:
-    """The command line of a benchmark, with its number of rounds."""
+    """A parser for the command line of a benchmark, with the option --rounds."""
     found = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     least = f"at least {default} for figures to keep"
     found.add_argument("--rounds", type=int, default=default, help=least)
@@ -51,7 +51,7 @@ def options(about: str | None, default: int = 20) -> argparse.ArgumentParser:
 
 
 def print_machine(rounds: int) -> None:
-    """Print the facts of the machine."""
+    """Print the processor, the system, the versions and the number of rounds."""
     facts = machine()
     print(f"{facts['processor']}, {facts['cores']} cores, {facts['system']}")
     versions = ", ".join(f"{name} {facts[name]}" for name in ("rolling_ellipse", "numpy", "python"))
@@ -59,12 +59,12 @@ def print_machine(rounds: int) -> None:
 
 
 def end_time(scene: Scene, half_turns: float) -> float:
-    """Time of a number of half turns or half swings [s]."""
+    """Time in which a scene makes a number of half turns or half swings [s]."""
     return half_turns * period(scene) / 2
 
 
 def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
-    """Mean time of a call that is repeated [s]."""
+    """Mean time of a call over some repeats [s]."""
     begin = time.perf_counter()
     for _ in range(repeats):
         call()

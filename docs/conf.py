@@ -1,4 +1,4 @@
-"""Settings of the site: python -m sphinx docs OUT, after pip install '.[docs]'; no network."""
+"""Settings of the site; to build it: pip install '.[docs]', then python -m sphinx docs OUT."""
 
 import re
 from importlib.metadata import metadata
@@ -22,7 +22,7 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
 ]  # fmt: skip
 exclude_patterns, nb_execution_mode = ["live", "_build"], "off"
-if "teacher" not in tags:  # noqa: F821 - of Sphinx: python -m sphinx -t teacher docs OUT
+if "teacher" not in tags:  # noqa: F821 - Sphinx defines it: python -m sphinx -t teacher docs OUT
     exclude_patterns.append("course/teacher.md")
 nb_code_prompt_show, nb_code_prompt_hide = "Show the code", "Hide the code"
 myst_enable_extensions, myst_heading_anchors = ["dollarmath"], 3
@@ -32,13 +32,13 @@ copybutton_selector = (
     ".highlight-python pre, .highlight-bash pre, .highlight-pycon pre, .highlight-default pre, "
     ".cell_input pre"
 )
-copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True  # examples
+copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True  # not copied
 default_role, autodoc_typehints = "py:obj", "none"  # backticks link; docstrings have the types
 autodoc_default_options = {  # xp is a module with a docstring of its own
     "members": True, "member-order": "bysource", "exclude-members": "xp"
 }  # fmt: skip
 numpydoc_show_class_members = False
-numpydoc_use_plots = True  # examples with pyplot run, and their pictures follow
+numpydoc_use_plots = True  # runs examples that use pyplot, and shows their pictures
 plot_pre_code = "import numpy as np\nimport rolling_ellipse as rl"
 plot_include_source, plot_html_show_formats, plot_html_show_source_link = True, False, False
 plot_formats = [("png", 100)]
@@ -48,7 +48,7 @@ html_logo = html_favicon = "_static/logo.svg"
 templates_path, html_static_path = ["_templates"], ["_static"]
 html_css_files, html_js_files = ["site.css"], ["site.js"]
 html_search_scorer = str(HERE / "scorer.js")
-html_show_search_summary = False  # browsers forbid it to read pages from files
+html_show_search_summary = False  # browsers block its requests on pages opened from files
 
 
 def lead_to_copies(app: Sphinx, page: str, text: list[str]) -> None:
@@ -73,7 +73,7 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-signature", name_modules, priority=400)  # before numpydoc
     app.connect("source-read", lead_to_copies)
     app.connect("builder-inited", keep_pictures_in_the_site)
-    files = Path(app.doctreedir) / "examples"  # written by examples
+    files = Path(app.doctreedir) / "examples"  # files that examples write
     files.mkdir(parents=True, exist_ok=True)
     app.config.plot_working_directory = str(files)
     live = Path(app.outdir) / "live"  # a page of its own, which the page `explore` shows

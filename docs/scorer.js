@@ -1,5 +1,6 @@
-// What a word leads to first: guides before formulas, and history last. Names of the API stay first
-// where no heading of a guide has the word, short ones before long. Other numbers are Sphinx's own.
+// The order of search results: guides come before formulas, and the changelog and other pages about
+// the project last. Names of the API come first unless a heading of a guide contains the word, and
+// short names before long ones. The other numbers are Sphinx's defaults.
 const GUIDES = { recipes: 20, start: 15, gallery: 8, many: 8, explore: 8 };
 const LAST = /^(changelog|architecture|contribute|release)$/;
 const partsOf = (name) => (name.startsWith("rolling_ellipse.") ? name.split(".").length : 0);

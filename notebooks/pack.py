@@ -39,7 +39,7 @@ def main() -> None:
     files = {"examples": examples, "course": course}[place.stem]()
     with zipfile.ZipFile(place, "w") as archive:
         for name in sorted(files):
-            # a ZipInfo has a fixed date
+            # a ZipInfo has a fixed date, unlike a file
             archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED, 9)
 
 

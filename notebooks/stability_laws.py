@@ -1,6 +1,6 @@
 """Measurements of notebook 07, section by section; tests/stability asserts their laws.
 
-Each measurement makes one or a few short runs and returns numbers; it does not draw or judge them.
+Each measurement runs one or a few short simulations and returns numbers, without judging them.
 """
 
 import math
@@ -23,7 +23,7 @@ EXPLICIT = ("rk4", "dopri5", "dop853")
 
 
 def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
-    """A simulation with any outcome, without the warnings that the notebook discusses."""
+    """Simulate, whatever the outcome, without the warnings that the notebook discusses."""
     with warnings.catch_warnings():
         for shown_here in (rl.StabilityWarning, rl.ValidityWarning):
             warnings.simplefilter("ignore", shown_here)
@@ -32,12 +32,12 @@ def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
 
 
 def kept_by(stabilization: str, **how: Any) -> How:
-    """Settings of the model in five coordinates with a stabilization of its constraints."""
+    """Return settings of the model in five coordinates with a stabilization of its constraints."""
     return {"model": "multipliers", "stabilization": stabilization} | how
 
 
 def half_turn(scene: Scene) -> float:
-    """Time from theta to theta + pi, or the duration of half a swing [s]."""
+    """Return the time from theta to theta + pi, or the duration of half a swing [s]."""
     return rl.period(scene) / 2
 
 
@@ -45,17 +45,17 @@ def half_turn(scene: Scene) -> float:
 
 
 def exponent(x: ArrayLike, y: ArrayLike) -> float:
-    """Exponent p of |y| ~ x^p, by least squares of the logarithms."""
+    """Return the exponent p of |y| ~ x^p, from a least-squares fit to the logarithms."""
     return float(np.polyfit(np.log(x), np.log(np.abs(y)), 1)[0])
 
 
 def spread(first: int, last: int, count: int = 25) -> NDArray[np.intp]:
-    """Integers with evenly spaced logarithms."""
+    """Return integers with nearly evenly spaced logarithms."""
     return np.unique(np.geomspace(first, last, count).astype(np.intp))
 
 
 def growth(errors: Floats) -> float:
-    """Exponent of the growth of the rms change of evenly sampled errors with the time lag.
+    """Return the exponent with which the rms change of evenly sampled errors grows with the lag.
 
     The mean square is over all runs and all pairs of samples with the same lag.
     """
@@ -66,7 +66,7 @@ def growth(errors: Floats) -> float:
 
 
 def largest(holds: Callable[[float], bool], low: float, high: float, width: float = 1e-12) -> float:
-    """Largest value with a property, by bisection; the property holds at low and not at high."""
+    """Return the largest value at which `holds` is true, by bisection between low and high."""
     assert holds(low) and not holds(high), (low, high)
     while high - low > width * high:
         middle = (low + high) / 2
@@ -76,9 +76,11 @@ def largest(holds: Callable[[float], bool], low: float, high: float, width: floa
 
 @cache
 def stability_polynomial(method: str) -> tuple[float, ...]:
-    """R(z) of an explicit method from its tableau, highest power first: a step multiplies the y of
-    y' = s y by R(h s). The coefficients are 1 and b A^k 1 (E. Hairer, G. Wanner, Solving Ordinary
-    Differential Equations II, IV.2)."""
+    """Return the coefficients of R(z) of an explicit method, highest power first.
+
+    A step h multiplies the y of y' = s y by R(h s). The coefficients are 1 and b A^k 1 (E. Hairer,
+    G. Wanner, Solving Ordinary Differential Equations II, IV.2).
+    """
     tableau = _core.tableaus()[method]
     stages = tableau["stages"]
     a = np.array(tableau["a"])[: stages + 1, :stages]
@@ -90,13 +92,16 @@ def stability_polynomial(method: str) -> tuple[float, ...]:
 
 
 def amplification(method: str, z: Any) -> Any:
-    """|R(z)| of a number or an array z."""
+    """Return |R(z)| for a number or an array z."""
     return np.abs(np.polyval(stability_polynomial(method), z))
 
 
 def interval(method: str, direction: complex) -> float:
-    """The z up to which |R(z direction)| <= 1: the first crossing from 0, on a grid of 1e-3, then
-    by bisection. The bound is 1 + 1e-12, since roundings decide near 0."""
+    """Return the z up to which |R(z direction)| <= 1.
+
+    The first crossing is bracketed on a grid of spacing 1e-3 and refined by bisection. On the grid
+    the bound is 1 + 1e-12, because rounding errors matter near z = 0.
+    """
     grid = 1e-3 * np.arange(1, 20_000)
     first = int(np.flatnonzero(amplification(method, grid * direction) > 1 + 1e-12)[0])
     return largest(
@@ -112,8 +117,11 @@ ROUND = Scene(1.2, 1.0, theta=0.2, omega=4.0)
 
 
 def envelopes(scene: Scene, spans: Floats, knot: float, **how: Any) -> Floats:
-    """Largest |gap|, position and velocity residuals of the constraints for each span in half
-    turns, over the multiples of `knot` in the last half turn of the span: (3, spans)."""
+    """Return the largest |gap| and position and velocity residuals for spans in half turns.
+
+    Residuals are sampled at the multiples of `knot` in the last half turn of each span. The result
+    has shape (3, spans) and does not decrease from span to span.
+    """
     knots = half_turn(scene) / knot
     windows = [np.arange(math.ceil((n - 1) * knots), n * knots) for n in spans]
     held = run(scene, np.concatenate(windows) * knot, **how).constraint_residuals()
@@ -126,7 +134,7 @@ def envelopes(scene: Scene, spans: Floats, knot: float, **how: Any) -> Floats:
 def started_off(
     scene: Scene, rate: int, times: ArrayLike, epsilon: float, **how: Any
 ) -> Trajectory:
-    """A motion of the multipliers whose given rate starts with an error of epsilon."""
+    """Return a motion of the multiplier model in which one rate starts with an error of epsilon."""
     settings = rl.simulate(scene, 0.0, model="multipliers", **how).settings
     q, q_dot = rl.kinematics(scene.theta, scene.omega, a=scene.a, b=scene.b)
     start = (q, q_dot + epsilon * np.eye(5)[rate])
@@ -142,7 +150,7 @@ GAINS = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200])  # feedback gains [1/s]
 
 
 def fed_back(gain: float) -> tuple[float, float]:
-    """Errors of position [m, rad] and phase [rad] after 100 half turns with equal gains."""
+    """Return errors of position [m, rad] and phase [rad] after 100 half turns with equal gains."""
     end = 100 * half_turn(FED_BACK)
     how = kept_by("baumgarte", method="rk4", step=2.0**-9, baumgarte=(gain, gain))
     found = run(FED_BACK, np.linspace(0.1 * end, end, 200), **how)
@@ -151,7 +159,7 @@ def fed_back(gain: float) -> tuple[float, float]:
 
 
 def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) -> float:
-    """Largest constraint error in 600 steps of rocking; inf if the run was abandoned."""
+    """Return the largest constraint error in 600 steps of rocking; inf if the run failed."""
     how = kept_by("baumgarte", method=method, step=step, baumgarte=gains)
     found = run(SLOW, np.arange(601) * step, **how)
     held = found.constraint_residuals()
@@ -160,7 +168,7 @@ def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) 
 
 
 def reach(method: str, step: float = 2.0**-7) -> float:
-    """Largest 2 alpha h at which runs with equal gains do not diverge."""
+    """Return the largest 2 alpha h at which runs with equal gains do not diverge."""
 
     def holds(reached: float) -> bool:
         gain = reached / (2 * step)
@@ -172,13 +180,14 @@ def reach(method: str, step: float = 2.0**-7) -> float:
 
 # ------------------------------------------------------------------------ d, e. energy, phase
 
-STEP = 1 / 16  # step [s] of powers of two: the times of all steps are doubles
+STEP = 1 / 16  # step [s]: a power of two, so that the times of all steps are exact
 
 
 class Rhythm(NamedTuple):
     """A rocking motion in which a whole number of half swings takes a whole number of steps.
 
-    Samples at multiples of this time are at knots, with the same phase of the truncation error.
+    Samples at multiples of this time are at ends of steps, at the same phase of the truncation
+    error.
     """
 
     half_swings: int
@@ -210,8 +219,10 @@ def _speed(half_swing: float) -> float:
 
 
 def energy_error(theta: ArrayLike, omega: ArrayLike, start: float) -> Floats:
-    """Energy error relative to the energy at the start, flat with speed `start`. Long double, and
-    energies above that of lying flat, avoid cancellation."""
+    """Return the energy error relative to the energy of a body that starts flat at speed `start`.
+
+    Long doubles, and energies relative to that of a body lying flat, avoid cancellation.
+    """
     theta, omega = np.asarray(theta, np.longdouble), np.asarray(omega, np.longdouble)
     sine2 = np.sin(theta) ** 2
     h = np.sqrt(B * B + (A * A - B * B) * sine2)
@@ -230,7 +241,7 @@ class Errors(NamedTuple):
 
 
 def errors(rhythm: Rhythm, samples: int, runs: Sequence[How]) -> Errors:
-    """Errors of runs of the motion of `rhythm`, at a number of samples."""
+    """Return the errors of runs of the motion of `rhythm` at a number of samples."""
     half_swings = np.arange(1.0, samples + 1) * rhythm.half_swings
     times, start = half_swings * rhythm.half_swing, rhythm.omega
     theta, omega, _ = rl.flow(times, a=A, b=B, theta=0.0, omega=start)
@@ -251,14 +262,16 @@ DRIFTING: dict[str, How] = {
 
 
 def gauss_runs(count: int) -> list[How]:
-    """Gauss's method with steps that differ by parts in 2^40: enough for independent rounding
-    errors, too little for any other difference."""
+    """Return settings of Gauss's method with steps that differ by a few parts in 2^40.
+
+    This is enough for independent rounding errors, and too little for any other difference.
+    """
     return [{"method": "gauss", "step": STEP * (1 + k * 2.0**-40)} for k in range(count)]
 
 
 # ---------------------------------------------------------------------------- f. separatrix
 
-# Methods that keep the energy, and methods that do not.
+# Methods that conserve the energy, and methods that do not.
 DECIDE: dict[str, How] = {
     "exact": {},
     "contact": {"model": "contact"},
@@ -279,13 +292,13 @@ STRAY: dict[str, How] = {
 
 
 def rolls_over(omega: float, half: float, **how: Any) -> bool:
-    """Whether a method lets a body thrown from flat roll over, judged when it is flat again."""
+    """Return whether a body that starts flat has rolled over at the time `half` by a method."""
     found = rl.simulate(Scene(A, B, omega=omega), [half], **({"model": "rolling"} | how))
     return bool(found.theta[0] > math.pi / 2)
 
 
 def own_separatrix(**how: Any) -> float:
-    """Relative distance from omega_R at which a method starts to roll over, by bisection."""
+    """Return the relative distance from omega_R at which bodies start to roll over by a method."""
     times, speed = np.arange(0.0, 60.0, 0.25), rl.thresholds(A, B).roll_over_speed
     low, high = -0.2, 0.2
     for _ in range(60):
@@ -293,7 +306,7 @@ def own_separatrix(**how: Any) -> float:
         scene = Scene(A, B, omega=speed * (1 + middle))
         theta = rl.simulate(scene, times, **({"model": "rolling"} | how)).theta
         left = np.flatnonzero((theta > 2.0) | ((theta < 0.5) & (times > 2)))
-        if theta[left[0] if left.size else -1] > math.pi / 2:  # the body lingers to the end
+        if theta[left[0] if left.size else -1] > math.pi / 2:  # at the end if it lingers
             high = middle
         else:
             low = middle
@@ -306,14 +319,16 @@ RATIOS = (1.5, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
 
 
 def swing(ratio: float) -> Scene:
-    """A swing with half the energy of the barrier, at which rolling is valid."""
+    """Return a swing with half the energy of the barrier, for which rolling is valid."""
     gyration2 = (ratio * ratio + 1) / 4
     return Scene(ratio, 1.0, omega=math.sqrt(GRAVITY * (ratio - 1) / (gyration2 + 1)))
 
 
 def steps_needed(ratio: float, method: str) -> float:
-    """Smallest number of equal steps in a swing, in factors of 2^(1/4), with an error below 1e-6
-    rad, if twice as many steps also have such an error."""
+    """Return the smallest number of equal steps in a swing with an error below 1e-6 rad.
+
+    Numbers in ratios of 2^(1/4) are tried, until the number and its double both have such an error.
+    """
     scene = swing(ratio)
     once = rl.period(scene)
 
@@ -328,7 +343,7 @@ def steps_needed(ratio: float, method: str) -> float:
 
 
 def steps_taken(ratio: float, **how: Any) -> int:
-    """Number of accepted and rejected steps in a swing at rtol 1e-9."""
+    """Return the number of accepted and rejected steps in a swing at rtol 1e-9."""
     scene = swing(ratio)
     stats = run(scene, [rl.period(scene)], rtol=1e-9, atol=1e-11, **how).stats
     return int(stats["steps"] + stats["rejected_steps"])
@@ -363,7 +378,7 @@ def third(theta: float, a: float, b: float) -> Third:
 
 SPUN = Scene(A, B, theta=0.2, omega=3.2)
 SPANS = np.unique(np.geomspace(20, 500, 8).round())  # spans in half turns
-LAWS: dict[str, tuple[int, How]] = {  # power of time in the phase error of a method
+LAWS: dict[str, tuple[int, How]] = {  # power of time with which the phase error of a method grows
     "multipliers, none": (3, kept_by("none")),
     "rk4, 0.005 s": (2, {"method": "rk4", "step": 0.005}),
     "dop853, rtol 1e-10": (2, {"method": "dop853"}),
@@ -374,7 +389,7 @@ LAWS: dict[str, tuple[int, How]] = {  # power of time in the phase error of a me
 
 
 def phase_missed(spans: Floats, **how: Any) -> tuple[Floats, float]:
-    """Errors of theta after numbers of half turns [rad], and steps in a half turn."""
+    """Return errors of theta [rad] after numbers of half turns, and the steps per half turn."""
     times = spans * half_turn(SPUN)
     found = run(SPUN, times, **how)
     missed = np.abs(found.theta - rl.simulate(SPUN, times).theta)
@@ -387,8 +402,10 @@ GRAZING = Scene(A, B, omega=4.5)
 
 
 def shortfall(samples: int, places: ArrayLike) -> Floats:
-    """Relative error of the largest friction needed, estimated from samples of a quarter turn, for
-    each offset of the first sample [samples]."""
+    """Return the relative error of the largest friction needed, from samples of a quarter turn.
+
+    There is one error for each offset of the first sample, in units of the spacing.
+    """
     apart = half_turn(GRAZING) / 2 / samples
     need = rl.certify(GRAZING).largest_friction_needed
     assert need is not None
@@ -403,7 +420,7 @@ def shortfall(samples: int, places: ArrayLike) -> Floats:
 
 
 def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
-    """Loop over impacts: the first event at which the clock no longer advances, and its time."""
+    """Loop over impacts; return the first event that does not advance the clock, and its time."""
     clock, speed, stands = v / GRAVITY, v * e, 0
     for event in range(1, events):
         later = clock + 2 * speed / GRAVITY
@@ -413,8 +430,10 @@ def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
 
 
 def sinking(v: float, e: float, step: float, t_end: float) -> tuple[Floats, Floats]:
-    """Times and heights from symplectic Euler steps, with an impact whenever the body is below the
-    ground and moves down."""
+    """Return times and heights from symplectic Euler steps.
+
+    An impact occurs whenever the body is below the ground and moves down.
+    """
     heights, z, u = [], v * v / (2 * GRAVITY), 0.0
     for _ in range(round(t_end / step)):
         u -= GRAVITY * step
@@ -446,8 +465,10 @@ def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
 
 
 def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4) -> Floats:
-    """Rows of t, N/m, omega and x_dot from (theta, omega, x_dot), by Runge-Kutta steps without a
-    check of B, until numbers overflow: (steps, 4)."""
+    """Return rows of t, N/m, omega and x_dot from the start y = (theta, omega, x_dot).
+
+    Runge-Kutta steps do not check B, and stop when numbers overflow. The shape is (steps, 4).
+    """
 
     def rates(y: Floats) -> Floats:
         at = pressed(y[0], y[1], y[2], mu)
@@ -472,8 +493,10 @@ SMALL = Scene(A, B, omega=1e-6 * OMEGA)
 
 
 def amplitude(method: str, y: float, steps: int, **how: Any) -> Floats:
-    """Amplitude of small rocking after each step of y/Omega, relative to the start; inf at the end
-    of a motion that was abandoned."""
+    """Return the amplitude of small rocking after each step of y/Omega, relative to the start.
+
+    If the run fails, the last amplitude is inf.
+    """
     size = {} if method == "exact" else {"step": y / OMEGA}
     found = run(SMALL, np.arange(steps + 1) * (y / OMEGA), method=method, **size, **how)
     grown = np.hypot(found.theta, found.omega / OMEGA) / 1e-6
@@ -481,7 +504,7 @@ def amplitude(method: str, y: float, steps: int, **how: Any) -> Floats:
 
 
 def rocked_to(method: str) -> float:
-    """Largest Omega h at which 2000 steps do not increase the amplitude."""
+    """Return the largest Omega h at which 2000 steps do not increase the amplitude."""
     limit = interval(method, 1j)
     return largest(
         lambda y: bool(amplitude(method, y, 2000)[-1] <= 1), 0.8 * limit, 1.2 * limit, 1e-6
@@ -489,7 +512,7 @@ def rocked_to(method: str) -> float:
 
 
 def given_up_from(stages: int) -> float:
-    """Least Omega h at which Gauss's method fails to solve the stages of one of 300 steps."""
+    """Return the least Omega h at which Gauss's method fails in one of 300 steps."""
     return largest(
         lambda y: math.isfinite(amplitude("gauss", y, 300, stages=stages)[-1]), 1.0, 20.0, 1e-3
     )
@@ -512,12 +535,12 @@ for _method in ("dop853", "dopri5"):
 
 
 class Loose(NamedTuple):
-    """Losses of a motion that lasts a minute, with a tolerance of 1e-2."""
+    """Errors of a motion that lasts a minute, computed with a tolerance of 1e-2."""
 
     motion: Trajectory
     missed: Floats  # constraint errors at each sample, in long semi-axes and rad
     energy: Floats  # change of the energy at each sample over its largest magnitude
-    phase: float  # largest error of the last ten seconds [rad]: at one time two swings may meet
+    phase: float  # largest error in the last ten seconds [rad]; at one time swings may cross
     texts: list[str]  # texts of the warnings
 
 
@@ -534,7 +557,7 @@ def loose(scene: Scene, how: How) -> Loose:
 
 # ------------------------------------------------------------------------- o. useless work
 
-SPAN = 2.0  # span [s]; steps of powers of two end on it
+SPAN = 2.0  # time span [s], a multiple of all steps, which are powers of two
 _random = np.random.default_rng(1)
 THETA, SPEED = _random.uniform(-0.1, 0.1, 100), _random.uniform(0.8, 1.2, 100)  # starts of the runs
 
@@ -544,7 +567,7 @@ def rms(errors: ArrayLike) -> float:
 
 
 def _acceleration(theta: Any, omega: Any) -> Any:
-    """theta'' of rolling on level ground, in the precision of its arguments."""
+    """Return theta'' of rolling on level ground, in the precision of the arguments."""
     number = theta.dtype.type
     sine, cosine = np.sin(theta), np.cos(theta)
     h2 = number(A * A) * sine * sine + number(B * B) * cosine * cosine
@@ -555,8 +578,10 @@ def _acceleration(theta: Any, omega: Any) -> Any:
 
 
 def plain(power: int, number: Any) -> float:
-    """Rms error of the angles after SPAN by the textbook form of the classical method, with steps
-    of 2^-power and numbers of the given type."""
+    """Return the rms error of the angles after SPAN by the textbook form of the classical method.
+
+    The steps are 2^-power, and the numbers have the given type.
+    """
     theta, omega = THETA.astype(number), SPEED.astype(number)
     start = {"theta": theta.astype(float), "omega": omega.astype(float)}
     truth, _, _ = rl.flow(SPAN, a=A, b=B, **start)
@@ -576,7 +601,7 @@ def plain(power: int, number: Any) -> float:
 
 
 def ends(few: int = 8, **how: Any) -> tuple[Floats, float]:
-    """Angles after SPAN of the first starts, and evaluations of the first of them."""
+    """Return the angles after SPAN of the first `few` starts, and the evaluations of one run."""
     found = [
         run(Scene(A, B, theta=theta, omega=omega), [SPAN], **how)
         for theta, omega in zip(THETA[:few], SPEED[:few], strict=True)

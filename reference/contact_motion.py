@@ -1,7 +1,7 @@
 """Rolling, sliding, flight and impacts, computed from Taylor series with any number of digits.
 
-make_contact_reference.py and make_resistance_reference.py make tables with this module, and
-judge_contact.py judges random scenes with it. The module needs only gmpy2 and shares no code or
+make_contact_reference.py and make_resistance_reference.py compute tables with this module, and
+judge_contact.py checks random scenes with it. The module needs only gmpy2 and shares no code or
 formula with the package.
 
 Motion. x is along the ground, z away from it, and theta clockwise. The ground slopes down by alpha.
@@ -16,12 +16,12 @@ r is the radius of curvature. The ground acts with N and F per mass:
 
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - (o + q) N              (2)
 
-The contact is a small patch. In it N acts ahead of the touching point by the lever of rolling
-resistance delta. This is a couple q N against the turning, with q = delta sign omega. A body that
-does not turn is held by a couple of up to delta N to either side. The slip is v = x' - h omega.
-Without pressure the gap z - h would open with the acceleration -c, where c = g cos alpha + (r - h)
-omega^2. A mode ends when one of its margins, listed last, reaches zero; with delta > 0, q omega is
-one more margin of rolling and sliding:
+The contact is a small patch. Within the patch, N acts ahead of the touching point by the lever of
+rolling resistance delta. This is a couple q N against the turning, with q = delta sign omega. A
+body that does not turn is held by a couple of up to delta N in either sense. The slip is v = x' - h
+omega. Without pressure the gap z - h would open with the acceleration -c, where c = g cos alpha +
+(r - h) omega^2. A mode ends when one of its margins, listed last, reaches zero; with delta > 0, q
+omega is one more margin of rolling and sliding:
 
     rolling   v = 0: (k^2 + h^2 + o (o + q)) omega' = h g sin alpha - o h omega^2 - (o + q) c, N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
@@ -31,12 +31,12 @@ one more margin of rolling and sliding:
     held      omega = 0 for a time, N = g cos alpha: at rest with F = -g sin alpha for ever, or
               sliding with F = -mu s N; s v
 
-If slip or turning is zero, modes without it and with it to either side are tried. A mode is
-possible if its N and B are positive, if the slip and the turning that start grow to their sides,
-and if neither friction nor the couple is larger than available. If no mode is possible, the body
-flies if c <= 0 and otherwise jams, as does a slide with B < 0 < c. If several modes are possible,
-the motion is undecided. F and N jump when omega changes its sign, and slip may start then. The
-change of sign is not an event, but rest is. Without friction slip has no side, and changes its sign
+If slip or turning is zero, modes without it and modes with it in either direction are tried. A mode
+is possible if its N and B are positive, if a slip and a turning that start grow in their assumed
+directions, and if neither friction nor the couple is larger than available. If no mode is possible,
+the body flies if c <= 0 and otherwise jams, as does a slide with B < 0 < c. If several modes are
+possible, the motion is undecided. F and N jump when omega changes its sign, and slip may start
+then. The change of sign is not an event, but rest is. Without friction, the slip changes its sign
 without an event.
 
 An impact adds up impulses per mass along and away from the ground with Coulomb's law, in pieces on
@@ -67,13 +67,13 @@ import gmpy2
 from gmpy2 import mpfr
 from series import Road, product, quotient, square_root, value
 
-MOST_STEPS = 3000  # most steps of one motion
+MOST_STEPS = 3000  # maximum number of steps of one motion
 REST_SPEED = 1e-6  # rebound speed / sqrt(g min(a, b)); slower rebounds of a flat drop are summed
 LEAST_REBOUND = 1e-3  # least rebound speed / sqrt(g min(a, b)) in all other scenes
 
 
 class Undecided(Exception):
-    """The scene is too close to a scene of another kind, or is not modelled here."""
+    """Raised for a scene that is too close to one of another kind, or is not modelled here."""
 
 
 class Scene(NamedTuple):
@@ -96,7 +96,7 @@ class Scene(NamedTuple):
     z_dot: Any = None
 
     def given(self) -> dict[str, Any]:
-        """The inputs that are given, by their names."""
+        """Return the inputs that are not None, by name."""
         return {name: value for name, value in self._asdict().items() if value is not None}
 
 
@@ -121,7 +121,8 @@ VALUES = Row._fields[1:]
 
 @cache
 def bernstein_weights(degree: int, precision: int) -> list[list[Any]]:
-    """Bernstein coefficient j is the sum of power coefficients i times C(j, i) / C(degree, i)."""
+    """Return the weights C(j, i) / C(degree, i) of power coefficient i in Bernstein coefficient
+    j."""
     assert precision == gmpy2.get_context().precision
     return [
         [mpfr(math.comb(j, i)) / math.comb(degree, i) for i in range(j + 1)]
@@ -130,7 +131,7 @@ def bernstein_weights(degree: int, precision: int) -> list[list[Any]]:
 
 
 def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
-    """Bernstein coefficients on the left and the right half of the interval (de Casteljau)."""
+    """Return the Bernstein coefficients on both halves of the interval (de Casteljau)."""
     left, right = [bernstein[0]], [bernstein[-1]]
     while len(bernstein) > 1:
         bernstein = [(p + q) / 2 for p, q in pairwise(bernstein)]
@@ -140,7 +141,7 @@ def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
 
 
 def first_root(coefficients: list[Any], end: Any) -> Any:
-    """The first root in (0, end] of a polynomial that is positive at 0, or None.
+    """Return the first root in (0, end] of a polynomial that is positive at 0, or None.
 
     The sign changes of its Bernstein coefficients in an interval bound the number of its roots
     there, with the same parity: 0 means none and 1 means one.
@@ -168,7 +169,10 @@ def first_root(coefficients: list[Any], end: Any) -> Any:
 
 
 def bisected(coefficients: list[Any], low: Any, high: Any) -> Any:
-    """The only root in (low, high], where the polynomial falls through 0: halving, then Newton."""
+    """Return the only root in (low, high], where the polynomial falls through 0.
+
+    Newton's method follows 20 bisections.
+    """
     slopes = [i * one for i, one in enumerate(coefficients)][1:]
     for _ in range(20):
         middle = (low + high) / 2
@@ -210,17 +214,17 @@ class Body:
         self.lever = mpfr(scene.rolling_resistance)
 
     def phi(self, theta: Any) -> Any:
-        """phi of an angle theta, with the same number of whole turns."""
+        """Return phi of an angle theta, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(theta)
         return gmpy2.atan2(self.a * sin, self.b * cos) + theta - gmpy2.atan2(sin, cos)
 
     def theta(self, phi: Any) -> Any:
-        """theta of an angle phi, with the same number of whole turns."""
+        """Return theta of an angle phi, with the same number of whole turns."""
         sin, cos = gmpy2.sin_cos(phi)
         return gmpy2.atan2(self.b * sin, self.a * cos) + phi - gmpy2.atan2(sin, cos)
 
     def touch(self, phi: Any) -> Touch:
-        """Geometry and response of the body touching the ground at phi."""
+        """Return the geometry and response of the body touching the ground at phi."""
         sin, cos = gmpy2.sin_cos(phi)
         w = gmpy2.sqrt((self.a * cos) ** 2 + (self.b * sin) ** 2)
         h, o = self.ab / w, self.c2 * sin * cos / w
@@ -244,7 +248,8 @@ class State(NamedTuple):
 
 class Arc(NamedTuple):
     """A mode, the sign of its slip, and the order of the zero of slip or gap at its start; the sign
-    of the turning that the couple opposes, the order of its zero, and whether the couple holds."""
+    of the turning that the couple opposes, the order of its zero, and whether the couple holds the
+    body."""
 
     mode: str
     side: int = 0
@@ -258,7 +263,7 @@ REST = Arc(ROLLING, held=True)
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time; forces are per mass; B = 1 on arcs that do not slide."""
+    """Taylor coefficients in time; forces are per mass. `stiffness` is B on arcs that slide."""
 
     phi: list[Any]
     theta: list[Any]
@@ -273,7 +278,7 @@ class Series(NamedTuple):
 
 
 def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
-    """Coefficients 0 to order of the state, and 0 to order - 1 of the other quantities."""
+    """Return coefficients 0 to order of the state, and 0 to order - 1 of the other quantities."""
     phi, theta, omega, x, x_dot = ([one] for one in state[:5])
     sin, cos = ([each] for each in gmpy2.sin_cos(state.phi))
     rate: list[Any] = []  # series of the rate of phi
@@ -344,19 +349,21 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
 
 
 def slip_of(found: Series) -> list[Any]:
-    """Taylor coefficients of the slip."""
+    """Return Taylor coefficients of the slip."""
     orders = range(len(found.h))
     return [found.x_dot[n] - product(found.h[: n + 1], found.omega[: n + 1]) for n in orders]
 
 
 def sign_of(number: Any) -> int:
-    """-1, 0 or 1."""
+    """Return the sign of a number: -1, 0 or 1."""
     return int(number > 0) - int(number < 0)
 
 
 def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
-    """How the next arc may turn, as fields of `Arc`. Turning does not matter without a couple; from
-    omega = 0 there are three possibilities."""
+    """Return the ways in which the next arc may turn, as fields of `Arc`.
+
+    Turning does not matter without a couple; from omega = 0 there are three possibilities.
+    """
     if body.lever == 0:
         return [{}]
     if omega != 0:
@@ -365,8 +372,10 @@ def turnings(body: Body, omega: Any) -> list[dict[str, Any]]:
 
 
 def is_possible(body: Body, state: State, arc: Arc) -> bool:
-    """Whether the forces of an arc that rolls or slides are available, and its slip and turning
-    grow to the right side."""
+    """Return whether an arc that rolls or slides is possible.
+
+    Its forces must be available, and its slip and turning must grow in the assumed directions.
+    """
     found = motion(body, state, arc, 2)
     h, o = body.touch(state.phi)[:2]
     normal, friction = found.normal[0], found.friction[0]
@@ -383,7 +392,7 @@ def is_possible(body: Body, state: State, arc: Arc) -> bool:
 
 
 def standing(body: Body, state: State, slip: Any) -> Arc | None:
-    """The next arc of a touching body whose gap rate is 0, or None if the body jams."""
+    """Return the next arc of a touching body whose gap rate is 0, or None if the body jams."""
     h, o = body.touch(state.phi)[:2]
     c = body.level + (body.ab**2 / h**3 - h) * state.omega**2
     unlimited = not gmpy2.is_finite(body.mu)
@@ -418,8 +427,10 @@ class Hit(NamedTuple):
 
 
 def collide(body: Body, touch: Touch, v: Any, u: Any, law: str = "stronge") -> Hit:
-    """Impulses of a collision that starts with slip v and gap rate u < 0; the restitution laws
-    "poisson" and "newton" are implemented for finite friction only."""
+    """Return the impulses of a collision that starts with slip v and gap rate u < 0.
+
+    The restitution laws "poisson" and "newton" are implemented for finite friction only.
+    """
     if gmpy2.is_finite(body.mu):
         return collide_with_friction(body, touch, v, u, law)
     assert law == "stronge"
@@ -436,8 +447,9 @@ def collide(body: Body, touch: Touch, v: Any, u: Any, law: str = "stronge") -> H
 
 
 def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any, law: str) -> Hit:
-    """Impulses of a collision with Coulomb friction, in pieces on which v and u are linear in p.
+    """Return the impulses of a collision with Coulomb friction.
 
+    The collision is divided into pieces on which v and u are linear in the normal impulse p.
     Restitution ends by its law: after e^2 of the work of compression (Stronge), e times the impulse
     of compression (Poisson), or at u = -e times its first value (Newton).
     """
@@ -521,11 +533,11 @@ class Follower:
             self.happens("jam")
 
     def first_arc(self, slip: Any) -> Arc | None:
-        """The first arc of a body on the ground, or None if the body jams."""
+        """Return the first arc of a body on the ground, or None if the body jams."""
         return standing(self.body, self.state, slip)
 
     def energy(self) -> Any:
-        """Energy of the body per mass."""
+        """Return the energy of the body per mass."""
         s, body = self.state, self.body
         kinetic = (s.x_dot**2 + s.z_dot**2 + body.k2 * s.omega**2) / 2
         return kinetic + body.level * s.z - body.down * s.x
@@ -535,7 +547,7 @@ class Follower:
         self.rows.append(self.now(kind))
 
     def now(self, kind: str) -> Row:
-        """The current state as a row of the given kind."""
+        """Return the current state as a row of the given kind."""
         s = self.state
         return Row(kind, self.t, s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot)
 
@@ -570,7 +582,7 @@ class Follower:
             self.change(what, arc, found, step)
 
     def reach(self, found: Series) -> Any:
-        """The step at which the last terms of the series are as small as the tolerance."""
+        """Return the step at which the last terms of the series are as small as the tolerance."""
         columns = (found.phi, found.omega, found.h, found.normal, found.friction)
         last = self.road.order - 1
         growth = max(
@@ -580,7 +592,8 @@ class Follower:
         return reach / growth if growth > 0 else mpfr("inf")
 
     def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Margins of the arc by the event that ends it, with zeros at the start divided out."""
+        """Return the margins of the arc by the event that ends it, with zeros at the start divided
+        out."""
         mu, normal, friction = self.body.mu, found.normal, found.friction
         if arc.mode == FLIGHT:
             s = self.state
@@ -596,14 +609,14 @@ class Follower:
             pairs = list(zip(normal, friction, strict=True))
             slips = [("slip", [mu * n + side * f for n, f in pairs]) for side in (1, -1)]
             return [*turn, *slips]
-        if mu == 0:  # without friction slip has no sign
+        if mu == 0:  # without friction the sign of the slip does not matter
             return [*turn, ("lift_off", found.c)]
         slip = [arc.side * one for one in slip_of(found)]
         watched = [*turn, ("stick", slip[arc.zeros :]), ("lift_off", found.c)]
         return [*watched, ("jam", found.stiffness)] if gmpy2.is_finite(mu) else watched
 
     def heat(self, found: Series, arc: Arc, step: Any) -> Any:
-        """The work of friction and of the couple in a step."""
+        """Return the work of friction and of the couple in a step."""
         slip, force, couple = slip_of(found), found.friction, self.body.lever * arc.turn
         normal, omega = found.normal, found.omega
         power = [
@@ -662,7 +675,7 @@ class Follower:
             raise Undecided("a jam on the way")
 
     def turns(self, arc: Arc) -> None:
-        """Choose the arc at omega = 0."""
+        """Choose the next arc when omega has reached 0."""
         x_dot = mpfr(0) if arc.mode == ROLLING else self.state.x_dot
         self.state = self.state._replace(omega=mpfr(0), x_dot=x_dot, z_dot=mpfr(0))
         self.arc = standing(self.body, self.state, x_dot)
@@ -711,12 +724,12 @@ class Follower:
 
 
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
-    """The motion up to a time, at the precision `road`."""
+    """Return the motion up to a time, at the precision `road`."""
     return Follower(scene, road).follow(mpfr(end), most_events)
 
 
 def rows_of(scene: Scene, ends: Sequence[Any], road: Road) -> tuple[list[Row], Any]:
-    """Events and the states at some times, in the order of time, and the energy error."""
+    """Return events and the states at some times, in the order of time, and the energy error."""
     follower = Follower(scene, road)
     rows: list[Row] = []
     known, energy = 0, mpfr(0)
@@ -731,14 +744,14 @@ def rows_of(scene: Scene, ends: Sequence[Any], road: Road) -> tuple[list[Row], A
 
 
 def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
-    """h, h' and h'' in doubles."""
+    """Return h, h' and h'' in doubles."""
     h = math.hypot(a * math.sin(theta), b * math.cos(theta))
     slope = (a - b) * (a + b) * math.sin(theta) * math.cos(theta) / h
     return h, slope, (a * b) ** 2 / h**3 - h
 
 
 def peak_of_friction(scene: Scene) -> float:
-    """First maximum of |F|/N of a rolling body by Euler's method; 0 if there is none."""
+    """Return the first maximum of |F|/N of a rolling body by Euler's method; 0 if there is none."""
     a, b, g, theta, omega = scene.a, scene.b, scene.gravity, scene.theta, scene.omega
     k2 = (a * a + b * b) / 4 if scene.inertia is None else scene.inertia / scene.mass
     down, level = g * math.sin(scene.slope), g * math.cos(scene.slope)

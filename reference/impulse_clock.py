@@ -1,9 +1,9 @@
-"""Follow a slide towards B = 0 (Painleve) until its slip vanishes, in 45 digits.
+"""Follow a slide towards B = 0 (Painleve) until its slip vanishes, to 45 digits.
 
     python reference/impulse_clock.py
 
 The independent variable is the impulse of the normal force. Derivatives with respect to this
-impulse stay finite as B vanishes. contact_motion.py, which uses time instead, stops there. The
+impulse stay finite as B vanishes. contact_motion.py, which uses time instead, stops at B = 0. The
 integrator extrapolates midpoint rules (W. Gragg). The script prints the numbers in
 tests/contact/test_slides.py.
 """
@@ -26,7 +26,8 @@ SCENES = (
 
 
 def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
-    """Derivatives of the state y (see NAMES) with respect to impulse per mass, and the slip."""
+    """Return the derivatives of the state y (see NAMES) with respect to impulse per mass, and the
+    slip."""
     theta, omega, x_dot, _, _ = y
     a, b, k2 = mp.mpf(scene.a), mp.mpf(scene.b), mp.mpf(scene.inertia) / mp.mpf(scene.mass)
     sine, cosine, c2 = mp.sin(theta), mp.cos(theta), (a - b) * (a + b)
@@ -42,7 +43,7 @@ def rates(scene: rl.Scene, side: int, y: list[Any]) -> tuple[list[Any], Any]:
 
 
 def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[Any], Any]:
-    """The state after a step, and an estimate of its error."""
+    """Return the state after a step, and an estimate of its error."""
     rows: list[list[list[Any]]] = []
     for i, n in enumerate(POINTS):
         part = step / n
@@ -62,7 +63,7 @@ def stepped(scene: rl.Scene, side: int, y: list[Any], step: Any) -> tuple[list[A
 
 
 def end_of_slide(scene: rl.Scene) -> list[Any]:
-    """The state in which the slip of a sliding start vanishes."""
+    """Return the state in which the slip of a sliding start vanishes."""
     y = [mp.mpf(getattr(scene, name, 0.0)) for name in NAMES]
     slip = rates(scene, 1, y)[1]
     side, step = (1 if slip > 0 else -1), mp.mpf("1e-3")

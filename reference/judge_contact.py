@@ -73,15 +73,15 @@ from series import Road
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # the values of every 20th scene are checked in a third precision
-FARTHEST = 0.1  # most units between two precisions; the finer one is millions of times better
-LEAST_UNIT = 1e-3 * ROUNDING  # least unit / size of a scene: some values are zero for all inputs
-RATE_STEP = 1e-8  # change of time / step, in differences for rates
+FARTHEST = 0.1  # largest accepted difference between two precisions, in units
+LEAST_UNIT = 1e-3 * ROUNDING  # smallest unit / size of a scene: some values are always zero
+RATE_STEP = 1e-8  # change of time / step, in the finite differences for rates
 UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not determine the answer
 KIND_LIMIT = 1e-4  # largest unit of a time / time at which the inputs determine the kind of event
-MOST_STEPS = 260  # most steps of the motion that plans a scene
+MOST_STEPS = 260  # maximum number of steps of the motion that plans a scene
 MOST_SECONDS = 60.0  # processor time for one scene [s]
 ON_GROUND = 1e-12  # relative distance of z from h, and of x_dot from h omega
-SHORTEST = 1e-6  # least interval with samples / natural time: a hop may be lower than tolerances
+SHORTEST = 1e-6  # shortest interval with samples / natural time: shorter hops are too low
 LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
 NEARBY = 12  # number of slightly changed scenes that distinguish a limit from a fault
 NEARBY_INPUTS = (
@@ -119,7 +119,7 @@ class Judge(Follower):
 
     def __init__(self, case: Case, road: Road) -> None:
         self.blow = case.blow and Blow(*map(mpfr, case.blow))
-        # bounces without energy loss are never summed
+        # bounces without energy loss are not summed
         self.least_rebound = 0.0 if case.scene.restitution == 1 else LEAST_REBOUND
         self.rates: list[list[Any]] = []  # rates of the components of a row, just before each event
         a, b, gravity = case.scene.a, case.scene.b, case.scene.gravity
@@ -140,7 +140,8 @@ class Judge(Follower):
         )
 
     def first_arc(self, slip: Any) -> Arc | None:
-        """The first arc after the blow and the reaction of the ground without restitution."""
+        """Return the first arc after the blow and the reaction of the ground without
+        restitution."""
         body = self.body
         unlimited = not gmpy2.is_finite(body.mu)
         touch = body.touch(self.state.phi)
@@ -186,7 +187,7 @@ class Judge(Follower):
         self.rates += [rates] * (len(self.rows) - len(self.rates))
 
     def reach(self, found: Series) -> Any:
-        """The step whose last terms are as small as the tolerance times the first three."""
+        """Return the step whose last terms are as small as the tolerance times the first three."""
         columns = (found.phi, found.omega, found.h, found.x_dot)
         last, tau = self.road.order - 1, self.natural_time
         growth = mpfr(0)
@@ -217,7 +218,7 @@ class Answer(NamedTuple):
 
 
 def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int = 0) -> Answer:
-    """Events and samples of the motion up to an end."""
+    """Return events and samples of the motion up to an end."""
     with road.context():
         samples: list[Sample | None] = [None] * len(times)
         try:
@@ -245,13 +246,13 @@ def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int =
 
 
 def distance_from_quarter_turn(theta: float) -> Any:
-    """Distance of an angle from the nearest multiple of pi/2, in working precision."""
+    """Return the distance of an angle from the nearest multiple of pi/2, in working precision."""
     quarter = gmpy2.const_pi() / 2
     return abs(mpfr(theta) - gmpy2.rint(mpfr(theta) / quarter) * quarter)
 
 
 def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
-    """Cases with one input changed by 2.2e-16, and the weight of each."""
+    """Yield cases with one input changed by 2.2e-16, and the weight of each."""
     scene = case.scene
     with ROADS[-1].context():
         k2 = Body(scene).k2
@@ -278,7 +279,7 @@ def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
 
 
 def with_input(case: Case, name: str, value: Any) -> Case:
-    """The case with one input of its scene changed."""
+    """Return the case with one input of its scene changed."""
     return case._replace(scene=case.scene._replace(**{name: value}))
 
 
@@ -292,7 +293,7 @@ class Judged(NamedTuple):
 
 
 def differences(new: Row, old: Row) -> list[float]:
-    """Magnitudes of the differences between two rows."""
+    """Return the magnitudes of the differences between two rows."""
     return [float(abs(p - q)) for p, q in zip(new[1:], old[1:], strict=True)]
 
 
@@ -307,26 +308,28 @@ class Reference(NamedTuple):
 
 
 def natural(scene: Scene) -> tuple[float, float]:
-    """Length of the scene [m] and its natural time sqrt(length / g) [s]."""
+    """Return the length of the scene [m] and its natural time sqrt(length / g) [s]."""
     length = max(scene.a, scene.b)
     return length, math.sqrt(length / scene.gravity)
 
 
 def sizes(scene: Scene) -> list[float]:
-    """Natural sizes of the components of a row, to recognise answers that the inputs do not
-    determine."""
+    """Return the natural sizes of the components of a row.
+
+    They show which answers the inputs do not determine.
+    """
     length, tau = natural(scene)
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
 def rows_of(found: Answer) -> dict[str, Row]:
-    """All rows of an answer, by name."""
+    """Return all rows of an answer, by name."""
     rows = {f"event {i}": row for i, row in enumerate(found.events)}
     return rows | {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
 
 
 def alike(what: str, *found: Answer) -> bool:
-    """Whether several answers have the same events up to an event or a sample."""
+    """Return whether several answers have the same events up to an event or a sample."""
     kind, number = what.split()
     i = int(number)
     if kind == "event":
@@ -336,7 +339,7 @@ def alike(what: str, *found: Answer) -> bool:
 
 
 def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
-    """Largest distance of the judged rows from the rows of another precision, in units."""
+    """Return the largest distance of judged rows from the rows of another precision, in units."""
     least = [LEAST_UNIT * size for size in sizes(case.scene)]
     shares = [
         apart / max(unit, smallest)
@@ -350,7 +353,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 
 
 def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
-    """The effect of half an ulp of theta on the values that it determines on the ground."""
+    """Return the effect of half an ulp of theta on the values that it determines on the ground."""
     theta, omega, z, x_dot = map(float, (row.theta, row.omega, row.z, row.x_dot))
     h, slope, bend = support(float(scene.a), float(scene.b), theta)
     if abs(z - h) > ON_GROUND * h:
@@ -363,7 +366,7 @@ def by_rounded_angle(scene: Scene, row: Row) -> dict[str, float]:
 
 
 def reference(case: Case, times: list[float], end: float, check: bool, level: int = 0) -> Reference:
-    """Events, samples and their units, at a finer precision if this one is too coarse."""
+    """Return events, samples and their units, at a finer precision if this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -402,7 +405,7 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
     apart = distance(judged, case, bases)
     if apart > FARTHEST and level + 3 < len(ROADS):
         return reference(case, times, end, check, level + 1)
-    # rows that differ even so are left out
+    # rows that still differ are left out
     judged = [one for one in judged if distance([one], case, bases) <= FARTHEST]
     if check:
         finest = answer(case, ROADS[level + 2], times, end)
@@ -421,7 +424,7 @@ def reference(case: Case, times: list[float], end: float, check: bool, level: in
 
 
 def in_words(case: Case) -> rl.Scene:
-    """The scene of a case as the package's `Scene`."""
+    """Return the scene of a case as the package's `Scene`."""
     given = case.scene.given()
     if case.blow:
         given["impulse"] = rl.Impulse(**case.blow._asdict())
@@ -437,12 +440,12 @@ class Found(NamedTuple):
 
 
 def states(motion: rl.Trajectory, count: int) -> list[list[float]]:
-    """The samples of a motion as rows."""
+    """Return the samples of a motion as rows."""
     return [[float(getattr(motion, name)[i]) for name in VALUES] for i in range(count)]
 
 
 def found_by_package(case: Case, times: list[float], end: float, rng: random.Random) -> Found:
-    """The package's events, and its samples by every route."""
+    """Return the package's events, and its samples by every route."""
     scene = in_words(case)
     asked = sorted({*times, end})
     motion = rl.simulate(scene, asked, model="contact", raise_on_failure=False)
@@ -474,7 +477,7 @@ def found_by_package(case: Case, times: list[float], end: float, rng: random.Ran
 
 
 def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
-    """Sample times between events, an end time, and the reason for it."""
+    """Return sample times between events, an end time, and the reason for it."""
     first = answer(case, CHANGED_ROAD, [], case.longest, MOST_STEPS)
     ends = [float(one.t) for one in first.events]
     if first.events and first.events[-1].kind == "jam":
@@ -494,7 +497,7 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
 
 
 def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bool:
-    """Whether a scene changed by a few roundings has the events that the package reports."""
+    """Return whether a scene changed by a few roundings has the events that the package reports."""
     for most in (4, 64) * NEARBY:
         near = case
         v = case.scene._asdict()
@@ -516,7 +519,7 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
 
 
 def too_slow(*_: Any) -> None:
-    """Handle the alarm by raising a TimeoutError."""
+    """Raise a TimeoutError when the alarm sounds."""
     raise TimeoutError
 
 
@@ -524,8 +527,10 @@ Task = tuple[int, int, str | None, bool]
 
 
 def judge(task: Task, tell: bool = False) -> dict[str, Any]:
-    """The record of one scene, given by its number for a seed, drawn from one family or any, with
-    or without rolling resistance."""
+    """Return the record of the scene that has a number for a seed.
+
+    The scene is drawn from one family or from any, with or without rolling resistance.
+    """
     seed, number, family, resistance = task
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
@@ -554,7 +559,8 @@ def judge(task: Task, tell: bool = False) -> dict[str, Any]:
 
 
 def first_wrong(known: Reference, found: Found, end: float) -> int | None:
-    """Number of the first event of the package that is missing, invented or of another kind."""
+    """Return the number of the first event of the package that is missing, invented or of another
+    kind."""
     for i, kind in enumerate(known.kinds):
         if [kind] != found.kinds[i : i + 1]:
             return i
@@ -566,7 +572,7 @@ def first_wrong(known: Reference, found: Found, end: float) -> int | None:
 
 
 def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
-    """The verdict on a case, with the errors in units."""
+    """Return the verdict on a case, with the errors in units."""
     words = in_words(case)  # the package rejects an invalid scene here
     record: dict[str, Any] = {"scene": repr(words)}
     times, end, why = plan(case, rng)
@@ -625,7 +631,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
 
 
 def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
-    """Largest error of a record in units, by `sol` or by all other routes."""
+    """Return the largest error of a record in units, by `sol` or by all other routes."""
     found = [value for name, value in record[key].items() if name.startswith("sol") == sol]
     return max(found, default=0.0)
 
@@ -634,17 +640,17 @@ def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform between two powers of ten."""
+    """Return a number whose logarithm is uniform between two powers of ten."""
     return math.exp(math.log(10) * rng.uniform(low, high))
 
 
 def sign(rng: random.Random) -> int:
-    """1 or -1 with equal probability."""
+    """Return 1 or -1 with equal probability."""
     return rng.choice([-1, 1])
 
 
 def drawn_axes(rng: random.Random) -> tuple[float, float]:
-    """Semi-axes: the longer one between a millimetre and a kilometre, mostly near a metre."""
+    """Draw semi-axes; the longer one is from 1 mm to 1 km, and mostly near 1 m."""
     longer = power(rng, -3, 3) if rng.random() < 0.2 else power(rng, -0.5, 0.5)
     what = rng.random()
     if what < 0.07:
@@ -660,7 +666,7 @@ def drawn_axes(rng: random.Random) -> tuple[float, float]:
 
 
 def drawn_friction(rng: random.Random) -> float:
-    """Friction: none, tiny, common, large or unlimited."""
+    """Draw a friction: none, tiny, common, large or unlimited."""
     what = rng.random()
     if what < 0.1:
         return 0.0
@@ -672,7 +678,7 @@ def drawn_friction(rng: random.Random) -> float:
 
 
 def drawn_slope(rng: random.Random) -> float:
-    """Slope: level, gentle or steep, up or down."""
+    """Draw a slope: level, gentle or steep, up or down."""
     what = rng.random()
     if what < 0.45:
         return 0.0
@@ -682,7 +688,7 @@ def drawn_slope(rng: random.Random) -> float:
 
 
 def drawn_body(rng: random.Random) -> dict[str, Any]:
-    """Inputs of a body and its ground, without a start."""
+    """Return the inputs of a body and its ground, without a start."""
     a, b = drawn_axes(rng)
     longer = max(a, b)
     mass = 1.0 if rng.random() < 0.4 else power(rng, -3, 3)
@@ -704,19 +710,19 @@ Values = dict[str, Any]
 
 
 def with_axes(v: Values, a: float, b: float) -> None:
-    """The inputs with other semi-axes; the inertia keeps its ratio to a disc's."""
+    """Change the semi-axes in the inputs, but not the ratio of the inertia to that of a disc."""
     if v["inertia"] is not None:
         v["inertia"] *= (max(a, b) / max(v["a"], v["b"])) ** 2
     v["a"], v["b"] = a, b
 
 
 def rate(v: Values) -> float:
-    """Natural angular velocity of falling over [rad/s]."""
+    """Return the natural angular velocity of falling over [rad/s]."""
     return math.sqrt(v["gravity"] / max(v["a"], v["b"]))
 
 
 def speed(v: Values) -> float:
-    """Speed after falling by the body's length [m/s]."""
+    """Return the speed after falling by the body's length [m/s]."""
     return math.sqrt(v["gravity"] * max(v["a"], v["b"]))
 
 
@@ -886,7 +892,7 @@ def limits(rng: random.Random, v: Values) -> None:
 
 
 def needed_friction(v: Values) -> float:
-    """Largest |F|/N of rolling from rest on level ground."""
+    """Return the largest |F|/N of rolling from rest on level ground."""
     h, lever, _ = support(v["a"], v["b"], v["theta"])
     disc = (v["a"] ** 2 + v["b"] ** 2) / 4
     k2 = disc if v["inertia"] is None else v["inertia"] / v["mass"]
@@ -894,12 +900,12 @@ def needed_friction(v: Values) -> float:
 
 
 class Family(NamedTuple):
-    """The start of a family, its share of the scenes, its most events, and its time spans."""
+    """The start of a family, its share of the scenes, its limit of events, and its time spans."""
 
     draw: Callable[[random.Random, Values], None]
     share: float
     most_events: int = 8
-    spans: tuple[float, float] = (3.0, 12.0)  # least and largest end in natural times
+    spans: tuple[float, float] = (3.0, 12.0)  # smallest and largest end, in natural times
 
 
 FAMILIES = {
@@ -921,7 +927,7 @@ FAMILIES = {
 
 
 def drawn_blow(rng: random.Random, v: Values) -> Blow:
-    """A blow at a point of the body, directed inwards."""
+    """Return a blow at a point of the body, directed inwards."""
     mass, fall = v["mass"], speed(v)
     size = mass * fall * power(rng, -3, 0.5)
     angle = rng.uniform(-math.pi, math.pi)
@@ -936,7 +942,7 @@ def drawn_blow(rng: random.Random, v: Values) -> Blow:
 
 
 def drawn(rng: random.Random, name: str | None = None) -> Case:
-    """A case of a family, or of a family drawn by its share."""
+    """Return a case of a family, or of a family drawn by its share."""
     shares = [family.share for family in FAMILIES.values()]
     name = name or rng.choices(list(FAMILIES), shares)[0]
     family = FAMILIES[name]
@@ -949,12 +955,12 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
 
 
 def with_resistance(rng: random.Random, case: Case) -> Case:
-    """The case with a lever of rolling resistance."""
+    """Return the case with a lever of rolling resistance."""
     scene = case.scene
     most = min(scene.a, scene.b) / 2
     lever = most * power(rng, -12 if rng.random() < 0.5 else -2, 0)
     h, slope, _ = support(scene.a, scene.b, scene.theta)
-    holds = abs(slope - h * math.tan(scene.slope))  # the least lever that holds the body at rest
+    holds = abs(slope - h * math.tan(scene.slope))  # the smallest lever that holds the body at rest
     if rng.random() < 0.2 and 0 < holds < 0.9 * most:
         off = rng.choice([0, 1, -1, 3, -3, 1e6, sign(rng) * power(rng, 7, 15)]) * 1.1e-16
         lever = holds * (1 + off)
@@ -966,7 +972,7 @@ def with_resistance(rng: random.Random, case: Case) -> Case:
 
 
 def aspect(record: dict[str, Any]) -> str:
-    """The power of ten of a/b, or "round"."""
+    """Return the shape in words: "round", or for example "thin a > b"."""
     a, b = record["inputs"]["a"], record["inputs"]["b"]
     if abs(a / b - 1) < 0.1:
         return "round"
@@ -975,14 +981,14 @@ def aspect(record: dict[str, Any]) -> str:
 
 
 def mu(record: dict[str, Any]) -> str:
-    """A word that describes the friction."""
+    """Return a word that describes the friction."""
     value = record["inputs"]["friction"]
     words = ((0, "0"), (1e-3, "tiny"), (3, "common"), (1e7, "large"))
     return next((word for most, word in words if value <= most), "unlimited")
 
 
 def lever(record: dict[str, Any]) -> str:
-    """The power of ten of the lever of rolling resistance / the shorter semi-axis."""
+    """Return the power of ten of the lever of rolling resistance / the shorter semi-axis."""
     v = record["inputs"]
     size = v.get("rolling_resistance", 0.0) / min(v["a"], v["b"])
     return f"1e{max(math.floor(math.log10(size)), -12):+03}" if size else "none"

@@ -5,13 +5,13 @@
 A film takes one to six seconds. A run continues an existing file, and each study has its own seeds.
 `--films 0` only prints the results in the file. The studies:
 
-right    films of all kinds with normal noise: how many are called wrong, and, if sigma is
+right    films of all kinds with normal noise: how many are reported as wrong, and, if sigma is
          estimated, how far parameters are from those of the scene, in standard errors
 camera   films of all kinds from a camera of unknown scale, ground and clock: as for right films
 resistance  films of bodies that come to rest by rolling resistance, every second one from such a
          camera, with given sigma: chi2, parameters as for right films, and the time of a fit
-wrong    films that do not fit their scene, of the kinds below in turn: how many are called wrong,
-         and for how many the message names the reading that makes them fit
+wrong    films that do not fit their scene, of the kinds below in turn: how many are reported as
+         wrong, and for how many the message names the reading that makes them fit
 example  the film of docs/film.md: cost of the minimum above the minimum reached from the true scene
 wild     the same film with 4 of 80 angles off by a quarter turn, fitted with "soft_l1" and
          "cauchy" in turn
@@ -48,7 +48,7 @@ def noisy(scene: rl.Scene, t: Any, sigma: dict[str, float], random: Any) -> Trac
 
 
 def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
-    """Scene of a kind, its unknowns, the tracker's noise, and the camera's times."""
+    """Return a scene of a kind, its unknowns, the tracker's noise, and the camera's times."""
     a = float(np.exp(random.uniform(np.log(0.02), np.log(1.0))))
     b, speed = a * random.uniform(0.5, 0.95), math.sqrt(9.81 * a)
     body: dict[str, Any] = {"a": a, "b": b, "theta": random.uniform(-1, 1)}
@@ -80,7 +80,7 @@ def drawn(kind: str, random: Any) -> tuple[rl.Scene, tuple[str, ...], dict[str, 
 
 
 def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
-    """Scene with the guesses of a person who has watched the film once."""
+    """Return the scene with the guesses of a person who has watched the film once."""
     guess = {name: 1.2 * value_of(scene, name) for name in free}
     for name, off in {"x": 0.1 * scene.a, "z_dot": 0.1 * math.sqrt(9.81 * scene.a)}.items():
         guess |= {name: guess[name] + off} if name in free else {}
@@ -89,7 +89,7 @@ def guessed(scene: rl.Scene, free: tuple[str, ...]) -> rl.Scene:
 
 
 def largest(fit: rl.Fit) -> float:
-    """The largest T of the tracks of a fit without outliers, as defined in `fit_motion`."""
+    """Return the largest T of the tracks of a fit without outliers, as defined in `fit_motion`."""
     found = [0.0]
     for r in fit.residuals.T:
         pairs = np.isfinite(r[:-1]) & np.isfinite(r[1:])
@@ -107,7 +107,7 @@ def with_gaps(film: Tracks, random: Any) -> None:
 
 
 def results(fit: rl.Fit, true: dict[str, float], **more: Any) -> dict[str, Any]:
-    """The results of a fit of right films; `off` is the error in standard errors."""
+    """Return the results of a fit of right films; `off` is the error in standard errors."""
     off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
     return more | {
         "frames": len(fit.residuals), "T": largest(fit), "off": off, "chi2": fit.chi2,
@@ -129,8 +129,11 @@ def right(seed: int) -> dict[str, Any]:
 
 
 def camera(seed: int) -> dict[str, Any]:
-    """The scale is 0.2 to 5, and the ground is off by up to three semi-axes. The first frame is up
-    to 1.5 sqrt(a/g) after the start, and the clock of the film may have started long before."""
+    """Return the results of a film from a camera of unknown scale, ground and clock.
+
+    The scale is 0.2 to 5, and the ground is off by up to three semi-axes. The first frame is up to
+    1.5 sqrt(a/g) after the start, and the clock of the film may have started long before.
+    """
     random, kind = np.random.default_rng([7, seed]), KINDS[seed % 5]
     scene, free, sigma, t = drawn(kind, random)
     scale = float(np.exp(random.uniform(math.log(0.2), math.log(5))))
@@ -155,9 +158,9 @@ def camera(seed: int) -> dict[str, Any]:
 def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], Any]:
     """Like `drawn`, for a body that comes to rest and whose lever is at least five standard errors.
 
-    The spin of a rolling body is known if the camera has an unknown clock, because otherwise the
-    body would pass through an equivalent start in every swing. The film ends at 0.7 to 1.1 times
-    the time of rest, which is below 60 sqrt(a/g).
+    The spin of a rolling body is not fitted if the clock of the camera is unknown, because the body
+    would otherwise pass through an equivalent start in every swing. The film ends at 0.7 to 1.1
+    times the time of rest, which is below 60 sqrt(a/g).
     """
     random, small = np.random.default_rng([8, seed]), seed // 6 % 2
     while True:
@@ -186,14 +189,16 @@ def resisted(seed: int) -> tuple[rl.Scene, tuple[str, ...], dict[str, float], An
             continue
         rate, last = random.choice([60, 240]), ends[0] * random.uniform(0.7, 1.1)
         t = np.arange(1, max(20, int(rate * last)) + 1) / rate
-        t = t[:: math.ceil(t.size / 300)]  # like a slower camera's
+        t = t[:: math.ceil(t.size / 300)]  # as from a slower camera
         if scene.rolling_resistance > 5 * _error(scene, free, sigma, t):
             return scene, free, sigma, t
 
 
 def _error(scene: rl.Scene, free: tuple[str, ...], sigma: dict[str, float], t: Any) -> float:
-    """Standard error of the lever for a known camera, from central differences at the true
-    scene."""
+    """Return the standard error of the lever for a known camera.
+
+    It is computed from central differences at the true scene.
+    """
     columns = []
     for name in free:
         step = 1e-6 * {"rolling_resistance": scene.b}.get(name, 1.0)
@@ -230,14 +235,14 @@ def _smoothed(track: Any) -> Any:
 
 
 def _drag(film: Tracks, random: Any) -> Tracks:
-    """A body in thick air: its velocities decay."""
+    """Return the film of a body in thick air, whose velocities decay."""
     slower = (1 - np.exp(-0.8 * film["t"])) / 0.8
     motion = rl.simulate(EXAMPLE, slower)
     return {n: film[n] + getattr(motion, n) - getattr(rl.simulate(EXAMPLE, film["t"]), n)
             for n in TRACKS}  # fmt: skip
 
 
-# by kind: the change of a film, and the reading that makes it fit, if any
+# by kind: the change of a film, and the reading with which it fits, or ""
 WRONG: dict[str, tuple[Callable[[Tracks, Any], Tracks], str]] = {
     "counter-clockwise": (lambda f, _: {"theta": -f["theta"]}, "theta = -theta"),
     "degrees": (lambda f, _: {"theta": np.degrees(f["theta"])}, "theta = np.radians(theta)"),
@@ -270,8 +275,7 @@ def wrong(seed: int) -> dict[str, Any]:
 
 
 def _over_truth(film: Tracks, loss: str) -> dict[str, Any]:
-    """Cost of the minimum that `fit_motion` finds, minus that of the minimum reached from the true
-    scene."""
+    """Return the results of a fit; `over` is its cost minus that of a fit from the true scene."""
     start = time.process_time()
     fit = rl.fit_motion(**film, scene=GUESS, free=FREE, sigma=SIGMA, loss=loss)
     seconds, squares = time.process_time() - start, (fit.residuals / fit.sigma) ** 2
@@ -287,7 +291,7 @@ _LOSS: dict[str, Callable[[Any], Any]] = {
 
 
 def _local(film: Tracks, loss: str) -> float:
-    """Cost of the minimum that SciPy alone reaches from the true scene."""
+    """Return the cost of the minimum that SciPy alone reaches from the true scene."""
     from scipy.optimize import least_squares
 
     def residuals(u: Any) -> Any:

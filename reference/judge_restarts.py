@@ -5,10 +5,10 @@
 A run takes a few minutes and continues an existing file. Without `--file` the results are not
 stored. `--scenes 0` only prints the results in the file. The studies:
 
-ends    ends after t1 start motions of length t2: do they end like one motion of length t1 + t2
-        (an exact sum)?
-events  states at events (those of the event, of `at` and of `scene_at`) start motions: do these
-        have the later events?
+ends    new motions of length t2 start from states at t1: do they end like one motion of length
+        t1 + t2 (an exact sum)?
+events  new motions start from states at events (from the event, `at` and `scene_at`): do they have
+        the later events?
 cut     motions stopped by `max_events` continue from their end, and from one rounding before the
         next event: do the new motions have this event and the later ones?
 
@@ -18,11 +18,11 @@ The verdict on a new start is one of these:
 same            the same events and, in `ends`, a state within 8 units
 over 8 units    the same events, but a state farther away
 silent          in `cut`, the next change of mode happens without an event, as documented
-one more ...    one more impact from a start among bounces that the motion sums, as documented
-jams ...        a start at the edge of Painleve's paradox: its roundings decide whether it jams, as
-                documented
-beside a tie    other events, but the first motion has other events, too, if an input changes by
-                1e-12
+one more ...    one more impact after a start between bounces that are summed, as documented
+jams ...        a start at the limit of Painleve's paradox: rounding errors decide whether it jams,
+                as documented
+beside a tie    other events, but a relative change of 1e-12 in an input also changes the events of
+                the first motion
 wrong           other events for no known reason
 refused         no scene accepts the state
 
@@ -54,10 +54,10 @@ INPUTS = ("a", "b", "mass", "gravity", "inertia", "slope", "friction", "restitut
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 ULP = 2.0**-52
 CHANGE = 1e-12  # change of an input that shows whether a motion is beside a tie
-LIMIT = 8.0  # units
-BLOCK = 50  # scenes that are drawn together
-MOST = 30  # most events of a motion
-SAME_TIME = 1e-5  # relative; separates events: errors of the inputs grow from impact to impact
+LIMIT = 8.0  # largest accepted error, in units
+BLOCK = 50  # number of scenes that are drawn together
+MOST = 30  # maximum number of events of a motion
+SAME_TIME = 1e-5  # largest relative difference of the times of an event in two motions
 SUMMED = "one more among summed bounces"
 JAMS = "jams by roundings"
 EXCUSED = ("same", "silent", SUMMED, JAMS, "beside a tie")
@@ -71,7 +71,7 @@ def powers(rng: Any, n: int, low: float, high: float) -> Any:
 
 
 def either(rng: Any, n: int, *arrays: Any) -> Any:
-    """Each number drawn from one of the arrays."""
+    """Return an array whose numbers are each drawn from one of the given arrays."""
     return np.choose(rng.integers(len(arrays), size=n), arrays)
 
 
@@ -96,7 +96,7 @@ def body(rng: Any, n: int) -> Values:
 
 
 def clocks(v: Values) -> Any:
-    """Times of falling over [s]."""
+    """Return the natural times of falling over [s]."""
     return np.sqrt(np.maximum(v["a"], v["b"]) / v["gravity"])
 
 
@@ -126,7 +126,7 @@ def draw(rng: Any, n: int) -> Values:
 
 
 def scene_of(v: Values, i: int) -> rl.Scene | None:
-    """Scene number i, or None if its values are rejected."""
+    """Return scene i, or None if its values are rejected."""
     try:
         given: Values = {n: float(c[i]) for n, c in v.items() if not math.isnan(c[i])}
         return rl.Scene(**given)
@@ -138,8 +138,11 @@ def scene_of(v: Values, i: int) -> rl.Scene | None:
 
 
 def ends(v: Values, t: Any) -> tuple[Any, Any]:
-    """States and codes of `rl.ends` (mode, events, first, ending); NaN, -1 for refused starts."""
-    columns = [  # values not drawn have a scene's defaults; NumPy turns None into NaN
+    """Return the states and codes of `rl.ends`; NaN and -1 for refused starts.
+
+    The codes are the mode, the number of events, the first event and the ending.
+    """
+    columns = [  # other values have the defaults of Scene; NumPy turns None into NaN
         v[name] if name in v else np.full(len(t), getattr(rl.Scene, name), float)
         for name in _core.FIELDS["Scene"]
     ]
@@ -149,8 +152,10 @@ def ends(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:
-    """Effect of a rounding of each input on the ends, and whether such a change changes the
-    events."""
+    """Return the effect on the ends of a rounding of each input, and where events change.
+
+    The inputs are changed by the relative amount `change`.
+    """
     states, codes = ends(v, t)
     total, tie = np.zeros_like(states), np.zeros(len(t), bool)
     for name, column in v.items():
@@ -167,7 +172,7 @@ def spread(v: Values, t: Any, change: float) -> tuple[Any, Any]:
 
 
 def units(v: Values, t: Any) -> tuple[Any, Any]:
-    """Effect of roundings on the ends, and which ends are beside a tie."""
+    """Return the effect of roundings on the ends, and which ends are beside a tie."""
     total, tie = spread(v, t, CHANGE)
     finer, tie_of_finer = spread(v, t, CHANGE / 10)
     bent = finer > 3 * total + 64 * ULP * np.abs(ends(v, t)[0])
@@ -175,7 +180,7 @@ def units(v: Values, t: Any) -> tuple[Any, Any]:
 
 
 def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
-    """Effect of an ulp of theta on the values that it determines on the ground."""
+    """Return the effect of an ulp of theta on the values that it determines on the ground."""
     theta, omega = state[:2]
     slope = rl.geometry.support_slope(theta, a=v["a"], b=v["b"])
     bend = rl.geometry.support_curvature(theta, a=v["a"], b=v["b"])
@@ -185,7 +190,10 @@ def by_rounded_angle(v: Values, state: Any, mode: Any) -> Any:
 
 
 def freed(v: Values, mode: Any) -> Values:
-    """Starts without the values that their mode determines, so that inputs can be changed."""
+    """Return starts without the values that their mode determines.
+
+    Other inputs can then be changed consistently.
+    """
     ground, rolls = mode != rl.Mode.FLIGHT, ~np.isin(mode, [rl.Mode.FLIGHT, rl.Mode.SLIDING])
     left_out = {"z": ground, "z_dot": ground, "x_dot": rolls}
     return v | {name: np.where(out, np.nan, v[name]) for name, out in left_out.items()}
@@ -236,8 +244,10 @@ def follow(scene: rl.Scene, t: float, most: int = MOST) -> rl.Trajectory:
 def same(
     m: rl.Trajectory, got: rl.Trajectory, k: int = 0, skip: int = 0, start: float = 0.0
 ) -> bool:
-    """Whether a motion from `start` on has the events of another motion from event k on: the first
-    eight kinds and the first three times."""
+    """Return whether a motion from `start` on has the events of another motion from event k on.
+
+    The first eight kinds and the first three times are compared.
+    """
     complete = len(m.events) < MOST
     if complete and m.status is not got.status:
         return False
@@ -255,7 +265,7 @@ def touches(scene: rl.Scene) -> bool:
 
 
 def summed(m: rl.Trajectory, k: int) -> bool:
-    """Whether bounces are summed before event k."""
+    """Return whether bounces are summed before event k."""
     if k < 1 or m.events[k - 1].state_after.mode is not rl.Mode.FLIGHT:
         return False
     until = m.events[k].t if k < len(m.events) else m.t_end
@@ -264,7 +274,7 @@ def summed(m: rl.Trajectory, k: int) -> bool:
 
 
 def beside_a_tie(m: rl.Trajectory, k: int) -> bool:
-    """Whether an input changed by 1e-12 changes the events."""
+    """Return whether an input changed by 1e-12 changes the events."""
     for name in INPUTS + STATE:
         value = getattr(m.scene, name)
         if value is None or not math.isfinite(value):
@@ -281,7 +291,7 @@ def beside_a_tie(m: rl.Trajectory, k: int) -> bool:
 
 
 def jams_by_roundings(new: rl.Scene, got: rl.Trajectory) -> bool:
-    """Whether a start jams, but not if its angle is changed by eight roundings."""
+    """Return whether a start jams, but not if its angle is changed by eight roundings."""
     if got.status is not rl.Status.JAMMED or got.t_end > 0:
         return False
     off = 8 * np.spacing(abs(new.theta))
@@ -338,7 +348,7 @@ def study_events(rng: Any, n: int) -> Iterator[Finding]:
             }  # fmt: skip
             for road, start in roads.items():
                 label = f"{e.kind.name} {e.state_after.mode.name} by {road}"
-                again = e.kind is rl.EventKind.JAM and e.t == 0  # a start that jams jams again
+                again = e.kind is rl.EventKind.JAM and e.t == 0  # a new start from a jam jams, too
                 yield judged(m, k - again, label, start, e.t, due=False)
 
 

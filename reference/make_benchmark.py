@@ -1,25 +1,25 @@
-"""Make `python/rolling_ellipse/benchmark/problems/*.json`: problems with known answers.
+"""Compute `python/rolling_ellipse/benchmark/problems/*.json`: problems with known answers.
 
 contact_motion.py computes the motions with series of order 50 and 60 and with 64 and 76 digits.
 States, forces and events must agree to `AGREEMENT`, relative where they are above 1: the largest
 difference was 3.5e-49. The energy minus all work changed by at most 1.5e-52 of its magnitude.
 
-    python make_benchmark.py            makes all files (4 minutes, one core)
-    python make_benchmark.py roll.resist slide.resist     makes these two
+    python make_benchmark.py            computes all files (4 minutes, one core)
+    python make_benchmark.py roll.resist slide.resist     computes these two
 
 A row contains x, z, theta, x_dot, z_dot, omega (SI units) and the normal and the friction force on
 the body [N], which are 0 in flight. The times are multiples of a round step, at least 0.02
 sqrt(L/g) away from each event, where L = max(a, b). All numbers are the doubles nearest to the
 motion of the scene in the file, with the inertia in the file. For a start on the ground, the values
-that theta, omega and the contact determine are computed from these.
+that follow from theta, omega and the contact are computed from these.
 
 Condition. The condition of a value y is the sum of |dy/dln p| over the inputs p, divided by the
-scale of y, and at least 1. A state has the largest condition of its six values (see `scales`), an
-event that of its time, with the scale sqrt(L/g). theta changes in radians, and other values of the
-start that are zero change in units of L, sqrt(g L) or sqrt(g/L). A slope, friction, restitution or
-rolling resistance of zero does not change, nor does the mass; the inertia is that of a uniform disc
-and follows from a and b. The differences are central, of 1e-12 with 42 digits. They are one-sided
-if the input is at the end of its range or if one side has other events.
+scale of y, and at least 1. A state has the largest condition of its six values (see `scales`), and
+an event has the condition of its time, with the scale sqrt(L/g). theta changes in radians, and
+other values of the start that are zero change in units of L, sqrt(g L) or sqrt(g/L). A slope,
+friction, restitution or rolling resistance of zero does not change, nor does the mass; the inertia
+is that of a uniform disc and follows from a and b. The differences are central, of 1e-12 with 42
+digits. They are one-sided if the input is at the end of its range or if one side has other events.
 
 The infinitely many bounces of a disc that no longer slips form a geometric series, whose sum is
 known in closed form. The events are those of a simulation with the default rest_speed: impacts as
@@ -47,9 +47,9 @@ FOLDER = Path(__file__).parents[1] / "python" / "rolling_ellipse" / "benchmark" 
 STATE = ["x", "z", "theta", "x_dot", "z_dot", "omega"]
 STEPS = {60: 2.0, 20: 0.5, 12: 0.4, 8: 0.2, 6: 0.2, 5: 0.2, 4: 0.1, 3: 0.1, 2.5: 0.1}  # else 0.05
 LARGEST_CONDITION = 1000.0
-LEAST_GAP = 0.002  # over L; a lower flight is not scored as one
+LEAST_GAP = 0.002  # over L; a lower flight is not scored as a flight
 LAWS = ("stronge", "poisson", "newton")
-GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # with the change of the input
+GRADIENT_ROADS = ((TABLE_ROAD, "1e-15"), (CHECK_ROAD, "1e-18"))  # and the changes of the input
 
 
 class Problem(NamedTuple):
@@ -153,7 +153,7 @@ class Sampler(Follower):
         self.samples = [] if self.arc else [self.before]
         self.sides = [(self.before, self.before) for _ in self.rows]  # a jam at the start
         self.grips = False  # whether friction ever holds the contact
-        self.half_swings = 0  # of a body that starts at rest
+        self.half_swings = 0  # number of half swings of a body that starts at rest
 
     @property
     def kinds(self) -> list[str]:
@@ -161,13 +161,13 @@ class Sampler(Follower):
         return [row.kind.upper() for row in self.rows]
 
     def row(self, normal: Any = 0, friction: Any = 0) -> list[Any]:
-        """The current state, followed by the forces computed from forces per mass."""
+        """Return the current state, followed by the forces computed from forces per mass."""
         s, mass = self.state, self.body.mass
         forces = mass * normal, mass * friction
         return [s.x, s.z, s.theta, s.x_dot, s.z_dot, s.omega, *forces]
 
     def begun(self) -> list[Any]:
-        """The row at the start of the current arc."""
+        """Return the row at the start of the current arc."""
         if self.arc is None:
             return self.row()
         found = motion(self.body, self.state, self.arc, 1)
@@ -186,8 +186,10 @@ class Sampler(Follower):
         self.grips |= self.arc is not None and self.arc.mode == ROLLING
 
     def step(self, end: Any) -> None:
-        """Take a step, and store the rows just before and after its events; between two events of a
-        step the body flies."""
+        """Take a step, and store the rows just before and after its events.
+
+        Between two events of one step the body flies.
+        """
         known = len(self.rows)
         super().step(end)
         for row in self.rows[known:]:
@@ -196,7 +198,7 @@ class Sampler(Follower):
             self.sides.append((before, self.begun() if row is self.rows[-1] else flying))
 
     def turns(self, arc: Arc) -> None:
-        """Choose the arc at omega = 0, the end of a half swing."""
+        """Choose the next arc when omega has reached 0, and count a half swing."""
         super().turns(arc)
         self.half_swings += 1
 
@@ -208,7 +210,7 @@ class Sampler(Follower):
         touch = body.touch(s.phi)
         rebound = s.z_dot - touch.o * s.omega
         slow = rebound < REST_SPEED * gmpy2.sqrt(body.g * min(body.a, body.b))
-        nearly_round = abs(body.c2) < 1e-9 * body.ab  # derivatives change the disc slightly
+        nearly_round = abs(body.c2) < 1e-9 * body.ab  # derivatives also need slightly changed discs
         if self.arc == Arc(FLIGHT, zeros=1) and slow and nearly_round:
             assert s.x_dot == touch.h * s.omega
             lasts = 2 * rebound / body.level / (1 - body.e)
@@ -224,14 +226,14 @@ class Sampler(Follower):
 def followed(
     scene: Scene, end: float, road: Road, times: Iterable[float], law: str = LAWS[0]
 ) -> Sampler:
-    """The motion of a scene up to a time, with its rows at given times."""
+    """Return the motion of a scene up to a time, with its rows at given times."""
     sampler = Sampler(scene, road, times, law)
     assert sampler.follow(mpfr(end), 100).lost is None
     return sampler
 
 
 def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[Sampler, float]:
-    """The motion, and the largest difference between its two computations."""
+    """Return the motion, and the largest difference between its two computations."""
     found, numbers = [], []
     for road in (TABLE_ROAD, CHECK_ROAD):
         with road.context():
@@ -249,8 +251,10 @@ def checked(problem: Problem, times: list[float], law: str = LAWS[0]) -> tuple[S
 def neighbours(
     problem: Problem, base: Sampler, times: list[float], name: str, size: Any
 ) -> tuple[Any, ...]:
-    """Two values of an input and their motions: the input decreased and increased, or unchanged and
-    changed."""
+    """Return two values of an input, each with its motion.
+
+    The values are the input decreased and increased, or the input unchanged and changed.
+    """
     scene, end, old = problem.scene, problem.t_end, mpfr(getattr(problem.scene, name))
     found = []
     for new in (old - size, old + size):
@@ -262,7 +266,7 @@ def neighbours(
 
 
 def conditions(problem: Problem, times: list[float], scales: dict[str, float]) -> tuple[Any, Any]:
-    """Conditions of the rows and of the events."""
+    """Return the conditions of the rows and of the events."""
     scene = problem.scene
     rows, events = Counter[Any](), Counter[int]()
     with UNIT_ROAD.context():
@@ -286,7 +290,7 @@ def conditions(problem: Problem, times: list[float], scales: dict[str, float]) -
 
 
 def gradient(problem: Problem, name: str) -> list[str]:
-    """The derivative of the state at the time of the problem's gradients, to 20 digits."""
+    """Return the derivative of the state at the time of the problem's gradients, to 20 digits."""
     found, old = [], getattr(problem.scene, name)
     for road, change in GRADIENT_ROADS:
         with road.context():
@@ -299,12 +303,13 @@ def gradient(problem: Problem, name: str) -> list[str]:
 
 
 def doubles(row: list[Any]) -> list[float]:
-    """The nearest doubles, or 0 for magnitudes up to `AGREEMENT`."""
+    """Return the nearest doubles, or 0 for magnitudes up to `AGREEMENT`."""
     return [float(one) if abs(one) > AGREEMENT else 0.0 for one in row]
 
 
 def tags(scene: Scene, found: Sampler) -> list[str]:
-    """Abilities that a simulator needs; "spin" means a spin that differs from that of rolling."""
+    """Return the abilities that a simulator needs; "spin" means a spin that differs from that of
+    rolling."""
     has = {
         "flight": scene.z is not None or "LIFT_OFF" in found.kinds,
         "non-round": scene.a != scene.b,
@@ -318,7 +323,7 @@ def tags(scene: Scene, found: Sampler) -> list[str]:
 
 
 def answer(name: str, found: Sampler) -> dict[str, Any]:
-    """The answer that a simulator must give, depending on the question of the problem.
+    """Return the answer that a simulator must give, depending on the question of the problem.
 
     For settling bounces: those after a flight higher than `LEAST_GAP`, and the time of their end.
     For a body that comes to rest: its position at rest, and the number of half swings.
@@ -345,7 +350,7 @@ def answer(name: str, found: Sampler) -> dict[str, Any]:
 
 
 def make(name: str, problem: Problem) -> tuple[str, float, float]:
-    """The text of a problem, its largest difference and its energy change."""
+    """Return the text of a problem, its largest difference and its energy change."""
     inertia = problem.scene.mass * (problem.scene.a**2 + problem.scene.b**2) / 4
     scene, end, longer = problem.scene, problem.t_end, max(problem.scene[:2])
     speed = math.sqrt(scene.gravity * longer)
@@ -357,7 +362,7 @@ def make(name: str, problem: Problem) -> tuple[str, float, float]:
     times = [round(k * step, 2) for k in range(round(end / step) + 1)]
     times = [t for t in times if all(abs(t - one.t) > 0.02 * longer / speed for one in happened)]
     rows, events = conditions(problem, times, scales)
-    problem = problem._replace(scene=scene._replace(inertia=inertia))  # as the double in the file
+    problem = problem._replace(scene=scene._replace(inertia=inertia))  # the double in the file
     found, apart = checked(problem, times)
     wild = [t for t, condition in zip(times, rows, strict=True) if condition > LARGEST_CONDITION]
     start = dict(zip(STATE, doubles(found.samples[0][:6]), strict=True))

@@ -1,17 +1,17 @@
-"""Make `contact_reference.csv`: rolling, sliding, flight and impacts, to 30 digits.
+"""Compute `contact_reference.csv`: rolling, sliding, flight and impacts, to 30 digits.
 
 The tests compare the contact model with this table. contact_motion.py computes the motions.
 
-    python make_contact_reference.py            makes and checks the table (15 minutes, one core)
+    python make_contact_reference.py            computes and checks the table (15 minutes, one core)
 
 Every value was computed twice, with series of order 50 and 60 and with 64 and 76 digits. The two
 values must agree to `AGREEMENT`, relative if the value is above 1: the largest difference was
 6.0e-47. The energy minus the work of friction and of the impacts must be constant to `AGREEMENT` of
 its magnitude: the largest sum of changes was 2.6e-51.
 
-Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y.
-Answers are the time of an event and the state just after the event, whose effect includes that of
-the changed time:
+Units. The unit of an answer y is the effect of a relative change of 2.2e-16 of each input (theta0:
+absolute). Answers are the time of an event and the state just after the event; the effect on the
+state includes the effect of the changed time:
 
     unit_y = 2.2e-16 (sum over p of |dy/dp| |p| + |dy/dtheta0|)
 
@@ -51,7 +51,7 @@ MOST_EVENTS = 6
 
 
 def inputs(fields: list[str]) -> list[str]:
-    """The columns of the fields of a scene: those that a motion changes have the suffix 0."""
+    """Return the columns of a scene's fields; fields that a motion changes have the suffix 0."""
     return [name + "0" if name in VALUES else name for name in fields]
 
 
@@ -59,14 +59,16 @@ def inputs(fields: list[str]) -> list[str]:
 
 
 def is_flat_drop(scene: Scene) -> bool:
-    """Whether a body drops on its flat side without spin or slip; any other angle would change the
-    kind of motion."""
+    """Return whether a body drops on its flat side without spin or slip.
+
+    Any other angle would change the kind of motion.
+    """
     moving = scene.theta or scene.omega or scene.x_dot or scene.slope
     return scene.z is not None and not moving
 
 
 def units(scene: Scene, ends: Sequence[float]) -> list[list[float]]:
-    """The units of all events and of the states at some times."""
+    """Return the units of all events and of the states at some times."""
     with UNIT_ROAD.context():
         rows, _ = rows_of(scene, ends, UNIT_ROAD)
         total = [[mpfr(0)] * len(VALUES) for _ in rows]
@@ -111,7 +113,7 @@ class Family(NamedTuple):
 
 
 def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
-    """Random semi-axes of a lying or standing body."""
+    """Return random semi-axes of a lying or standing body."""
     longer = log_uniform(rng, 0.3, 3.0)
     if shape == "circle":
         return longer, longer
@@ -122,7 +124,7 @@ def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
 
 
 def random_scene(rng: random.Random, family: Family) -> Scene:
-    """A random scene of a family."""
+    """Return a random scene of a family."""
     a, b = random_axes(rng, family.shape)
     mass = 1.0 if rng.random() < 0.3 else log_uniform(rng, 0.1, 30.0)
     gravity = rng.choice([9.81, 9.81, 1.62, 3.7])
@@ -151,7 +153,7 @@ def random_scene(rng: random.Random, family: Family) -> Scene:
 
 
 def contains(kinds: list[str], wanted: tuple[str, ...]) -> bool:
-    """Whether the required kinds occur in this order."""
+    """Return whether the required kinds occur in this order."""
     rest = iter(kinds)
     return all(kind in rest for kind in wanted)
 
@@ -227,13 +229,14 @@ class Checked(NamedTuple):
 
 
 def cut(rows: list[Row], kept: int, stop: Any) -> float:
-    """A time between the last event to keep and the next event."""
+    """Return a time between the last event to keep and the next event."""
     last = rows[kept - 1].t if kept else mpfr(0)
     return float(last + (stop - last) * 0.6)
 
 
 def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list[list[float]]]:
-    """An end time after the events that the inputs determine, and the units up to this time."""
+    """Return an end time after the events that the inputs determine, and the units up to this
+    time."""
     with UNIT_ROAD.context():
         found = follow(scene, longest, UNIT_ROAD, most_events + 1)
         rows, end = found.rows, longest
@@ -260,14 +263,15 @@ def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list
 
 
 def difference(one: Sequence[Any], other: Sequence[Any]) -> float:
-    """Largest difference of two lists of values, relative where the value is above 1."""
+    """Return the largest difference of two lists of values, relative where the value is above 1."""
     return max(float(abs(p - q) / max(abs(q), 1)) for p, q in zip(one, other, strict=True))
 
 
 def checked(
     name: str, scene: Scene, ends: Sequence[float], unit: list[list[float]], fields: list[str]
 ) -> Checked:
-    """The lines of a scene: its events and its states at some times, with the inputs `fields`."""
+    """Return the lines of a scene: its events and its states at some times, with the inputs
+    `fields`."""
     with TABLE_ROAD.context():
         rows, change = rows_of(scene, ends, TABLE_ROAD)
         digits = [[f"{one:.29e}" for one in row[1:]] for row in rows]
@@ -290,7 +294,7 @@ def checked(
 def make_scene(
     name: str, scene: Scene, longest: float, family: Family, fields: list[str]
 ) -> Checked:
-    """The lines of a scene, whose motion ends where the inputs no longer determine it."""
+    """Return the lines of a scene, whose motion ends where the inputs no longer determine it."""
     end, unit = planned(scene, longest, family.most_events)
     ends = [share * end for share in family.states]
     made = checked(name, scene, ends, units(scene, ends) if ends[1:] else unit, fields)
@@ -300,7 +304,8 @@ def make_scene(
 
 
 def drawn(rng: random.Random, family: Family, name: str, fields: list[str]) -> Checked:
-    """A random scene of a family whose motion is decided and has the wanted kinds of events."""
+    """Return a random scene of a family whose motion is decided and has the wanted kinds of
+    events."""
     while True:
         scene = random_scene(rng, family)
         if family.name == "short":

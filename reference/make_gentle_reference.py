@@ -1,11 +1,11 @@
-"""Make `gentle_reference.csv`: rolling on gentle slopes, with slow passages over the tip.
+"""Compute `gentle_reference.csv`: rolling on gentle slopes, with slow passages over the tip.
 
-The slopes range from 1e-18 to 1e-3. A very small difference of energies decides how a body moves
-that starts on or near its tip, or that barely passes over a tip or barely fails to. The script
+The slopes range from 1e-18 to 1e-3. A very small difference of energies decides the motion of a
+body that starts on or near its tip, or that barely passes over a tip or barely fails to. The script
 needs gmpy2, mpmath and the Taylor series of `make_slope_reference.py`, and shares no code or
 formula with the package.
 
-    python make_gentle_reference.py            makes and checks the table (10 minutes, one core)
+    python make_gentle_reference.py            computes and checks the table (10 minutes, one core)
 
 Method. The Taylor series follow the angle and its rate and do not use the energy, so that no digits
 cancel near the tip. Every value was computed twice, with 64 and 76 digits and series of order 54
@@ -58,7 +58,7 @@ class Case(NamedTuple):
 
 
 def random_body(rng: random.Random) -> Scene:
-    """A random body with an aspect ratio of 1e-3 to 1e3 on a slope, at theta = 0."""
+    """Return a random body with an aspect ratio of 1e-3 to 1e3 on a slope, at theta = 0."""
     longer, draw = log_uniform(rng, 0.05, 20.0), rng.random()
     if draw < 0.4:
         ratio = log_uniform(rng, 1e-3, 0.98)
@@ -71,13 +71,12 @@ def random_body(rng: random.Random) -> Scene:
 
 
 def flat_angle(body: Scene) -> float:
-    """The angle (theta or phi) at which the long axis is parallel to the ground."""
+    """Return the angle (theta or phi) at which the long axis is parallel to the ground."""
     return 0.0 if body.a > body.b else math.pi / 2
 
 
 def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float | None:
-    """The |omega| with which a body at theta barely passes over `tips` tips; None if there is
-    none."""
+    """Return the |omega| with which a body at theta barely passes over `tips` tips, or None."""
     a, b, mass, inertia, g, alpha = map(mpmath.mpf, body[:6])
     c2, side = a * a - b * b, math.copysign(1.0, body.slope)
     sine = 2 * a * b * mpmath.tan(abs(alpha)) / abs(c2)
@@ -100,7 +99,7 @@ def passing_speed(body: Scene, theta: float, heading: int, tips: int) -> float |
 
 
 def random_start(rng: random.Random, kind: str, body: Scene) -> Scene | None:
-    """A random start of a kind, sometimes many half turns away from theta = 0."""
+    """Return a random start of a kind, sometimes many half turns away from theta = 0."""
     rate, sign = math.sqrt(body.gravity / max(body.a, body.b)), rng.choice([-1, 1])
     turns = 0 if rng.random() < 0.8 else round(sign * log_uniform(rng, 1.0, 3000.0))
     theta = flat_angle(body) + turns * math.pi
@@ -124,7 +123,7 @@ def random_start(rng: random.Random, kind: str, body: Scene) -> Scene | None:
 
 
 def drawn(rng: random.Random) -> Iterator[Case]:
-    """Random cases of all kinds in turn."""
+    """Yield random cases of all kinds in turn."""
     while True:
         for kind in KINDS:
             scene = None
@@ -135,7 +134,7 @@ def drawn(rng: random.Random) -> Iterator[Case]:
 
 
 def known(case: Case, road: Road) -> tuple[Answer, list[float]] | None:
-    """Answers and units of a case, or None if the inputs do not determine the motion."""
+    """Return answers and units of a case, or None if the inputs do not determine the motion."""
     unit = units(case.scene, [case.t], UNIT_ROAD, UNIT_PART)[0]
     if unit[0] > UNIT_LIMIT:
         return None
@@ -148,7 +147,7 @@ def known(case: Case, road: Road) -> tuple[Answer, list[float]] | None:
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines of the table, each computed twice."""
+    """Yield the lines of the table, each computed twice."""
     began, worst = time.perf_counter(), 0.0
     cases = ((case, known(case, TABLE_ROAD)) for case in drawn(random.Random(seed)))
     fixed = ((case, found) for case, found in cases if found is not None)

@@ -1,10 +1,11 @@
-"""Make `resistance_reference.csv`: motions with rolling resistance, to 30 digits.
+"""Compute `resistance_reference.csv`: motions with rolling resistance, to 30 digits.
 
-    python make_resistance_reference.py         makes and checks the table (8 minutes, one core)
+    python make_resistance_reference.py         computes and checks the table (8 minutes, one core)
 
 This table is like that of make_contact_reference.py, with the column `rolling_resistance` and with
 states at more times. Named scenes come first: rocking and rolling that end flat or on the tip,
-slides that hold the body or stop its turning, and turning points at which slip starts.
+slides during which the body does not turn or stops turning, and turning points at which slip
+starts.
 """
 
 import math
@@ -17,7 +18,7 @@ TABLE = Path(__file__).with_name("resistance_reference.csv")
 
 
 def scene(a: float, b: float, lever: float, friction: float = 1.0, **given: float) -> Scene:
-    """A scene with a lever of rolling resistance."""
+    """Return a scene with a lever of rolling resistance."""
     return Scene(a, b, rolling_resistance=lever, friction=friction, **given)
 
 
@@ -48,7 +49,8 @@ def family(
     name: str, scenes: int, start: str, wanted: tuple[str, ...], shape: str = "any",
     least: float = 1e-3, **given: float,
 ) -> Family:  # fmt: skip
-    """A family of scenes with random levers of `least` to 0.5 times the shorter semi-axis."""
+    """Return a family of scenes with random levers of `least` to 0.5 times the shorter
+    semi-axis."""
     return Family(
         name, scenes, start, wanted, shape, given, states=(0.3, 0.7, 1.0), lever=(least, 0.5)
     )

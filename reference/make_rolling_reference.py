@@ -1,9 +1,9 @@
-"""Make `rolling_reference.csv`: exact rolling on level ground, to 40 digits.
+"""Compute `rolling_reference.csv`: exact rolling on level ground, to 40 digits.
 
 The tests compare `rolling_ellipse.flow` with this table. The script needs only mpmath and shares no
 code with the package.
 
-    python make_rolling_reference.py            makes the table again (4 minutes, one core)
+    python make_rolling_reference.py            computes the table again (4 minutes, one core)
 
 Motion. theta is the rotation of the ellipse, positive clockwise, theta = 0 with axis a parallel to
 the ground, k^2 = I/m independent of a and b:
@@ -26,7 +26,7 @@ equation, which do not use the energy. They follow up to four scenes of each kin
 than a few hundred steps. theta, omega and x of 75 scenes of 20 of the 22 kinds agreed within
 1.9e-38; fast spins and 1e9 half turns take too many steps.
 
-Units. The effect of one rounding of every input on the answer y, plus two ulp of y:
+Units. The unit of an answer y is the effect of one rounding of every input, plus two ulp of y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, k^2, g, omega0) of |dy/dp| |p| + |dy/dtheta0|) + 2 ulp(y)
 
@@ -85,8 +85,7 @@ class Rule(NamedTuple):
 
 
 def gauss_rule(count: int, growth: float) -> Rule:
-    """The rule with n nodes, which Newton's method finds as roots of the Legendre polynomial
-    P_n."""
+    """Return the rule whose nodes are the roots of the Legendre polynomial of degree `count`."""
     nodes, weights = [], []
     for i in range(count):
         y = mp.cos(mp.pi * (i + mpf("0.75")) / (count + mpf("0.5")))
@@ -156,7 +155,8 @@ class RollingEllipse:
         return dt, h * mp.sqrt(self.kappa2) * c / phi_c
 
     def _scales(self) -> tuple[Any, Any]:
-        """Distances from v = 0 and v = pi/2 of the nearest complex singularities of the rates."""
+        """Return the distances from v = 0 and v = pi/2 of the nearest complex singularities of the
+        rates."""
         # D = 0 at sin^2 phi = -B^2 (k^2 + B^2) / (c^2 (k^2 + A^2 + B^2)), nearer than h = 0
         total = self.k2 + self.A2 + self.B2
         sin_flat = mp.sqrt(self.B2 * (self.k2 + self.B2) / (self.c2 * total))
@@ -191,13 +191,13 @@ class RollingEllipse:
         return half * mp.fdot(self.rule.weights, times), half * mp.fdot(self.rule.weights, lengths)
 
     def _unfold(self, half_turns: int, sign: int, x: Any) -> Any:
-        """X(v) of v = half_turns pi + sign r from X(r) on the quarter [0, pi/2]."""
+        """Return X(v) at v = half_turns pi + sign r, from X(r) on the quarter [0, pi/2]."""
         if self.rocks:
             return -sign * x if half_turns % 2 else sign * x
         return 2 * half_turns * self.quarter_x + sign * x
 
     def _time_and_x(self, v: Any) -> tuple[Any, Any]:
-        """The integrals of both rates from 0 to v."""
+        """Return the integrals of both rates from 0 to v."""
         half_turns = int(mp.nint(v / mp.pi))
         rest = v - half_turns * mp.pi
         sign, rest = (-1, -rest) if rest < 0 else (1, rest)
@@ -207,7 +207,8 @@ class RollingEllipse:
         return 2 * half_turns * self.quarter_time + sign * time, self._unfold(half_turns, sign, x)
 
     def _solve_quarter(self, time: Any) -> tuple[Any, Any]:
-        """The v in [0, pi/2] at `time`, and X(v), by Newton's method confined to one panel."""
+        """Return the v in [0, pi/2] at `time`, and X(v), by Newton's method confined to one
+        panel."""
         i = min(bisect_right([s[0] for s in self.sums], time), len(self.sums) - 1) - 1
         low, high = self.edges[i], self.edges[i + 1]
         width = high - low
@@ -223,12 +224,12 @@ class RollingEllipse:
         raise ArithmeticError("Newton's method did not settle")
 
     def phase(self, t: Any) -> Any:
-        """Time since the last passage through v = 0, divided by the time of a quarter."""
+        """Return the time since v = 0, divided by the time of a quarter."""
         signed = t if self.rocks else self.direction * t
         return (self.time0 + signed) / self.quarter_time
 
     def state(self, t: Any) -> State:
-        """State at time t >= 0."""
+        """Return the state at time t >= 0."""
         time = self.phase(t) * self.quarter_time
         half_turns = int(mp.nint(time / (2 * self.quarter_time)))
         rest = time - 2 * half_turns * self.quarter_time
@@ -254,22 +255,23 @@ class RollingCircle:
         self.scene = Scene(*map(mpf, scene))
 
     def phase(self, t: Any) -> Any:
-        """One half at all times, since a circle has no times of symmetry."""
+        """Return one half at all times, since a circle has no times of symmetry."""
         return mpf("0.5")
 
     def state(self, t: Any) -> State:
-        """State at time t."""
+        """Return the state at time t."""
         angle = self.scene.omega0 * t
         return State(self.scene.theta0 + angle, self.scene.omega0, self.scene.a * angle)
 
 
 def motion(scene: Scene, rule: Rule) -> RollingEllipse | RollingCircle:
-    """The motion of a scene; its state can be computed at any time."""
+    """Return the motion of a scene; its state can be computed at any time."""
     return RollingCircle(scene) if scene.a == scene.b else RollingEllipse(scene, rule)
 
 
 def sensitivities(scene: Scene, rule: Rule) -> Callable[[Any], list[State]]:
-    """A function of t that returns the changes of the state if each input changes by ROUNDING."""
+    """Return a function of t that returns the changes of the state if each input changes by
+    ROUNDING."""
     small = mpf("1e-24")
     pairs = []
     for name in Scene._fields:
@@ -288,7 +290,7 @@ def sensitivities(scene: Scene, rule: Rule) -> Callable[[Any], list[State]]:
 
 
 def units(changes: list[State], state: State) -> list[float]:
-    """unit_theta, unit_omega and unit_x of a state."""
+    """Return unit_theta, unit_omega and unit_x of a state."""
     effects = [float(mp.fsum(map(abs, column))) for column in zip(*changes, strict=True)]
     return [e + 2 * math.ulp(float(y)) for e, y in zip(effects, state, strict=True)]
 
@@ -297,7 +299,7 @@ def units(changes: list[State], state: State) -> list[float]:
 
 
 class AboveEnergy(ValueError):
-    """The start's height is above the requested energy, so the start must be drawn again."""
+    """Raised if a start is higher than the requested energy allows; it is then drawn again."""
 
 
 class Body(NamedTuple):
@@ -314,11 +316,11 @@ class Body(NamedTuple):
         return 0.0 if self.a >= self.b else math.pi / 2
 
     def height(self, theta: float) -> float:
-        """h in double precision, which is enough to choose a scene."""
+        """Return h in double precision, which is enough to choose a scene."""
         return math.hypot(self.a * math.sin(theta), self.b * math.cos(theta))
 
     def speed(self, theta: float, level: Any) -> float:
-        """The omega > 0 at an angle that gives the energy E = g * level."""
+        """Return the omega > 0 at an angle that gives the energy E = g * level."""
         s, c = mp.sin(theta), mp.cos(theta)
         h2 = (self.a * s) ** 2 + (self.b * c) ** 2
         if level <= mp.sqrt(h2):
@@ -328,7 +330,8 @@ class Body(NamedTuple):
 
 
 def random_body(rng: random.Random, kind: str) -> Body:
-    """A random body of 0.01 to 100 m, usually a uniform disc on Earth; a third have a < b."""
+    """Return a random body of 0.01 to 100 m, usually a uniform disc on Earth; a third have a <
+    b."""
     a = log_uniform(rng, 0.01, 100.0)
     ratio = log_uniform(rng, 1.001e-3, 0.999)
     if kind == "thin":
@@ -338,7 +341,7 @@ def random_body(rng: random.Random, kind: str) -> Body:
     elif kind.startswith("circle"):
         ratio = 1.0
     b = a * ratio
-    swap = kind != "flat_start" and rng.random() < 1 / 3  # flat for a < b is pi/2, not a double
+    swap = kind != "flat_start" and rng.random() < 1 / 3  # else flat is pi/2, not a double
     a, b = (b, a) if swap else (a, b)
     size = a * a + b * b
     gyration2 = size / 4 if rng.random() < 0.65 else size * log_uniform(rng, 1e-3, 10.0)
@@ -347,7 +350,7 @@ def random_body(rng: random.Random, kind: str) -> Body:
 
 
 def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, float]:
-    """Random theta0 and omega0 of a kind of motion."""
+    """Return random theta0 and omega0 of a kind of motion."""
     sign = rng.choice([-1, 1])
     theta = rng.uniform(-math.pi, math.pi)
     low, high = sorted((body.a, body.b))
@@ -373,7 +376,7 @@ def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, floa
 
 
 def energy_level(rng: random.Random, kind: str, height: float, high: float) -> Any:
-    """E / g, above or below that of rest on the tip as the kind requires, otherwise at random."""
+    """Return E / g: above or below its value at rest on the tip, by kind or at random."""
     if kind.startswith("separatrix"):
         _, side, distance = kind.split("_")
         return high * (1 + mpf(distance) * (1 if side == "above" else -1))
@@ -392,7 +395,7 @@ KINDS = {
 
 
 def random_time(rng: random.Random, kind: str, scene: Scene, rule: Rule) -> float:
-    """A random time for a kind [s], before UNIT_LIMIT shortens it."""
+    """Return a random time for a kind [s], before UNIT_LIMIT shortens it."""
     if kind == "many_half_turns":
         one = motion(scene, rule)
         assert isinstance(one, RollingEllipse)
@@ -405,14 +408,14 @@ def random_time(rng: random.Random, kind: str, scene: Scene, rule: Rule) -> floa
 
 
 def at_symmetry(one: RollingEllipse | RollingCircle, t: float) -> bool:
-    """Whether the phase at a time is within 0.01 of the flat position, the tip or a turning
-    point."""
+    """Return whether the phase is within 0.01 of the flat position, the tip or a turning point."""
     phase = one.phase(mpf(t))
     return bool(abs(phase - mp.nint(phase)) < mpf("0.01"))
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A random scene of a kind, drawn again while its start is above the requested energy."""
+    """Return a random scene of a kind, drawn again while its start is above the requested
+    energy."""
     while True:
         body = random_body(rng, kind)
         try:
@@ -426,7 +429,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def make_row(rng: random.Random, kind: str, rule: Rule, check: Rule) -> tuple[list[str], float]:
-    """One line of the table and the relative disagreement of the two quadratures."""
+    """Return one line of the table and the relative disagreement of the two quadratures."""
     scene = random_scene(rng, kind)
     t = random_time(rng, kind, scene, rule)
     first, effects = motion(scene, rule), sensitivities(scene, rule)
@@ -448,7 +451,7 @@ def make_row(rng: random.Random, kind: str, rule: Rule, check: Rule) -> tuple[li
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines of the scenes of all kinds."""
+    """Yield the lines of the scenes of all kinds."""
     rng = random.Random(seed)
     rule = gauss_rule(50, 2.0)
     with mp.extradps(10):

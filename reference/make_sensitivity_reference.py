@@ -1,6 +1,6 @@
-"""Make `sensitivity_reference.csv`: derivatives of the last states of `contact_reference.csv`.
+"""Compute `sensitivity_reference.csv`: derivatives of the last states of `contact_reference.csv`.
 
-    python make_sensitivity_reference.py        makes the table (10 minutes, one core)
+    python make_sensitivity_reference.py        computes the table (10 minutes, one core)
 
 A row contains the derivatives of x, z, theta, x_dot, z_dot, omega with respect to one input. They
 are forward differences of motions with 42 digits, for a change of 1e-15, relative to the input if
@@ -26,7 +26,7 @@ CHANGE = 1e-15
 
 
 def derivatives(name: str, scene: Scene, end: float) -> Iterator[list[str]]:
-    """The rows of a scene."""
+    """Yield the rows of a scene."""
     base = follow(scene, end, UNIT_ROAD)
     for wrt in FIELDS:
         value = getattr(scene, wrt)

@@ -1,9 +1,9 @@
-"""Make `slope_reference.csv`: rolling without slip on a slope, to 30 digits.
+"""Compute `slope_reference.csv`: rolling without slip on a slope, to 30 digits.
 
 The tests compare the integrators with this table. The script needs only gmpy2 and shares no code or
 formula with the package.
 
-    python make_slope_reference.py              makes and checks the table (10 minutes, one core)
+    python make_slope_reference.py              computes and checks the table (10 minutes, one core)
     python make_slope_reference.py --level      only compares with the level table (2 minutes)
 
 Motion. A point of the outline of the ellipse is P(phi) = (a sin phi, -b cos phi) in the body. With
@@ -31,7 +31,8 @@ energy, with the kinetic energy of the moving centre instead of (2), must be con
 `AGREEMENT`: the largest change was 2.9e-46. On level ground 75 scenes of `rolling_reference.csv`,
 which comes from the energy integral, are reproduced within 1.9e-38.
 
-Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y:
+Units. The unit of an answer y is the effect of a relative change of 2.2e-16 of each input (theta0:
+absolute):
 
     unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
 
@@ -137,8 +138,7 @@ class Rolling:
         self.state = State(phi, omega0 * w2 / self.ab, self.c2 * sin * cos / gmpy2.sqrt(w2))
 
     def series(self, order: int) -> Series:
-        """Coefficients 0 to order of the motion from the current state, 0 to order - 1 of p and
-        w."""
+        """Return coefficients 0 to order of the motion, and 0 to order - 1 of p and w."""
         phi, rate, arc = [self.state.phi], [self.state.rate], [self.state.arc]
         sin, cos = ([each] for each in gmpy2.sin_cos(self.state.phi))
         p: list[Any] = []
@@ -171,7 +171,7 @@ class Rolling:
         return Series(phi, rate, arc, sin, cos, p, w)
 
     def advance(self, t: float, most_steps: float = math.inf) -> bool:
-        """Continue the motion to time t; False if that takes too many steps."""
+        """Continue the motion to time t; return False if this takes too many steps."""
         steps = 0
         while self.time < t:
             if steps == most_steps:
@@ -184,7 +184,7 @@ class Rolling:
         return True
 
     def _reach(self, series: Series) -> Any:
-        """The step at which the last terms of the series are as small as the tolerance."""
+        """Return the step at which the last terms of the series are as small as the tolerance."""
         columns = series.phi, series.arc, series.sin, series.cos
         orders = self.road.order - 1, self.road.order
         growth = max(abs(column[n]) ** (mpfr(1) / n) for column in columns for n in orders)
@@ -196,7 +196,7 @@ class Rolling:
         return abs(float(self.state.phi - self.start)) / math.pi
 
     def answer_and_energy(self) -> tuple[Answer, Any]:
-        """The answer for the table, and E/m from the velocity of the centre."""
+        """Return the answer for the table, and E/m from the velocity of the centre."""
         series = self.series(3)
         x: list[Any] = []
         z: list[Any] = []
@@ -217,7 +217,7 @@ class Rolling:
 
 
 def follow(scene: Scene, times: list[float], road: Road) -> Iterator[tuple[Answer, Any]]:
-    """Answer and relative change of the energy at each time."""
+    """Yield the answer and relative change of the energy at each time."""
     motion = Rolling(scene, road)
     _, energy = motion.answer_and_energy()
     scale = abs(energy) + motion.g * max(motion.a, motion.b)
@@ -230,7 +230,8 @@ def follow(scene: Scene, times: list[float], road: Road) -> Iterator[tuple[Answe
 def units(
     scene: Scene, times: list[float], road: Road = UNIT_ROAD, part: float = UNIT_CHANGE
 ) -> list[list[float]]:
-    """The units of the answers at each time, from changes of each input by a relative `part`."""
+    """Return the units of the answers at each time, from changes of each input by a relative
+    `part`."""
     with road.context():
         answers = [answer for answer, _ in follow(scene, times, road)]
         total = [[mpfr(0)] * len(Answer._fields) for _ in times]
@@ -257,7 +258,7 @@ LEAST_SLOPE, MOST_SLOPE = 1e-3, 1.2
 
 
 def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
-    """Random semi-axes of 5 cm to 20 m; two fifths of the bodies have a < b."""
+    """Return random semi-axes of 5 cm to 20 m; two fifths of the bodies have a < b."""
     longer = log_uniform(rng, 0.05, 20.0)
     if kind == "circle":
         return longer, longer
@@ -276,8 +277,9 @@ def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
 def body_of_ratio(
     rng: random.Random, longer: float, ratio: float, odd: float, most: float
 ) -> Scene:
-    """A body at theta = 0 on level ground, whose inertia differs from that of a disc with
-    probability `odd` by a factor of up to `most`.
+    """Return a body at theta = 0 on level ground.
+
+    With probability `odd`, its inertia differs from that of a disc by a factor of up to `most`.
     """
     axes = longer, longer * ratio
     a, b = axes if rng.random() < 0.5 else axes[::-1]
@@ -290,7 +292,7 @@ def body_of_ratio(
 
 
 def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
-    """A random moment of inertia: that of a uniform disc, or much less or more."""
+    """Return a random moment of inertia: that of a uniform disc, or much less or more."""
     if kind == "light":
         return 0.01 * disc
     if kind == "heavy":
@@ -299,7 +301,8 @@ def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
 
 
 def random_slope(rng: random.Random, kind: str, a: float, b: float) -> float:
-    """A random slope of either sign. Equilibria exist up to tan(slope) = |a^2 - b^2| / (2 a b)."""
+    """Return a random slope of either sign. Equilibria exist up to tan(slope) = |a^2 - b^2| / (2 a
+    b)."""
     low, high = LEAST_SLOPE, MOST_SLOPE
     if kind in WITH_A_DIP:
         low, high = 1e-2, min(high, 0.8 * math.atan(abs(a * a - b * b) / (2 * a * b)))
@@ -313,7 +316,7 @@ def random_slope(rng: random.Random, kind: str, a: float, b: float) -> float:
 
 
 def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
-    """theta of the stable equilibrium of (3) and of the unstable one next to it."""
+    """Return theta of the stable equilibrium of (3) and of the unstable one next to it."""
     tilt = math.asin(2 * a * b * math.tan(slope) / abs(a * a - b * b)) / 2
     if a > b:
         dip, hill = tilt, math.copysign(math.pi / 2, tilt) - tilt
@@ -326,7 +329,7 @@ def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
 def random_start(
     rng: random.Random, kind: str, axes: tuple[float, float], slope: float, rate: float
 ) -> tuple[float, float]:
-    """Random theta0 and omega0 of a kind; `rate` is one radian per natural time."""
+    """Return random theta0 and omega0 of a kind; `rate` is one radian per natural time."""
     theta, sign = rng.uniform(-math.pi, math.pi), rng.choice([-1, 1])
     if kind in WITH_A_DIP:
         dip, hill = equilibria(*axes, slope)
@@ -345,12 +348,12 @@ def random_start(
 
 
 def natural_time(scene: Scene) -> float:
-    """The natural time of a scene [s]."""
+    """Return the natural time of a scene [s]."""
     return math.sqrt(max(scene.a, scene.b) / scene.gravity)
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A random scene of a kind."""
+    """Return a random scene of a kind."""
     a, b = random_axes(rng, kind)
     mass = log_uniform(rng, 0.05, 200.0)
     inertia = random_inertia(rng, kind, mass * (a * a + b * b) / 4)
@@ -361,8 +364,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def random_times(rng: random.Random, scene: Scene) -> list[float]:
-    """Three times of about 0.3, 2 and 10 natural times, or less for `MOST_HALF_TURNS` half
-    turns."""
+    """Return about 0.3, 2 and 10 natural times, or less if there are too many half turns."""
     natural = natural_time(scene) * rng.uniform(0.9, 1.1)
     with UNIT_ROAD.context():
         motion, last = Rolling(scene, UNIT_ROAD), 0.0
@@ -384,7 +386,7 @@ class Checked(NamedTuple):
 
 
 def make_scene(rng: random.Random, kind: str) -> Checked:
-    """The three lines of a newly drawn scene."""
+    """Return the three lines of a newly drawn scene."""
     while True:
         scene = random_scene(rng, kind)
         times = random_times(rng, scene)
@@ -407,7 +409,7 @@ def make_scene(rng: random.Random, kind: str) -> Checked:
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines of the scenes of all kinds."""
+    """Yield the lines of the scenes of all kinds."""
     rng = random.Random(seed)
     began = time.perf_counter()
     for kind, count in KINDS.items():

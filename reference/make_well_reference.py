@@ -1,10 +1,10 @@
-"""Make `well_reference.csv`: rocking about the stable equilibrium on a slope, to 30 digits.
+"""Compute `well_reference.csv`: rocking about the stable equilibrium on a slope, to 30 digits.
 
 The amplitudes range from 1e-12 rad up to the rim of the potential well, the times from 1 to 1e9
 swings, and the aspect ratios from 1e-3 to 1e3. The script needs gmpy2 and the Taylor series of
 `make_slope_reference.py`, and shares no code or formula with the package.
 
-    python make_well_reference.py              makes and checks the table (3 minutes, one core)
+    python make_well_reference.py              computes and checks the table (3 minutes, one core)
 
 Method. The Taylor series of `Rolling` follow one swing in steps of half their reach. A turning
 point is a root of the rate, found by Newton's method. The period T is twice the time between two
@@ -12,7 +12,7 @@ turning points, and the states at t and t - n T are equal. Every value was compu
 and 95 digits and series of order 60 and 72. The two values must agree to `AGREEMENT`, relative to
 the larger of the value and its unit.
 
-Units. The effect of a relative change of 2.2e-16 of each input on an answer,
+Units. The unit of an answer is the effect of a relative change of 2.2e-16 of each input,
 
     unit_y = 2.2e-16 sum over p in (a, b, I, g, alpha, theta0, omega0) of |dy/dp| |p|
 
@@ -67,7 +67,7 @@ class Stage(NamedTuple):
     series: Series
 
     def state(self, t: Any) -> State:
-        """The state at a time within the step."""
+        """Return the state at a time within the step."""
         return State(*(value(column, t - self.begin) for column in self.series[:3]))
 
 
@@ -90,8 +90,7 @@ class Swing(Rolling):
         self.width = max(abs(each.series.phi[0] - self.start) for each in self.stages)
 
     def go_on(self) -> Stage:
-        """Take one more step of half the reach of its series, so that it has at most one turning
-        point."""
+        """Take one more step of half the reach of its series; it has at most one turning point."""
         series = self.series(self.road.order)
         self.stages.append(Stage(self.time, self._reach(series) / 2, series))
         self.time += self.stages[-1].lasts
@@ -99,7 +98,7 @@ class Swing(Rolling):
         return self.stages[-1]
 
     def at(self, t: float) -> Answer:
-        """The answers at a time; afterwards the motion cannot be continued."""
+        """Return the answers at a time; afterwards the motion cannot be continued."""
         rest = mpfr(t) - gmpy2.floor(t / self.period) * self.period
         while self.time < rest:
             self.go_on()
@@ -110,17 +109,17 @@ class Swing(Rolling):
 
 
 class NoSwing(Exception):
-    """The motion does not rock, or takes too many steps."""
+    """Raised if a motion does not rock, or takes too many steps."""
 
 
 def answers(scene: Scene, t: float, road: Road) -> Answer:
-    """The answers of a scene at a time."""
+    """Return the answers of a scene at a time."""
     with road.context():
         return Swing(scene, road).at(t)
 
 
 def units(scene: Scene, t: float) -> list[float]:
-    """The effect of one rounding of every input on each answer."""
+    """Return the effect of one rounding of every input on each answer."""
     known = answers(scene, t, UNIT_ROAD)
     with UNIT_ROAD.context():
         total = [mpfr(0)] * len(ANSWERS)
@@ -147,8 +146,10 @@ class Well(NamedTuple):
 
 
 def well(scene: Scene) -> Well:
-    """The potential well of a scene. By (3), gravity exerts no moment if sin 2 phi = 2 a b tan
-    alpha / c^2."""
+    """Return the potential well of a scene.
+
+    By (3), gravity exerts no moment if sin 2 phi = 2 a b tan alpha / c^2.
+    """
     a, b, mass, inertia, g, slope = map(mpfr, scene[:6])
     longer, shorter, side = max(a, b), min(a, b), 1 if slope > 0 else -1
     c2 = longer**2 - shorter**2
@@ -165,7 +166,7 @@ def well(scene: Scene) -> Well:
 
 
 def random_body(rng: random.Random) -> Scene:
-    """A random body at theta = 0 on a slope on which it has equilibria."""
+    """Return a random body at theta = 0 on a slope on which it has equilibria."""
     longer, ratio = log_uniform(rng, 0.05, 20.0), log_uniform(rng, 1e-3, 0.98)
     if rng.random() < 0.1:
         ratio = 1 - log_uniform(rng, 1e-6, 0.1)
@@ -177,7 +178,7 @@ def random_body(rng: random.Random) -> Scene:
 
 
 def random_start(rng: random.Random, body: Scene) -> Scene:
-    """A random start, at rest or moving, with an amplitude up to the rim of the well."""
+    """Return a random start, at rest or moving, with an amplitude up to the rim of the well."""
     at = well(body)
     if rng.random() < 0.3:
         inside = (at.lying - at.rim) * log_uniform(rng, 1e-12, 0.1)
@@ -198,8 +199,10 @@ def random_start(rng: random.Random, body: Scene) -> Scene:
 
 
 def differs_from_rest(scene: Scene) -> bool:
-    """Whether a start clearly differs from rest: by a spin, or in h' - h tan alpha by far more than
-    8 ulp of h."""
+    """Return whether a start clearly differs from rest.
+
+    It does if it has a spin, or if h' - h tan alpha is far larger than 8 ulp of h.
+    """
     short, at = min(scene.a, scene.b), well(scene)
     room = 32 * ROUNDING * short / (max(scene.a, scene.b) - short)
     far = min(abs(math.sin(scene.theta0 - each)) for each in (at.lying, at.rim))
@@ -216,8 +219,10 @@ class Line(NamedTuple):
 
 
 def line(rng: random.Random) -> Line | None:
-    """A random line with a time of 1 to 1e9 swings, or None if the scene rests or its inputs do not
-    determine the motion."""
+    """Return a random line with a time of 1 to 1e9 swings.
+
+    Return None if the scene rests or its inputs do not determine the motion.
+    """
     with UNIT_ROAD.context():
         scene = random_start(rng, random_body(rng))
         if not differs_from_rest(scene):
@@ -231,7 +236,7 @@ def line(rng: random.Random) -> Line | None:
 
 
 def drawn(rng: random.Random) -> Iterator[Line]:
-    """Random lines, one after another."""
+    """Yield random lines, one after another."""
     while True:
         with suppress(NoSwing):
             found = line(rng)
@@ -243,7 +248,7 @@ def drawn(rng: random.Random) -> Iterator[Line]:
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines of the table, each computed twice."""
+    """Yield the lines of the table, each computed twice."""
     began, worst = time.perf_counter(), 0.0
     for scene, t, answer, unit in islice(drawn(random.Random(seed)), COUNT):
         other = answers(scene, t, CHECK_ROAD)

@@ -1,4 +1,4 @@
-"""Random numbers and files, shared by the scripts that make tables and judge random scenes."""
+"""Random numbers and files, shared by the scripts that compute tables and judge random scenes."""
 
 import csv
 import json
@@ -12,12 +12,13 @@ ROUNDING = 2.2e-16
 
 
 def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A random number whose logarithm is uniformly distributed."""
+    """Return a random number whose logarithm is uniformly distributed."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def difference(one: Sequence[Any], other: Sequence[Any]) -> float:
-    """The largest relative difference of two answers; absolute where the other answer is 0."""
+    """Return the largest relative difference of two answers; absolute where the other answer is
+    0."""
     return max(float(abs(p - q) / (abs(q) or 1)) for p, q in zip(one, other, strict=True))
 
 
@@ -30,7 +31,7 @@ def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> N
 
 
 def read_records(file: Path | None) -> list[dict[str, Any]]:
-    """The records of an earlier run; an unfinished line is left out."""
+    """Return the records of an earlier run; an unfinished line is left out."""
     if file is None or not file.exists():
         return []
     lines = file.read_text().splitlines(keepends=True)

@@ -28,8 +28,8 @@ std::optional<Outcome> outcome_of(EventKind kind) {
     return {};
 }
 
-// The course of a body with rolling resistance: its start, and the first event that ends its
-// rolling, or its rest.
+// What a body with rolling resistance does: how it starts, and then the first event that ends its
+// rolling or brings it to rest.
 Sentences course_of(const Scene& scene, const Solution& solution, const Start& start,
                     double begin) {
     Sentences found{{name(start.next.mode) + "_starts", {}}};
@@ -96,7 +96,8 @@ Sentences proof_of_rolling(const Scene& scene, const Start& start, const Certifi
     return found;
 }
 
-// The event after which a body that starts in the air is on the ground; null if there is none.
+// The first event after which a body that starts in the air is on the ground; null if there is
+// none.
 const Event* landing_of(const Solution& solution) {
     for (const Event& each : solution.motion.events) {
         if (each.after.state.mode != Mode::flight) return &each;

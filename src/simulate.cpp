@@ -12,11 +12,11 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Replaces "auto" with the simplest model that suffices for the scene, and with the method of that
-// model.
+// Replaces the model "auto" with the simplest model that suffices for the scene, and the method
+// "auto" with the default method of the model.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool rolls = settings.method != Method::automatic;  // the methods belong to rolling
+        const bool rolls = settings.method != Method::automatic;  // named methods compute rolling
         settings.model = rolls || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
@@ -45,8 +45,8 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// The end of valid rolling. On a slope, the law of the contact is followed up to the time `until`,
-// unless it is broken or at its limit earlier; if rolling remains valid until then, the time of its
+// The end of valid rolling. On a slope, the law of the contact is examined up to the time `until`
+// or until the law is broken or at its limit. If rolling remains valid until then, the time of its
 // end is unknown (NaN).
 EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity) {
     if (from.rolling) return end_of_rolling(*from.rolling, scene.friction);
@@ -58,8 +58,8 @@ EndOfRolling prove(const Scene& scene, Beginning& from, double until = infinity)
     return end;
 }
 
-// Whether the contact model computes the motion; it proves each arc of rolling only up to the end
-// time.
+// Whether the contact model computes the motion. That model proves each arc of rolling, only up to
+// the end time.
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (asked.model == Model::contact || asked.is_for_events()) return true;
     return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&

@@ -39,8 +39,8 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
 // Simulates the multiplier model from coordinates and velocities that violate the constraints; such
-// a motion is never valid. The scene provides the body and the ground; a consistent start is part
-// of a scene.
+// a motion is never valid. The scene provides the body and the ground. (A start that satisfies the
+// constraints is given by the scene itself.)
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
@@ -52,8 +52,8 @@ double valid_until(const Scene& scene, const Solution& solution);
 // motions.
 std::optional<Losses> losses(const Solution& solution);
 
-// Time of a full swing or turn of the rolling motion that starts from the scene; throws
-// std::invalid_argument if the motion does not repeat.
+// Duration of a full swing or of a full turn in the rolling motion that starts from the scene;
+// throws std::invalid_argument if the motion does not repeat.
 double period(const Scene& scene);
 
 // A number as text with six digits.

@@ -11,9 +11,8 @@ pytest.register_assert_rewrite("oracles")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Shapes: a circle, a hair off a circle (where a*a - b*b cancels), generic, standing, thin in both
-# positions up to the limits of the package, and sizes far from a metre (results scale with the
-# unit)
+# A circle, a body that is nearly a circle (where a*a - b*b cancels), a generic and a standing body,
+# thin bodies in both positions up to the limits of the package, and sizes far from a metre
 SHAPES = {
     "circle": (1.0, 1.0),
     "circle+1e-8": (1.0 + 1e-8, 1.0),
@@ -27,8 +26,8 @@ SHAPES = {
     "kilometres": (1.1e3, 2.3e3),
 }
 
-# Angles next to 0, on the multiples of pi/2 (to within a double) and beside them, where sin or cos
-# nearly vanishes, and thousands of turns away from 0
+# Angles near 0, the doubles nearest to multiples of pi/2 and angles beside them, where sin or cos
+# nearly vanishes, and angles thousands of turns away from 0
 QUARTER = math.pi / 2
 ANGLES = sorted(
     {
@@ -54,7 +53,7 @@ def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
 
 @pytest.fixture
 def angles() -> list[float]:
-    """Rotations theta [rad] at which some formula loses accuracy unless it is written with care."""
+    """Angles theta [rad] at which a carelessly written formula loses accuracy."""
     return ANGLES
 
 

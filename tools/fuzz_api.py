@@ -51,7 +51,7 @@ class Failed(AssertionError):
 
 
 class Hunt:
-    """Cases of one seed; each search ends at a new finding, until all cases have run."""
+    """Searches with one seed until all cases have run; each search ends at a new finding."""
 
     def __init__(self, process: Process, seed: int) -> None:
         self.process, self.seed = process, seed

@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Test folders for a source folder (the innermost one counts) or for a file outside these folders.
-# The tests of other source folders are in a folder of the same name.
+# Test folders for the innermost listed folder of a source file; "core" and "python" are for files
+# in no such folder. The tests of other source folders are in a folder of the same name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -97,7 +97,7 @@ class Mutant:
 
 
 def changes(line: str) -> Iterator[tuple[str, str]]:
-    """All possible changes of a line: the kind and the new line."""
+    """All possible changes of a line, each with its kind and the new line."""
     code = re.split(r"//|  # ", line)[0]
     for kind, rules in CHANGES.items():
         for pattern, replacement in rules:
@@ -122,7 +122,8 @@ def mutants_of(path: Path) -> Iterator[Mutant]:
 
 
 def drawn(side: str, count: int, seed: int) -> list[Mutant]:
-    """Mutants of all files in mixed order; each file's share is the square root of its total."""
+    """Mutants of all files in random order. The share of a file is proportional to the square root
+    of the number of its mutants."""
     folder, suffixes = ("src", (".cpp", ".hpp")) if side == "core" else ("python", (".py",))
     random_ = random.Random(seed)
     order = []
@@ -176,7 +177,7 @@ class Workshop:
         return True
 
     def require_tested(self) -> None:
-        """End the script if the tests do not import the copy."""
+        """Exit if the tests would not import the copy."""
         code = "import rolling_ellipse; print(rolling_ellipse.__file__)"
         command = [sys.executable, "-c", code]
         done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
@@ -184,7 +185,8 @@ class Workshop:
             sys.exit(f"another installation is found first: {done.stdout}{done.stderr}")
 
     def failing(self, *arguments: str) -> str:
-        """The first test that fails or takes five times as long as usual, or ""."""
+        """The first test that fails, or "one that takes too long" if the tests take more than 60 s
+        and five times the usual time; "" if they pass."""
         usual = 60.0 if arguments else 1500.0
         seconds = 60 + 5 * self.took.get(arguments, usual)
         begin = time.monotonic()
@@ -206,7 +208,7 @@ class Workshop:
         return ""
 
     def failing_program(self) -> str:
-        """The first of PROGRAMS that fails or prints other bits than on the first call, or ""."""
+        """The first of PROGRAMS that fails, hangs, or prints other bits than in the first call."""
         for name in PROGRAMS:
             if not (program := self.objects / name).exists():
                 continue
@@ -219,7 +221,8 @@ class Workshop:
         return ""
 
     def judged(self, mutant: Mutant, thorough: bool) -> tuple[str, str]:
-        """The stage that noticed a mutant, or "build" or "alive"; and the failing test."""
+        """The stage that noticed a mutant, and the test that failed; or "build" if the mutant does
+        not compile, or "alive" if no stage noticed it."""
         path = self.copy / mutant.path
         whole = path.read_text(encoding="utf-8")
         lines = whole.splitlines(keepends=True)
@@ -256,7 +259,7 @@ def nearest(path: str) -> list[str]:
 
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Stages that test a mutant, with the arguments of pytest."""
+    """The stages that test a mutant, each with its arguments for pytest."""
     for folder in nearest(path):
         yield folder, (f"tests/{folder}", "-m", "quick")
     if path.startswith("src"):

@@ -18,7 +18,7 @@ from check_packaging import ROOT, environment, install, new_folder
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
 
-# The type check is left out: the types are written for the stubs of current NumPy.
+# The type check is left out, since the annotations need the stubs of a current NumPy.
 TYPES = "tests/project/test_codebase.py::test_the_tools_accept_the_sources[mypy]"
 NO_TYPES = ("--deselect", TYPES)
 
@@ -27,7 +27,7 @@ NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecation
 
 
 def oldest(requirement: str) -> str:
-    """A requirement of exactly the oldest version: name==version."""
+    """The requirement of exactly the oldest version that a requirement allows: name==version."""
     found = re.fullmatch(r"([\w-]+)(?:>=|==)([\w.]+)(?:,.*)?", requirement)
     if found is None:
         sys.exit(f"every requirement must state its oldest version, got {requirement!r}")

@@ -4,11 +4,12 @@
 
 makes FOLDER, which must not exist. PYTHON is a version (3.14, or 3.14t without the GIL) or the path
 of an interpreter; by default it is every version in the classifiers of pyproject.toml, and those
-that are available without the GIL. Versions come from the PATH or else, if the script runs as root,
-from Debian: mmdebstrap makes a system in FOLDER (nothing of the host is mounted in it) with g++ and
-that Python, which is built from Debian's source if it has no GIL (ten minutes). Packages that have
-a wheel are installed in a new environment. Each Python gets a line with versions, requirements
-without a wheel, counts of pytest, and reasons for skipped tests. FOLDER/VERSION.log has the output.
+that are available without the GIL. A version is looked up on the PATH. If it is not there and the
+script runs as root, it comes from Debian: mmdebstrap creates a system in FOLDER (nothing of the
+host is mounted in it) with g++ and this Python, which is built from Debian's source if it has no
+GIL (ten minutes). Packages that have a wheel are installed in a new environment. For each Python a
+line is printed with versions, requirements without a wheel, counts of pytest, and reasons for
+skipped tests. FOLDER/VERSION.log has the output.
 """
 
 import argparse
@@ -64,7 +65,7 @@ def chroot(version: str, folder: Path) -> list[str]:
     else:
         why = re.search(r"^E: .*", said, re.MULTILINE) or [said[-60:]]
         sys.exit(f"not in Debian's {' and '.join(SUITES)} ({why[0]}): give the path of one")
-    shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # authorities for pip
+    shutil.copy(Path("/") / CERTIFICATES, system / CERTIFICATES)  # certificate authorities for pip
     for name in run("git", "ls-files", cwd=ROOT).splitlines():
         (system / "project" / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, system / "project" / name)
@@ -76,10 +77,10 @@ def chroot(version: str, folder: Path) -> list[str]:
 
 
 def start(python: str, folder: Path) -> tuple[list[str], str]:
-    """The words before each command of an interpreter, and its name."""
+    """The words that precede each command of an interpreter, and the interpreter's name."""
     name = f"python{python}" if re.fullmatch(r"3\.\d+t?", python) else python
     try:
-        run(name, "-c", "import ensurepip", cwd=folder)  # a shim on the PATH may lead nowhere
+        run(name, "-c", "import ensurepip", cwd=folder)  # a shim on the PATH may have no Python
     except (SystemExit, OSError):
         if name == python:
             sys.exit("no Python with venv that starts: give a version or the path of another")
@@ -88,7 +89,7 @@ def start(python: str, folder: Path) -> tuple[list[str], str]:
 
 
 def outcome(python: str, log: Path, arguments: list[str]) -> str:
-    """The line of an interpreter; SystemExit with it if the suite fails."""
+    """The report on an interpreter, one line; raise SystemExit with it if the suite fails."""
     folder = log.parent
     before, interpreter = start(python, folder)
     environment = Path("/environment") if before else log.with_suffix("")

@@ -1,13 +1,13 @@
 """Third-party integrators for the rolling ellipse, one file per library.
 
-`available()` loads the installed libraries; nothing heavy is imported before.
+`available()` imports the installed libraries; importing this package alone does not.
 """
 
 import importlib
 import warnings
 from typing import Any
 
-MODULES = {  # modules with the library that each needs; boost_odeint finds Boost and g++ itself
+MODULES = {  # library that each module needs; boost_odeint looks for Boost and g++ itself
     "scipy_ivp": "scipy",
     "numba_pairs": "numbalsoda",
     "heyoka_taylor": "heyoka",

@@ -18,8 +18,8 @@ from .problem import Integration, Peer, Problem, columns, finite
 SOURCE = Path(__file__).with_name("odeint.cpp")
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-shared", "-fPIC")
 STEPPERS = ("dopri5", "rkf78", "ck54", "bulirsch_stoer")
-# Steppers with dense output. The others stop at every sample: interpolation costs Bulirsch-Stoer
-# its accuracy.
+# Steppers that interpolate samples. The others stop at every sample, since interpolation makes
+# Bulirsch-Stoer inaccurate.
 DENSE = {"dopri5"}
 FAILURES = {1: "more than 1e6 steps", 2: "the step becomes too small", 3: "unknown stepper"}
 Doubles = ctypes.POINTER(ctypes.c_double)
@@ -40,7 +40,7 @@ def library() -> ctypes.CDLL:
     compiler = os.environ.get("CXX") or shutil.which("g++")
     if compiler is None:
         raise OSError("there is no g++")
-    target = output(compiler, *FLAGS, "-Q", "--help=target")  # resolves "native"
+    target = output(compiler, *FLAGS, "-Q", "--help=target")  # shows what "native" means
     text = SOURCE.read_text(encoding="utf-8") + output(compiler, "--version") + target
     key = hashlib.sha256((text + platform.machine()).encode()).hexdigest()[:16]
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rolling_ellipse"

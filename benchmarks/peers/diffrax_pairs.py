@@ -1,4 +1,4 @@
-"""diffrax: pairs on JAX in double precision, compiled once; body and tolerances are arguments."""
+"""diffrax: Runge-Kutta pairs in double precision on JAX, compiled once for all bodies."""
 
 from functools import partial
 from typing import Any

@@ -9,11 +9,11 @@ import numpy as np
 
 from .problem import Integration, Peer, Problem, columns, finite, version
 
-MANY = 20_000  # number of samples from which compiled dense output is faster than a grid
+MANY = 20_000  # from this number of samples on, compiled dense output is faster than a grid
 
 
 def equations(slope: bool) -> list[Any]:
-    """The system, with few products of series; level ground needs no slope terms."""
+    """The equations in a form with few products of series; without slope terms on level ground."""
     theta, omega, x = heyoka.make_vars("theta", "omega", "x")
     b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
     s, c = heyoka.sin(theta), heyoka.cos(theta)

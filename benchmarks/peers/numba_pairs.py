@@ -10,7 +10,7 @@ from numbalsoda import dop853, lsoda, lsoda_sig
 from .numba_rates import right_hand_side
 from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, version
 
-LEAST_RTOL = {dop853: 0.0, lsoda: 200 * np.finfo(float).eps}  # LSODA fails below
+LEAST_RTOL = {dop853: 0.0, lsoda: 200 * np.finfo(float).eps}  # LSODA fails with less
 _right_hand_side = numba.cfunc(lsoda_sig)(right_hand_side)
 
 
@@ -31,7 +31,7 @@ class NumbaRun(Integration):
         return finite(*self.integrate(self.span)[1].tolist())
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion; numbalsoda's first time is the start, and LSODA takes it only once."""
+        """Sample the motion. numbalsoda starts at its first time, which LSODA accepts only once."""
         later = int(np.searchsorted(times, 0.0, "right"))
         states = self.integrate(np.concatenate(([0.0], times[later:])))
         return columns(np.concatenate((np.tile(self.start, (later, 1)), states[1:])))

@@ -48,8 +48,8 @@ struct Samples {
     void put(long i, const State& y) const { std::copy(y.begin(), y.end(), states + 3 * i); }
 };
 
-// A controlled stepper that stops at every sample. After a step that a stop has cut short, the step
-// size before the stop is tried again.
+// Runs a controlled stepper that stops at every sample. After a step that a sample has cut short,
+// the next step has the size from before it, or a larger one.
 template <class Stepper>
 Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};
@@ -75,7 +75,7 @@ Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& 
     return done;
 }
 
-// A stepper with dense output: samples are interpolated in the last step.
+// Runs a stepper with dense output, which interpolates each sample in the step that contains it.
 template <class Stepper>
 Answer interpolate(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};

@@ -1,4 +1,4 @@
-"""The common problem of all peers: equation of rolling, numbers of a scene, refusals.
+"""The common problem of all peers: the equation of rolling and the numbers of a scene.
 
 With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B, the inertia of rolling is D
 = S - AB/u, and the equation of motion needs neither h' nor the radius of curvature:
@@ -21,7 +21,7 @@ import numpy as np
 from rolling_ellipse import Mode, Scene
 
 Rates = Callable[[Any, Any, Any], tuple[Any, Any]]
-MOST_STEPS = 1_000_000  # most steps of one run
+MOST_STEPS = 1_000_000  # limit on the steps of one run
 
 
 class Problem(NamedTuple):
@@ -101,7 +101,7 @@ class Peer:
 
 
 def version(library: str) -> str:
-    """Name and version of an installed library, by pip."""
+    """The name and the installed version of a distribution."""
     return f"{library} {metadata.version(library)}"
 
 

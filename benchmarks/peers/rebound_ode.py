@@ -28,7 +28,7 @@ def _right_hand_side(ode: Any, dy: Any, y: Any, t: float) -> None:
 
 
 def field(solver: Any, name: str) -> Any:
-    """A field in the memory of the integrator; access by attribute would take 15 us."""
+    """A field in the memory of the integrator; access through attributes would take 15 us."""
     found = solver.callbacks.field_descriptor_list.field_descriptor_for_name(name)
     return REB_BINARYDATA_DTYPE[found.dtype].from_address(solver.state + found.offset)
 

@@ -1,4 +1,4 @@
-"""SciPy's solve_ivp, with the right-hand side compiled where numba is installed.
+"""SciPy's solve_ivp, with the right-hand side compiled if numba is installed.
 
 solve_ivp warns about relative tolerances below 100 ulp of 1. Smaller tolerances are raised to this
 bound; the absolute tolerance follows the setting.
@@ -39,7 +39,7 @@ class ScipyRun(Integration):
         how = {"rtol": max(given.rtol, LEAST_RTOL), "atol": given.atol, "args": (body,)}
         start, span = np.array(given.start), (0.0, given.t_end)
         self.solve = partial(solve_ivp, right_hand_side, span, start, method, **how)
-        right_hand_side(0.0, start, body)  # the first call compiles
+        right_hand_side(0.0, start, body)  # the first call compiles the function
 
     def integrate(self, times: Any = None) -> Any:
         with np.errstate(all="ignore"):  # the status of a run reports its failure

@@ -71,7 +71,7 @@ class CvodeRun(Integration):
         return finite(*(y[i] for i in self.order))
 
     def sample(self, times: Any) -> Any:
-        """Sample the motion; solve() takes increasing times from the start on, more than two."""
+        """Sample the motion; solve() needs three or more rising times, the first at the start."""
         stops, back = np.unique(np.concatenate(([0.0], times, [self.t_end])), return_inverse=True)
         found = self.solver.solve(stops, *self.initial)
         self.settle(found)

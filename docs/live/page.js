@@ -1,10 +1,10 @@
-// A page on which every number of the scene can be moved; each frame shows the motion of its own
-// numbers. It needs all modules of the player before it.
+// The page with sliders and fields for every number of the scene. Each frame shows the motion for
+// the current numbers. Needs all modules of the player.
 
-const FULL = 6; // half turns of the strongest colours
-const SETTLED = 300; // time without a change after which the address has the scene [ms]
+const FULL = 6; // number of half turns from which colours have full strength
+const SETTLED = 300; // time without changes after which the address is updated [ms]
 const NO_BLOW = { jx: 0, jz: 0, dx: 0, dz: 0 };
-const NOT_NAMED = [...Object.keys(NO_BLOW), "blows", "t"]; // among the arguments of Scene
+const NOT_NAMED = [...Object.keys(NO_BLOW), "blows", "t"]; // not arguments of Scene
 
 export class Workbench extends Explorer {
   constructor(host, film) {
@@ -30,11 +30,11 @@ export class Workbench extends Explorer {
     this.open(linked);
     this.renew();
     if (!this.refusal) return;
-    this.open(own); // the address has a scene that cannot be
+    this.open(own); // the scene in the address is impossible
     this.renew();
   }
 
-  /** Take the numbers in an address, including the blows during the motion. */
+  /** Set the numbers from an address, and the blows during the motion. */
   open({ blows = "", ...numbers }) {
     Object.assign(this, { earlier: [], since: 0 });
     Object.assign(this.given, known(numbers, this.film.own));
@@ -97,7 +97,8 @@ export class Workbench extends Explorer {
     return { name, unit, least, most, step, group, row, slider, field };
   }
 
-  /** Take other numbers; they are computed in the next frame. Another scene has the same blows. */
+  /** Set new numbers; their motion is computed in the next frame. A change of the scene keeps the
+   * blows and goes back to the start. */
   change(numbers) {
     super.change(known(numbers, this.film.own));
     if (!Object.keys(numbers).some((name) => name in NO_BLOW)) this.seek(0);
@@ -105,7 +106,7 @@ export class Workbench extends Explorer {
     this.settling = setTimeout(() => this.settle(), SETTLED);
   }
 
-  /** Write the scene into the address of the page, by the names of Scene. */
+  /** Write the scene into the page's address, with the names of Scene's arguments. */
   settle() {
     const { blows, ...scene } = this.sceneOf(this.given);
     const numbers = Object.entries(scene).filter(([, value]) => value !== null);
@@ -114,7 +115,7 @@ export class Workbench extends Explorer {
     history.replaceState(null, "", this.address);
   }
 
-  /** Go on in another language, in a new host. */
+  /** Continue in another language, in a new host element. */
   speak(language) {
     if (!(language in this.film.page.languages)) return;
     this.pause();
@@ -128,7 +129,7 @@ export class Workbench extends Explorer {
     next.box.querySelector("button[lang]:not([hidden])").focus();
   }
 
-  /** Compute the motion; without one, the last motion stays, and a sentence says why. */
+  /** Compute the motion. If there is none, the last motion stays and `refusal` says why. */
   renew() {
     const { given, strip, film } = this, { a, b, slope, mass, gravity, x, t } = given;
     const before = { ...strip };
@@ -172,7 +173,8 @@ export class Workbench extends Explorer {
       last: total.points.at(-1)[1] }));
   }
 
-  /** Absent are the height and velocity of a body that touches and rolls, too. */
+  /** The scene for the core: z and z_dot are null for a body on the ground, and x_dot, too, if it
+   * rolls. */
   sceneOf({ k, height, slip, ...given }) {
     const { a, b, mass, theta, omega } = given, [h] = support(theta, a, b);
     const [[, jx, jz, dx, dz], ...blows] = this.blows(given);
@@ -201,7 +203,8 @@ export class Workbench extends Explorer {
       + `motion = rl.simulate(scene, ${this.given.t}{blows})\n`);
   }
 
-  /** Strike a point of the body; a hand without force gets half of the largest one. */
+  /** Strike now. A point outside the body is moved into it, and a blow without strength gets half
+   * of the largest strength. */
   strike() {
     if (!super.strike()) return false;
     const { jx, jz, dx, dz } = this.given, part = Math.min(1, 0.99 / this.sizeOf([dx, dz]));
@@ -253,7 +256,8 @@ export class Workbench extends Explorer {
     return `${this.say(`in_${name}`)}${unit ? ` [${unit}]` : ""}`;
   }
 
-  /** Colour and strength for half turns until the end, or for a motion that jams, or none. */
+  /** The colour and opacity of a cell: by the number of half turns until the end, or one colour for
+   * motions that end early and one for scenes without a motion. */
   colourOf(given) {
     const { film: { core }, colours } = this;
     try {
@@ -299,7 +303,8 @@ export class Workbench extends Explorer {
   }
 }
 
-/** A number as people write it, with comma or point, by pi, infinite, or an angle in degrees. */
+/** The number in a text, with decimal comma or point: plain, a multiple of pi, infinity, or an
+ * angle in degrees; NaN for other texts. */
 function numberIn(text, unit = "") {
   const plain = text.trim().replace(",", ".").replace("−", "-").replace("π", "pi");
   if (/^(∞|inf|infinity)$/i.test(plain)) return Infinity;
@@ -314,7 +319,8 @@ function numberIn(text, unit = "") {
 const rounded = (value) => Number(value.toPrecision(4));
 const halfTurns = (theta, start) => Math.round((theta - start) / Math.PI) + 0;
 
-/** The page's numbers in an address; it has Scene's names, or is older and has the page's own. */
+/** The page's numbers in an address, which has the names of Scene's arguments or, if it is older,
+ * the names of the page. */
 function inAddress(hash, usual) {
   const linked = Object.fromEntries(new URLSearchParams(hash.slice(1)));
   if (!linked.a || !linked.b || "k" in linked) return linked;
@@ -328,14 +334,15 @@ function inAddress(hash, usual) {
     slip: x_dot === undefined ? 0 : x_dot - (flies ? 0 : h * omega) };
 }
 
-/** Those of some numbers, or their texts, that a page has. */
+/** The given numbers, or texts of numbers, whose names the page has. */
 function known(numbers, own) {
   const pairs = Object.entries(numbers).filter(([name]) => name in own)
     .map(([name, value]) => [name, value === null ? null : numberIn(`${value}`)]);
   return Object.fromEntries(pairs.filter(([, value]) => !Number.isNaN(value)));
 }
 
-/** The window of a strip: it stays for bodies down to half a size, and a high start fits in. */
+/** The window of a strip. Its width is the same for long semi-axes between size/2 and size, unless
+ * a start high above the ground needs more. */
 function windowOf({ a, b, slope, motion }, size, shape, width) {
   const { x, z } = motion.at(0), long = Math.max(a, b), sine = Math.abs(Math.sin(slope));
   const wide = Math.max((width < 600 ? 9 : 14) * Math.max(long, Math.min(size, 2 * long)),

@@ -1,7 +1,7 @@
-"""Split the copy of a notebook into chapters: the site calls `split`, since one page is too long.
+"""Split the site's copy of a notebook into chapters, because a single page would be too long.
 
-The notebook itself stays one file. On the site, its page has the cells before the first chapter, a
-list of the chapters, each with its own page, and the last section.
+The notebook itself remains one file; conf.py calls `split`. On the site, its page has the cells
+before the first chapter, a list of the chapters, each with its own page, and the last section.
 """
 
 import json
@@ -30,7 +30,7 @@ def source(cell: Cell) -> str:
 
 
 def raised(cell: Cell) -> Cell:
-    """A cell of a chapter, whose headings are one level higher."""
+    """Return a cell with its headings raised by one level."""
     if cell["cell_type"] != "markdown":
         return cell
     return cell | {"source": re.sub("^##", "#", source(cell), flags=re.MULTILINE)}

@@ -1,4 +1,4 @@
-"""Make the pictures and the tasks of the sheets in docs/course: python docs/makers/course.py
+"""Draw the pictures and write the tasks of the sheets in docs/course: python docs/makers/course.py
 
     pictures   01.png to 10.png, and 07b.png
     tasks      the marked parts of the sheets, from the questions and data of `course`
@@ -285,7 +285,8 @@ def flight() -> Figure:
     return figure
 
 
-#: The example of sheet 7b: slopes of u and v over the normal impulse [1/kg], its ends [N s].
+#: The example of sheet 7b: slopes of u and v over the normal impulse [1/kg], and the
+#: impulses between which they are constant [N s].
 SLOPES, ENDS = ((0.66134, -0.21913), (0.69610, 0.0), (0.69610, 0.0)), (0.0, 1.8254, 2.9643, 4.7260)
 
 

@@ -1,4 +1,4 @@
-"""The tables of benchmark_dae.md: SUNDIALS IDA and solve_dae on all forms, and the reference.
+"""Compute the tables of benchmark_dae.md: runs of IDA and solve_dae, and the reference states.
 
 make.py adds the folder of `common` to the path.
 """
@@ -25,20 +25,20 @@ RUNS = [  # form, tolerance, entries in the test of local errors
 
 
 def scored(problem: benchmark.Problem) -> np.ndarray:
-    """The given times after the start at which states are scored."""
+    """Return the tabulated times after the start at which states are scored."""
     times = problem.times[problem.times > 0]
     return times[(times < problem.horizon) | (problem.horizon == problem.t_end)]
 
 
 def tested(dae: benchmark.Dae, which: str) -> np.ndarray:
-    """Mask of the entries in the test of local errors."""
+    """Return a mask of the entries whose local errors the solver tests."""
     if which == Q_V:
         return ~dae.algebraic
     return np.arange(len(dae.names)) < (5 if which == Q else len(dae.names))
 
 
 def solver(library: str):
-    """The function `solve` that the page shows for a library."""
+    """Return the function `solve` that the page shows for a library."""
     programs = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
     names: dict = {}
     exec(next(each for each in programs if f"from {library}" in each), names)
@@ -46,16 +46,16 @@ def solver(library: str):
 
 
 def outcome(problem: benchmark.Problem, dae: benchmark.Dae, found, states) -> tuple[str, str]:
-    """The largest error, if the solution reached the end, and how the run ended."""
+    """Return the largest error, or "" if the run failed, and how the run ended."""
     if not found.success:
-        reached = max(found.t, default=0.0)  # of the given times
+        reached = max(found.t, default=0.0)  # the last requested time reached
         return "", f"t = {reached:.2g} s: {found.message}"
     off = np.abs(dae.states(states) - problem.exact(found.t)) / problem.scales
     return f"{off.max():.1e}", "done"
 
 
 def ida() -> str:
-    """Table of the runs of IDA."""
+    """Return the table of the runs of IDA."""
     lines = ["| problem | form | tolerance | in the test | error | F | J | s | outcome |"]
     lines += ["|---|---|---|---|---|---|---|---|---|"]
     solve = solver("sksundae")
@@ -77,7 +77,7 @@ def ida() -> str:
 
 
 def radau() -> str:
-    """Table of the runs of solve_dae."""
+    """Return the table of the runs of solve_dae."""
     lines = ["| problem | form | error | F | J | LU | outcome |", "|---|---|---|---|---|---|---|"]
     solve = solver("solve_dae")
     for name in ("roll.circle", "roll.roll", "brink.over"):
@@ -94,7 +94,7 @@ def radau() -> str:
 
 
 def reference() -> str:
-    """Table of the states at the last scored time."""
+    """Return the table of the states at the last scored time."""
     lines = []
     for name in NAMES:
         problem = benchmark.problem(name)

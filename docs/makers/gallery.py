@@ -1,4 +1,4 @@
-"""Draw the pictures of the gallery by the code on its page: python docs/makers/gallery.py [folder]
+"""Draw the pictures of the gallery with the code of its page: python docs/makers/gallery.py [DIR]
 
 Each block of docs/gallery.md continues those before it. The value of its last statement, a picture
 or an animation, is written to the file that the page shows below the block; an animation is written
@@ -24,12 +24,12 @@ MOMENT = 0.45  # time of the frame of an animation, as a fraction of its length
 
 
 def blocks() -> list[tuple[str, str]]:
-    """Code and name of the picture of each block; the first has no picture."""
+    """Return the code and the picture's name of each block; the first block has no picture."""
     return BLOCK.findall((DOCS / "gallery.md").read_text(encoding="utf-8"))
 
 
 def drawn() -> Iterator[tuple[str, Any]]:
-    """Name of each picture, and the value of the last statement of its block."""
+    """Yield the name of each picture, and the value of the last statement of its block."""
     known: dict[str, Any] = {}
     for code, name in blocks():
         *before, last = ast.parse(code).body

@@ -1,8 +1,8 @@
-"""Make data/hard_limit.csv, data/stiffness.csv and the tables of your_tests.md from both files.
+"""Compute data/hard_limit.csv and data/stiffness.csv, and write their tables in your_tests.md.
 
-    python docs/makers/hard_limit.py            two minutes, with gmpy2 and SciPy
+    python docs/makers/hard_limit.py            takes two minutes; needs gmpy2 and SciPy
 
-`exact` computes the rigid answers in 64 digits with reference/contact_motion.py, which shares no
+`exact` computes the rigid answers to 64 digits with reference/contact_motion.py, which shares no
 code with the package. `Soft` is a third program: the same body on a linear spring. Its distance
 from the rigid answers is measured on a ladder of stiffnesses.
 
@@ -40,13 +40,13 @@ ANSWERS = (*AFTER, "slip_after", "angle", "law_spread")
 BODIES = {"disc": (1.0, 1.0, 0.5), "ellipse": (2.0, 1.0, 1.25)}  # a, b, inertia; the mass is 1
 IMPACTS = {"normal": (0.0, -1.0, 0.0), "oblique": (1.0, -1.0, 0.0), "spinning": (0.0, -1.0, 1.5)}
 TILT = 0.5  # theta of an ellipse at an impact [rad]
-ZERO = 1e-40  # a smaller answer is zero up to the roundings of 64 digits
+ZERO = 1e-40  # smaller answers are zero to within the rounding errors of 64 digits
 LADDERS = {"IMPACT": [1e4, 1e6, 1e8, 1e10], "STICK": [1e5, 1e6, 1e7], "REST": [1e5, 1e6, 1e7]}
-NOISE = 1e-9  # largest error of the integrator; smaller differences from the rigid answer are none
+NOISE = 1e-9  # largest error of the integrator; smaller differences are not measurable
 
 
 def cases():
-    """Name, kind of event and fields of the scene of each case."""
+    """Yield the name, the kind of event and the fields of the scene of each case."""
     for name, (a, b, inertia) in BODIES.items():
         body = {"a": a, "b": b, "inertia": inertia}
         for kind, (x_dot, z_dot, omega) in IMPACTS.items():
@@ -68,7 +68,7 @@ def cases():
 
 
 def exact(event, given):
-    """Inputs of a case, and the state just after its event."""
+    """Return the inputs of a case, and the state just after its event."""
     import gmpy2
     from contact_motion import Body, Scene, collide, follow
     from series import Road
@@ -118,7 +118,7 @@ class Soft:
         self.side = self.turn = 0  # signs of slip and rotation; 0 if the contact sticks
 
     def touch(self, y):
-        """h, o, overlap and its rate."""
+        """Return h, o, the overlap and its rate."""
         sin, cos = math.sin(y[2]), math.cos(y[2])
         h = math.hypot(self.a * sin, self.b * cos)
         o = (self.a**2 - self.b**2) * sin * cos / h
@@ -131,7 +131,7 @@ class Soft:
         return self.s * d + 2 * self.zeta * math.sqrt(self.s) * rate
 
     def holding(self, y, normal):
-        """Friction that keeps the slip of a body constant."""
+        """Return the friction force that keeps the slip constant."""
         h, o, *_ = self.touch(y)
         arm = o + self.lever * self.turn
         return (o * y[5] ** 2 - h * arm * normal / self.k2) / (1 + h * h / self.k2)
@@ -144,24 +144,24 @@ class Soft:
         return [*y[3:], friction, normal - G, torque / self.k2]
 
     def slip(self, t, y):
-        """Slip in its own direction; for a contact that sticks, the friction still available."""
+        """Return the slip in the direction `side`, or the unused friction if the contact sticks."""
         if self.side:
             return self.side * (y[3] - self.touch(y)[0] * y[5])
         normal = self.normal(y)
         return self.mu * abs(normal) - abs(self.holding(y, normal))
 
     def contact(self, t, y):
-        """Positive until the compression, or the contact, ends."""
+        """Return a value that is positive until the compression, or else the contact, ends."""
         if not self.latch:
             return self.touch(y)[2]
         return self.normal(y) if self.returns else self.touch(y)[3]
 
     def rotation(self, t, y):
-        """Angular velocity in its own direction."""
+        """Return the angular velocity in the direction `turn`."""
         return self.turn * y[5]
 
     def stick_or_slip(self, y):
-        """Choose the side of a contact without slip. An impact begins with N = 0: any N will do."""
+        """Choose whether a contact without slip sticks; if N = 0, the choice holds for any N."""
         normal = self.normal(y) or 1.0
         friction = self.holding(y, normal)
         self.side = 0 if abs(friction) <= self.mu * abs(normal) else -int(np.sign(friction))
@@ -210,7 +210,7 @@ class Soft:
 
 
 def error(row, s, law):
-    """Largest error of the velocities after an impact, omega times k, or of t, x and theta."""
+    """Return the largest error: of x_dot, z_dot, k omega after an impact, or of t, x, theta."""
     t, y = Soft(row, s, law).follow()
     impact = row["event"] == "IMPACT"
     found = np.array(y[3:] if impact else [t, y[0], y[2]])
@@ -220,7 +220,7 @@ def error(row, s, law):
 
 
 def ladder(row):
-    """Rows of errors by both laws; a dashpot cannot end an impact with e = 0."""
+    """Yield rows of errors for each law; impacts with e = 0 do not end on a dashpot."""
     impact = row["event"] == "IMPACT"
     for law in ("latch", "dashpot") if impact else ("dashpot",):
         if law == "latch" or row["restitution"] or not impact:
@@ -230,7 +230,7 @@ def ladder(row):
 
 
 def exponent(rungs):
-    """Exponent of the error between the two stiffest rungs; NaN for errors below the noise."""
+    """Return the exponent of the error over the two stiffest springs; NaN if it is below NOISE."""
     (s, first), (t, last) = ((rung["stiffness"], rung["error"]) for rung in rungs[-2:])
     return math.log(last / first) / math.log(t / s) if last > NOISE else math.nan
 
@@ -246,7 +246,7 @@ def write(name, rows):
 
 
 def read(name):
-    """Rows of a table, with numbers as doubles."""
+    """Return the rows of a table, with numbers as doubles."""
     with (DATA / name).open(encoding="utf-8", newline="") as file:
         return [
             {key: text if key in ("case", "event", "law") else float(text)
@@ -261,7 +261,7 @@ def rungs_of(row, law, rungs):
 
 
 def limit(row, law, rungs):
-    """The exponent, "exact" for errors below the noise, or the error that no stiffness removes."""
+    """Return the exponent, "exact" for errors below NOISE, or the error that remains."""
     found = rungs_of(row, law, rungs)
     if not found:
         return "–"
@@ -272,7 +272,7 @@ def limit(row, law, rungs):
 
 
 def tables():
-    """Marked parts of the page, by name."""
+    """Return the marked parts of the page, by name."""
     rows, rungs = read("hard_limit.csv"), read("stiffness.csv")
     number = "{:.15g}".format
     impacts = [
@@ -303,7 +303,7 @@ def table(lines):
 
 
 def with_tables(page):
-    """The page with its marked parts made from the files."""
+    """Return the page with its marked parts computed from the files."""
     for name, made in tables().items():
         mark = f"<!-- {name}: made by docs/makers/hard_limit.py -->\n"
         part = re.compile(f"({mark}).*?(<!-- end of {name} -->)", re.DOTALL)

@@ -23,7 +23,7 @@ def write(target: Path) -> None:
 
 
 def page(explorer: Explorer) -> str:
-    """The page of an explorer's scene, blow included."""
+    """Return the page for the scene of an explorer, including its blow."""
     given = numbers(explorer)
     languages = {name: language(name) for name in LANGUAGES}
     usual = Scene(given["a"], given["b"])
@@ -42,7 +42,7 @@ def page(explorer: Explorer) -> str:
 
 
 def numbers(explorer: Explorer) -> dict[str, Any]:
-    """The numbers that a user can change or a link can contain; infinite friction is None."""
+    """Return the numbers that a user can change or a link can contain; inf is None."""
     scene, start = explorer.scene, explorer.scene.replace(impulse=None).initial_state
     height = geometry.support(scene.theta, a=scene.a, b=scene.b)
     flies = start.z > height
@@ -63,7 +63,7 @@ def numbers(explorer: Explorer) -> dict[str, Any]:
 
 
 def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
-    """Group, name, unit, range and step of each slider; ranges scale with the body's size."""
+    """Return group, name, unit, range and step of each slider, scaled to the body's size."""
     size = max(given["a"], given["b"])
     rate = math.sqrt(given["gravity"] / size)
     _, strength = axes(explorer.scene)
@@ -84,7 +84,7 @@ def inputs(explorer: Explorer, given: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def row(group: str, name: str, unit: str, least: float, most: float) -> dict[str, Any]:
-    """A slider of about 100 steps, each 1, 2 or 5 times a power of ten."""
+    """Return a slider of about 100 steps; the step is 1, 2 or 5 times a power of ten."""
     rough = (most - least) / 100
     power = 10.0 ** math.floor(math.log10(rough))
     step = power * min((1, 2, 5), key=lambda n: abs(n * power - rough))
@@ -94,7 +94,7 @@ def row(group: str, name: str, unit: str, least: float, most: float) -> dict[str
 
 
 def language(name: str) -> dict[str, Any]:
-    """Words and markup of the page in a language."""
+    """Return the words and the markup of the page in a language."""
     own = json.loads((FOLDER / f"words_{name}.json").read_text(encoding="utf-8"))
     known = words(name) | own
     html = (FOLDER / "page.html").read_text(encoding="utf-8")

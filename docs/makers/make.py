@@ -1,21 +1,21 @@
-"""Make all measurements, pictures and the text that quotes them: python docs/makers/make.py
+"""Run all measurements, draw the pictures, and update the text: python docs/makers/make.py
 
-On a quiet machine, with `pip install '.[test,peers,engines]'`, gfortran (for numbalsoda), g++ and
-Boost's headers; it takes about an hour, and all results then come from one commit and one machine:
+Use a quiet machine with `pip install '.[test,peers,engines]'`, gfortran (for numbalsoda), g++ and
+Boost's headers. A run takes about an hour; all results then come from one commit and one machine:
 
     races      docs/data/peers_*.json, by benchmarks/bench_peers.py
     batches    docs/data/batches.json, by benchmarks/bench_batches.py
     engines    docs/data/engines.json, by the adapters of rolling_ellipse.benchmark
-    added      scores of problems that the file lacks; all other scores stay
+    added      scores of problems that engines.json lacks; other scores are preserved
     pictures   docs/*.png and *.gif, by pictures.py; paper/*.png, by paper/figures.py
-    gallery    docs/gallery/*.png, by the code of docs/gallery.md
+    gallery    docs/gallery/*.png, from the code in docs/gallery.md
     problems   docs/problems/* and the table in docs/benchmark.md, by problems.py
     notebooks  the outputs of all notebooks; 06 needs the races and the peers
     text       the marked parts of README, speed.md, many.md and benchmark.md, from those files
     dae        the tables of docs/benchmark_dae.md, by dae_table.py
 
-With steps named, only these are made. --quick takes seconds instead of minutes and shows that
-everything works; its figures are not to be kept.
+Arguments select steps. --quick takes seconds instead of minutes and shows that everything works;
+its figures must not be published.
 """
 
 import argparse
@@ -42,12 +42,12 @@ from rolling_ellipse.benchmark.adapters import engine
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent
 DATA, ROOT = DOCS / "data", DOCS.parent
-PAGES = ("README", *(f"docs/{name}" for name in ("index", "speed", "many", "benchmark")))  # quoting
+PAGES = ("README", *(f"docs/{name}" for name in ("index", "speed", "many", "benchmark")))
 BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
-ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and their adapters
+ENGINES = {"MuJoCo": "mujoco", "Drake": "drake", "pymunk": "pymunk"}  # and adapters
 LADDER = [1e-2, 1e-3]  # steps of the engines [s]
-SCORES = 4  # depth of the scores in the file of the engines, one a line
+SCORES = 4  # depth at which engines.json has one score per line
 MOTIONS = {
     "R": "rolling over, {:g} half turns",
     "L": "rocking, {:g} half swings",
@@ -56,7 +56,7 @@ MOTIONS = {
 }
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
 COLUMNS = [10.0**-k for k in range(2, 15, 3)]
-# pooltool-billiards 0.3.3: its default ball starts at 1 m/s without spin, and its first event is at
+# The default ball of pooltool-billiards 0.3.3, started at 1 m/s without spin, stops slipping at
 POOLTOOL = 0.14562399883500798  # [s]
 
 
@@ -70,7 +70,7 @@ def batches(quick: bool) -> None:
 
 
 def engines(quick: bool) -> None:
-    """Run the engines on the problems; a quick run takes the coarser step only."""
+    """Run the engines on the problems; a quick run uses only the coarser step."""
     import common
 
     found: dict[str, Any] = {"machine": common.machine(), "engines": {}}
@@ -89,7 +89,10 @@ def engines(quick: bool) -> None:
 
 
 def added(quick: bool) -> None:
-    """Run the engines on problems without a score; a missing engine may only refuse them."""
+    """Run the engines on problems without a score.
+
+    For an engine that is not installed, only problems that it would refuse can be scored.
+    """
     from pictures import restored
 
     path = DATA / "engines.json"
@@ -115,7 +118,7 @@ def added(quick: bool) -> None:
 
 
 def refuses(scene: Scene, step: float) -> Any:
-    """Refuse a scene that an engine's file format cannot express, as every engine does."""
+    """Raise ValueError for a scene that SDF cannot express, as every adapter does."""
     scene.to_sdf()
     raise ModuleNotFoundError("the engine must be installed for a problem that it may support")
 
@@ -191,7 +194,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 
 def quoted(page: str) -> str:
-    """A page with its marked parts recomputed."""
+    """Return a page with its marked parts recomputed."""
     parts = {"speed": speed, "batches": throughput, "engines": engine_table, "others": others,
              "lead": lead}  # fmt: skip
     found = [name for name in parts if f"<!-- {name}: made by docs/makers/make.py -->\n" in page]
@@ -203,7 +206,7 @@ def quoted(page: str) -> str:
 
 
 def with_part(page: str, name: str, made: str) -> str:
-    """A page with the text between the marks of a part replaced."""
+    """Return a page with the text between the marks of a part replaced."""
     begin, end = f"<!-- {name}: made by docs/makers/make.py -->\n", f"<!-- end of {name} -->\n"
     before, _, rest = page.partition(begin)
     _, closed, after = rest.partition(end)
@@ -217,9 +220,9 @@ def write_part(path: Path, name: str, made: str) -> None:
 
 
 def speed() -> str:
-    """Text and table of the races: the leaders of one race, and the peers' ratios in all races.
+    """Return the leaders of one race as text, and a table of the peers' ratios in all races.
 
-    Where peers are ahead, the verdict's sentences follow, then the costs of calls.
+    The sentences on races in which peers are ahead follow, and then the times of calls.
     """
     import bench_peers
 
@@ -249,7 +252,7 @@ def speed() -> str:
 
 
 def calls() -> list[str]:
-    """Lines of a table, if it was measured: calls of the package and of the quickest peers."""
+    """Return a table of times of calls of the package and of the fastest peers, if measured."""
     path = DATA / "calls.json"
     if not path.exists():
         return []
@@ -262,7 +265,7 @@ def calls() -> list[str]:
 
 
 def lead() -> str:
-    """The figure on the first page: the time of the best peer over that of the package."""
+    """Return the sentence of the first page: the ratio of the best peer's time to the package's."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     peers = {run.name for run in race.runs if "peer" in run.tags}
@@ -274,7 +277,7 @@ def lead() -> str:
 
 
 def others() -> str:
-    """Table that compares other programs with the package, with a figure for each."""
+    """Return a table that compares other programs with the package, with a number for each."""
     race = WorkPrecision.load(DATA / "peers_R_10.37.json")
     least = race.least(1e-8)
     rows = [["program", "what it does", "compared with this package"]]
@@ -299,12 +302,12 @@ def others() -> str:
 
 
 def half_turns(path: Path) -> float:
-    """Number of half turns in the name of a race's file."""
+    """Return the number of half turns in the name of a race's file."""
     return float(path.stem.rpartition("_")[2])
 
 
 def throughput() -> str:
-    """Sentences with the figures for planning a large run, if there are measurements."""
+    """Return sentences with the costs of a large run, or "" if there are no measurements."""
     path = DATA / "batches.json"
     if not path.exists():
         return ""
@@ -322,7 +325,7 @@ def throughput() -> str:
 
 
 def engine_table() -> str:
-    """Settings and verdicts of the engines, and a table of problems and steps."""
+    """Return a table of problems and steps, and the settings and verdicts of the engines."""
     known = json.loads((DATA / "engines.json").read_text(encoding="utf-8"))
     on, lines = known["machine"], []
     cells: dict[str, list[str]] = {}
@@ -344,7 +347,7 @@ def engine_table() -> str:
 
 
 def engine_cell(score: dict[str, Any]) -> str:
-    """Error over condition, in bold if the answer passes; or a dash if there is none."""
+    """Return the error over condition, in bold if the answer passes, or a dash if there is none."""
     if score["over_condition"] is None:
         return "–"
     error = f"{score['over_condition']:.0e}"

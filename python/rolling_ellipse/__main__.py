@@ -34,9 +34,9 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 on success; 1 if the motion could not be followed to its end (the summary then covers the
-        computed part), or an answer to `benchmark` is wrong; 2 (with a message of one line) on bad
-        input, or if a file cannot be written. A StabilityWarning, or a warning of
-        omitted blows, is also printed as one line.
+        computed part), or an answer to `benchmark` is wrong; 2, with a message of one line, on bad
+        input or if a file cannot be written. A StabilityWarning, or a warning that blows are
+        omitted, is also printed as one line.
     """
     typed = sys.argv[1:] if arguments is None else arguments
     commands = {
@@ -109,7 +109,7 @@ def _complain(error: Exception | Warning | str) -> None:
 
 def run() -> int:
     """Run the command line for a shell, with exit codes for Ctrl-C, closed pipes and full disks."""
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # warnings would add lines
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no lines of warnings
     try:
         try:
             return main()

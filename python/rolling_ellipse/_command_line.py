@@ -138,7 +138,7 @@ def require_file(option: str, path: str) -> None:
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
-    """Return the scene of --scene, or else that of the report, changed by the other options.
+    """Return the scene of --scene, or by default the report's, changed by the other options.
 
     The blow of the scene remains unless --omega sets the start or --press replaces the blow.
 
@@ -216,7 +216,7 @@ def act(options: argparse.Namespace) -> tuple[int, str]:
 
 
 def _scores_of(name: str, **chosen: Any) -> benchmark.Scores:
-    """Run an engine or a function; report an error in it as a sentence that gives its line."""
+    """Run an engine or a function; report an error raised in it as a sentence with the line."""
     mine = _function(name)
 
     def placed(problem: benchmark.Problem, times: Any, setting: Any) -> Any:
@@ -299,7 +299,10 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:
-    """Return the changed fields of a scene: JSON lacks infinite friction, which is a default."""
+    """Return the impulse and the fields that differ from the defaults.
+
+    Infinite friction, which JSON lacks, is a default and is therefore left out.
+    """
     facts = {name: value for name, value in asdict(scene).items() if name in scene._changed()}
     return facts | {"impulse": facts.get("impulse")}
 

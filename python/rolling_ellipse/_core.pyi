@@ -17,7 +17,7 @@ _Three = tuple[FloatArray, FloatArray, FloatArray]
 _Arrays = dict[str, FloatArray]
 _Tables = dict[str, npt.NDArray[Any]]
 _Columns = list[FloatArray]  # arguments, as `broadcast` returns them
-_Passages = tuple[list[FloatArray], list[str]]  # times by value, and where some may be missing
+_Passages = tuple[list[FloatArray], list[str]]  # times for each value; where some may be missing
 
 class _Named:
     """Enums whose members also equal their names (`equal_to_names` in `_ask.printing`)."""

@@ -100,7 +100,9 @@ def contact_distance(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return psi [rad], continuous over all theta, with tan(psi) = (a/b)^2 tan(theta).
+    """Return psi [rad], the angle in the body from its axis b to the contact.
+
+    psi is a continuous function of theta, and tan(psi) = (a/b)^2 tan(theta).
 
     Examples
     --------
@@ -112,10 +114,10 @@ def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the integral of h from 0 to theta: the displacement of the rolling centre [m].
+    """Return the displacement of the centre in rolling, the integral of h from 0 to theta [m].
 
-    It is computed with Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10), in forms
-    without cancellation, for any number of turns.
+    The integral is computed with Carlson's symmetric elliptic integrals (DLMF 19.25.9 and
+    19.25.10), in forms without cancellation, for any number of turns.
 
     Examples
     --------
@@ -127,9 +129,9 @@ def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the arc length of the ellipse between its contacts at angle 0 and at theta [m].
+    """Return the arc length between the contact points of the ellipse at angle 0 and at theta [m].
 
-    It equals ``centre_path + support_slope``; at theta = 2 pi it is the perimeter.
+    The arc length equals ``centre_path + support_slope``; at theta = 2 pi it is the perimeter.
 
     Examples
     --------

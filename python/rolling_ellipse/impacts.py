@@ -52,15 +52,15 @@ _MEASURES: dict[Measure, Callable[[FloatArray], Any]] = {
     "median": lambda errors: np.median(errors, axis=-1),
     "rms": lambda errors: np.sqrt(np.mean(errors**2, axis=-1)),
 }
-_INTERVALS, _HALVINGS = 40, 8  # grid intervals per coefficient, and halvings of their size
-_STEPS = _INTERVALS * 2**_HALVINGS  # intervals of the last grid
+_INTERVALS, _HALVINGS = 40, 8  # intervals per coefficient of the first grid; number of halvings
+_STEPS = _INTERVALS * 2**_HALVINGS  # intervals per coefficient of the finest grid
 _REACH = 2  # steps of the finer grid on either side of a leading point
 _LEADING = 50  # number of best points for the whole series that are refined
-_SPLITS = 25  # number of random halvings of a series; they give the scatter to within a tenth
+_SPLITS = 25  # number of random splits into halves; these determine the scatter to within 10 %
 _FEWEST = 20  # minimum number of impacts for estimating errors from halves of the series
-_BLOCK = 2**20  # impacts predicted in one call
-_COARSE, _FINE = 24, 64  # cells per coefficient in the grids that find the peak, and in the last
-_DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) of the maximum
+_BLOCK = 2**20  # largest number of impacts predicted in one call
+_COARSE, _FINE = 24, 64  # cells per coefficient: grids that locate the peak, and last grid
+_DEPTH = 25.0  # the next grid covers the points whose likelihood exceeds exp(-25) times the maximum
 _ZOOMS = 12  # largest number of coarse grids; each is at least 1/12 as wide as the previous one
 
 
@@ -134,10 +134,10 @@ def collide(
 
 
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
-    """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s], T the kinetic energy.
+    """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s] for the kinetic energy T.
 
-    Of a difference of velocities it is the distance between two motions, with translation and
-    rotation weighted as in the kinetic energy.
+    For the difference between the velocities of two motions, this speed measures how far apart the
+    motions are, with translation and rotation weighted as in the kinetic energy.
 
     Parameters
     ----------
@@ -185,8 +185,8 @@ class FittedImpacts(Listed):
     restitution_error, friction_error : float
         Standard errors: the scatter of the fits to 50 random halves of the series, or, if larger,
         the range of equally good coefficients divided by sqrt(12). The scatter of friction is
-        measured as that of the friction angle. Both errors are infinite for fewer than 20 impacts;
-        that of friction is also infinite if infinite friction fits equally well.
+        computed from that of the friction angle. Both errors are infinite for fewer than 20
+        impacts; that of friction is also infinite if infinite friction fits equally well.
     measured, predicted : ndarray, shape (3, n)
         Velocities after each impact [m/s, m/s, rad/s].
     log_likelihood : float
@@ -316,8 +316,8 @@ def fit(
     the whole series and around the best point for each of 50 random halves of it. Eight refinements
     halve the step to 1e-4. The halves are included because the median has many local minima, and
     each serious candidate is the best point for some half. The fit to a half is the best of all
-    points tried. The fits to halves scatter about the fit to the series as the latter scatters
-    about the truth; for a linear least-squares fit this is exact [1]_.
+    points tried. The fits to halves scatter about the fit to the series as the fit to
+    the series scatters about the truth; for a linear least-squares fit this is exact [1]_.
 
     The likelihood is normal in x_dot, z_dot and k omega: N numbers, three for each impact.
     Integrated over sigma it is Gamma(N/2)/2 (pi S)^(-N/2), where S is the sum of squared errors
@@ -413,7 +413,7 @@ def _halves(places: Any) -> list[Any]:
 
 def _friction(angle: FloatArray) -> FloatArray:
     friction = np.tan(angle)
-    return np.where(friction > 1e6, math.inf, friction)  # the largest finite coefficient
+    return np.where(friction > 1e6, math.inf, friction)  # larger coefficients count as infinite
 
 
 def _integral(densities: Callable[[FloatArray], FloatArray]) -> tuple[float, float, FloatArray]:
@@ -472,13 +472,13 @@ def _search(
 
 
 def _points(numbers: Any) -> FloatArray:
-    """Return restitution and friction angle [rad] of points by their numbers, (2, k)."""
+    """Return restitution and friction angle [rad] of the points with these numbers, (2, k)."""
     restitution, angle = np.divmod(numbers, _STEPS + 1)
     return np.stack([restitution / _STEPS, angle / _STEPS * (math.pi / 2)])
 
 
 def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, float]:
-    """Return the errors of restitution and friction from the measures of the points tried."""
+    """Return the standard errors of restitution and friction from the points tried."""
     whole, best = table[0], points[:, np.argmin(table[0])]
     own = points[:, np.argmin(table[1:], axis=1)]
     alike = points[:, whole <= whole.min() * (1 + 1e-9)]
@@ -490,7 +490,7 @@ def _standard_errors(points: FloatArray, table: FloatArray) -> tuple[float, floa
 
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
-    """Return `count` columns of one number per impact as the rows of a finite array."""
+    """Return `count` columns of one number per impact as the rows of an array of finite numbers."""
     rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
         raise ValueError(

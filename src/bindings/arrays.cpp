@@ -30,7 +30,7 @@ std::string shape_of(const Array& array) {
 GilRelease::~GilRelease() {
     try {
         PyEval_RestoreThread(state_);
-    } catch (...) {  // unwinding by pthread_exit: wait for the process to end
+    } catch (...) {  // pthread_exit unwinds the stack: wait for the process to end
         for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     }
 }
@@ -80,7 +80,8 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             stopped = true;
         }
     };
-    // Every claimed piece is also started, so when one fails, all earlier pieces have been started.
+    // Every thread starts the piece that it claims. When a piece fails, all earlier pieces have
+    // therefore been started.
     const auto take = [&](int worker, const std::function<void()>& checkpoint) {
         py::ssize_t& piece = failures[worker].piece;
         for (;;) {
@@ -105,7 +106,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     try {
         for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker);
     } catch (const std::exception&) {
-        // The system cannot start another thread: the existing threads do all the work.
+        // The system cannot start another thread; the started ones do all the work.
     }
     SignalWatch check_for_signals;
     guarded(0, [&] {

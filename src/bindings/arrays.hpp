@@ -26,9 +26,9 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
 // Releases the GIL for a scope. In a daemon thread the scope may end while Python shuts down.
-// CPython before 3.14 then ends the thread by pthread_exit, which would unwind our frames and
-// release the Python objects in them without the GIL. Instead, our thread then waits for the
-// process to end, as in CPython 3.14.
+// CPython before 3.14 then ends the thread with pthread_exit, which would unwind our frames and
+// release the Python objects in them without the GIL. Our thread waits for the process to end
+// instead, as in CPython 3.14.
 class GilRelease {
   public:
     GilRelease() : state_(PyEval_SaveThread()) {}
@@ -57,9 +57,9 @@ class SignalWatch {
 // Finds Python's main thread, now and after each fork.
 void watch_main_thread();
 
-// Runs body(i, checkpoint) for 0 <= i < n, without the GIL. Ctrl-C stops each thread at its next
-// checkpoint. If the system cannot start all the requested threads, the others do all the work. If
-// several pieces fail, the exception of the earliest one is thrown.
+// Runs body(i, checkpoint) for 0 <= i < n (the pieces), without the GIL. Ctrl-C stops each thread
+// at its next checkpoint. If the system cannot start all requested threads, the started ones do all
+// the work. If several pieces fail, the exception of the piece with the smallest i is thrown.
 using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);
 
@@ -158,8 +158,8 @@ struct Results<Eigen::Matrix<double, Rows, Columns>> {
     double* to;
 };
 
-// Calls function(i), which returns a tuple, for 0 <= i < n. Returns a Python tuple with one array
-// per element of that tuple.
+// Calls function(i), which returns a tuple, for 0 <= i < n. Returns a Python tuple of arrays, one
+// for each element of the function's tuple.
 template <class Function>
 py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
     using Row = decltype(function(0));

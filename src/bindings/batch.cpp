@@ -97,7 +97,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     return answer;
 }
 
-// Ending and counts of an answer, and how many entries it has in each joined list.
+// The ending and the counts of an answer, and the numbers of its entries in the joined lists.
 std::vector<Figure> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
     std::vector<Figure> codes{{"ending", answer.ending},
@@ -136,7 +136,7 @@ py::dict facts(const std::vector<Answer>& answers) {
     return py::dict("codes"_a = codes, "numbers"_a = numbers);
 }
 
-// The names of the columns of each table; in the tables of samples, the names of the rows.
+// The names of the columns of each table; for the tables of samples, the names of the rows.
 py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),

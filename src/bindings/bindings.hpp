@@ -17,7 +17,8 @@
 namespace rolling_ellipse::bindings {
 
 // Binds a class of the core. Its objects cannot be pickled or copied; the Python objects that own
-// them recreate them instead. Under pickle protocols 0 and 1, pybind11 would abort the process.
+// them create new ones instead. Without this `__reduce__`, pybind11 would abort the process under
+// pickle protocols 0 and 1.
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name) {
     py::class_<T> bound(m, name);
@@ -87,7 +88,7 @@ const double* read(Struct& to, const Field<Struct> (&table)[N], const double* fr
     return from;
 }
 
-// The numbers that determine a body's energies and impulses: mass, moment of inertia and its k^2,
+// The numbers that determine a body's energies and impulses: mass, moment of inertia, k^2,
 // gravity, cosine and sine of the slope, friction.
 inline std::array<double, 7> body_of(const Scene& scene) {
     const double cosine = std::cos(scene.slope), sine = std::sin(scene.slope);

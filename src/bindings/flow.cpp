@@ -11,7 +11,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-constexpr py::ssize_t scenes_at_once = 512;  // scenes in one kernel call; their starts take 64 kB
+constexpr py::ssize_t scenes_at_once = 512;  // scenes per kernel call; their starts take 64 kB
 
 RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);
@@ -170,7 +170,7 @@ py::tuple slope_flow_array(py::ssize_t n, const std::array<Array, 8>& arguments,
                 ++i;
                 continue;
             }
-            // Consecutive times that belong to the same motion share it.
+            // Consecutive times of the same motion share one SlopeMotion.
             std::optional<SlopeMotion> motion;
             of.naming(i, [&] { motion = slope_motion(first); });
             times.clear();

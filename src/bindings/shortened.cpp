@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t most_arguments = 16;
 
-// The object that takes the place of the function. Only its reference count changes after its
-// creation.
+// The object that replaces the function. After its creation, only its reference count and its list
+// of weak references change.
 struct Shortened {
     PyObject head;
     vectorcallfunc call;

@@ -6,8 +6,8 @@
 namespace rolling_ellipse::bindings {
 
 // Returns the result of a call, given the values of all arguments, in the order of the signature,
-// and the defaults (null for an argument without one). Returns null, without a Python error, to
-// decline.
+// and their defaults (null for an argument without a default). Returns null, without setting a
+// Python error, to decline the call.
 using ShortWay = PyObject* (*)(PyObject* const* values, PyObject* const* defaults);
 
 // The given function with a shortcut for calls with one positional argument, no unknown names and

@@ -21,7 +21,7 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
     }
 }
 
-// Whether these are valid sample times: at least one, finite, not negative, strictly ascending.
+// Whether t contains valid sample times: at least one, finite, not negative, strictly ascending.
 bool are_sample_times(const Array& t) {
     if (t.ndim() != 1 || t.size() == 0) return false;
     const double* const times = t.data();

@@ -14,8 +14,8 @@ CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
             Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
 }
 
-// Calls function(state), which returns a tuple, for each row of q and q_dot, (n, 5). Returns an
-// array for each part of the tuple.
+// Calls function(state), which returns a tuple, for each row of q and q_dot, (n, 5). Returns one
+// array for each element of this tuple.
 template <class Function>
 py::tuple computed_at(const Array& q, const Array& q_dot, const Function& function) {
     const py::ssize_t n = require_matrix("q", q, 5);

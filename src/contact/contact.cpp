@@ -117,7 +117,7 @@ class ContactRun {
         }
     }
 
-    // Applies a blow like the impulse of a scene that starts in the current state.
+    // Applies a blow as if it were the impulse of a scene that starts in the current state.
     void strike(const Blow& blow) {
         ContactSample before;
         Sampler(motion_, 1)(&blow.t, 1, &before);
@@ -139,7 +139,7 @@ class ContactRun {
     }
 
     // Stops a motion that is known to last for ever. Its ending is `never`, unless the settings ask
-    // for a stop once the motion is decided, and it is.
+    // to stop once a motion is decided and this motion is.
     void last_for_ever(bool is_decided) {
         if (!settings_.stop || stops_ || struck_ < settings_.blows.size()) return;
         if (!settings_.stop.decided || !is_decided) ending_ = Ending::never;
@@ -236,7 +236,7 @@ class ContactRun {
         const double friction = friction_to_roll();
         const bool at_limit = friction != scene_.friction;
         EndOfRolling end = end_of_rolling(start, friction);
-        // At the limit of friction, theta changes by at least one rounding error before rolling
+        // At the limit of friction, theta must change by at least one rounding error before rolling
         // ends.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
@@ -261,8 +261,9 @@ class ContactRun {
         roll(std::move(flow), lasts);
     }
 
-    // At the limit of the law, rounding hides whether the body rolls or slips. With slightly more
-    // friction it rolls until the difference is clear.
+    // The friction coefficient of a body that rolls. At the limit of the law, rounding hides
+    // whether the body rolls or slips; a slightly larger coefficient then lets it roll until the
+    // difference is clear.
     double friction_to_roll() const {
         const ContactForce force =
             rolling_force(scene_, geometry(axes(), state_.theta), state_.omega);
@@ -366,8 +367,8 @@ class ContactRun {
         continue_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
-    // Follows a grazing contact as free flight; the two motions agree to 1e-14 up to
-    // turn_of_grazing.
+    // Follows a grazing contact as free flight. The two motions agree to 1e-14 until the body has
+    // turned by `turn_of_grazing`.
     void graze() {
         const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
@@ -412,7 +413,7 @@ class ContactRun {
         const auto [after, low, rebound] =
             collision(scene_, at, before, approach, Restitution::stronge, low_);
         state_ = after;
-        // A rebound speed below the rounding error of the speed of a fall counts as 0.
+        // A rebound slower than the rounding error of `speed_of_fall` counts as none.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
             state_.z_dot = at.dh * state_.omega;
             return continue_with(continuation(scene_, state_), EventKind::impact, before);
@@ -484,7 +485,7 @@ class ContactRun {
     double now() const { return static_cast<double>(t_); }
     double time_left() const { return static_cast<double>(-t_ + until_); }
     bool is_over_after(double lasts) const {
-        return !(static_cast<double>(t_ + lasts) <= until_);  // the sum with infinity is NaN
+        return !(static_cast<double>(t_ + lasts) <= until_);  // t_ + infinity is NaN
     }
 
     // Advances the time to the end of the segment just added; false if `until_` comes first.
@@ -516,7 +517,7 @@ class ContactRun {
     double until_ = 0.0;      // time of the next blow, or of the end
     bool is_there_ = true;    // whether `until_` is reached
     std::size_t struck_ = 0;  // number of blows so far
-    long left_;               // number of events left until the motion stops
+    long left_;               // number of events of the chosen kinds left until the motion stops
     bool stops_ = false;      // whether the motion stops now
     double begun_ = 0.0;      // time of the start, or of the last blow
     const Checkpoint& checkpoint_;
@@ -524,10 +525,10 @@ class ContactRun {
     double gap_rate_;
     const double rest_speed_;
     Motion motion_;
-    std::optional<InitialState> start_;     // start of the motion that follows next
+    std::optional<InitialState> start_;     // start of the motion to be followed next
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another slide follows
     DoubleDouble turned_;                   // quarter turns subtracted from theta
-    LowParts low_;                          // low parts of state_, kept from impact to impact
+    LowParts low_;                          // low parts of state_, preserved from impact to impact
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
     DoubleDouble t_;

@@ -26,8 +26,8 @@ State grazing(const Geometry& at, const State& free, Mode mode);
 double most_height(const Axes& axes);
 
 // The first contact of a flight: the time from its start and, if the body has turned only a little,
-// the rate of the gap, which is then more accurate than the velocities. A start in contact counts
-// as leaving the ground, by its velocity or its acceleration.
+// the rate of the gap, which is then more accurate than the velocities. A body in contact at the
+// start counts as leaving the ground, through its velocity or its acceleration.
 struct Landing {
     double after;
     std::optional<double> gap_rate;
@@ -41,7 +41,8 @@ double speed_of_fall(const Scene& scene);
 // the speed in the settings is too large.
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings);
 
-// A rebound: its speed, the ratio of this speed to the speed of approach, and c after the rebound.
+// A rebound: its speed, the ratio of this speed to the speed of approach, and the free acceleration
+// c after the rebound.
 struct Bounce {
     double rebound;
     double ratio;

@@ -25,7 +25,7 @@ std::optional<double> cancelled_moment(const SlidingBody& body, const Geometry& 
 //     W = u M = u (k^2 + u) + p^2 + d h p
 //     W u omega' = g sin(alpha) u^2 h - p (C + u^2 omega^2) - d h C,
 //     h^3 N/m = C + p u omega',    h^3 F/m = u (u omega' + p omega^2 - g sin(alpha) h).
-// The slip and the work are 0. `centre.torque` is the moment of gravity, if it is known.
+// The slip and the work are 0. `centre.torque` is the result of `cancelled_moment`.
 SlideSeries rolling_series(const SlidingBody& body, const SlideCentre& centre,
                            RollingForces3& forces);
 

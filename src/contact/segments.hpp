@@ -31,8 +31,8 @@ struct Event {
     InitialState after;  // also the impulse of the ground at an impact or a blow
 };
 
-// A body whose state does not change: at rest, or at an instant from which no motion continues and
-// at which no contact force obeys the laws.
+// A body whose state does not change: it is at rest, or it is stuck at an instant from which no
+// motion, or more than one motion, obeys the laws.
 using Standing = ContactSample;
 
 // A law of several kB, stored behind a pointer so that segments stay small.
@@ -46,7 +46,7 @@ struct Segment {
                  Flight, Settling, Standing>
         law;
     DoubleDouble turned{};        // angle to add to the angles of the law
-    bool axes_exchanged = false;  // the law has a and b exchanged (odd quarter turns)
+    bool axes_exchanged = false;  // whether a and b are exchanged in the law
 };
 
 struct Motion {
@@ -54,7 +54,7 @@ struct Motion {
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
-    std::vector<double> turns;  // times [s] at which rolling resistance changes its couple
+    std::vector<double> turns;  // times [s] at which the couple of rolling resistance changes
     bool rests = false;         // true if the only law is one of rolling and the body is at rest
 };
 
@@ -83,10 +83,11 @@ State with_whole_angle(const Scene& seen, State state, const DoubleDouble& turne
 // A motion in SI units with a single segment of this law.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Samples a motion. The times may come in several calls; if the `expected` total number justifies a
-// table, it is built only once. A sample is a FlowSample (theta, omega, x), a ContactSample (state
-// and force) or a CoordinateState, in SI units; every segment provides all three. A sample at the
-// time of an event is the state just after the event. A motion without segments has no samples.
+// Samples a motion. The times may be passed in several calls. If the `expected` total number of
+// times justifies a table, the table is built only once. A sample is a FlowSample (theta, omega,
+// x), a ContactSample (state and force) or a CoordinateState, in SI units; every segment provides
+// all three. A sample at the time of an event is the state just after the event. A motion without
+// segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);

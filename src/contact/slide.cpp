@@ -80,7 +80,7 @@ Geometry geometry(const Axes& axes, const DoubleDouble& angle) {
     return geometry(axes, sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin);
 }
 
-// Height of the centre above the tip minus its current height.
+// Height of the centre of a body on its tip, minus its current height.
 double under_tip(const Axes& axes, const Geometry& at) {
     return under_tip(flat_view(axes, at.sin, at.cos), at.h);
 }
@@ -152,7 +152,7 @@ class SlideIntegration {
         reach_ = std::min(reach({&angle, &omega, &series.rolled, &series.pressure}), most);
         find_end(body, series);
         omega[0] = series.slip[0] = series.response[0] = x_dot[0] = 0.0;
-        SlidePiece& piece = slide_.pieces.emplace_back();  // constructed in place: a piece is large
+        SlidePiece& piece = slide_.pieces.emplace_back();  // built in place, since it is large
         piece.centre = from;
         piece.clock = clock();
         piece.unit = unit;
@@ -189,7 +189,7 @@ class SlideIntegration {
     void keep_energy() {
         if (slide_.body.ahead != 0) return;
         constexpr double small = 0.25;      // energy terms relative to the largest kinetic energy
-        constexpr double rounding = 1e-12;  // a larger relative change of omega is not rounding
+        constexpr double rounding = 1e-12;  // a larger relative change is not due to rounding
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at_);
         const double kinetic = double(last_.energy + fallen);
         most_kinetic_ = std::max(most_kinetic_, kinetic);
@@ -217,7 +217,7 @@ class SlideIntegration {
     SlideClock clock() const { return scaled_response_ ? SlideClock::slowed : SlideClock::time; }
 
     // The rate that determines the unit of time: 1 + the rate of turning + the rate at which the
-    // force changes B, if it is large. In units of this rate, no power overflows.
+    // force changes B, if the latter is large. In units of this rate, no power overflows.
     double rate() const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -313,7 +313,7 @@ class SlideIntegration {
     // law. Near a tip of a thin body, and where the margin hardly falls, the series have lost
     // digits.
     void refine_law_end(SlidePiece& piece) const {
-        constexpr double rounding = 1e-6;  // a larger share of the reach is not rounding
+        constexpr double rounding = 1e-6;  // a larger relative change is not due to rounding
         constexpr int corrections = 2;
         const double mu = *slide_.rolls_by;
         LongSeries margin;
@@ -397,8 +397,9 @@ class SlideIntegration {
     std::optional<End> end_;
     RollingForces3 rolling_forces_;
     double law_side_ = 1.0;  // side of the friction at whose limit rolling ends
-    // True once c has been 0 to within rounding and not negative, as when a slide starts near B = 0
-    // under infinite friction. c then has the rounding errors of gravity and h'' omega^2, too.
+    // True once c has vanished to within rounding but the body has stayed on the ground, as when a
+    // slide starts near B = 0 under infinite friction. c then has the rounding errors of gravity
+    // and h'' omega^2, too.
     bool grazes_ = false;
 };
 

@@ -1,7 +1,7 @@
-// Sliding to one side, and rolling with resistance, solved by power series. An arc takes a few
-// series, each accurate to double precision within its reach; samples use the same series. The
-// slide ends at the first root of a series, which is proved by the signs of Bernstein coefficients
-// rather than searched for by sampling.
+// Sliding to one side, and rolling with resistance, solved by power series. Half a swing takes some
+// twenty series, each accurate to double precision within its reach; samples use the same series.
+// The slide ends at the first root of a series, which is proved by the signs of Bernstein
+// coefficients rather than searched for by sampling.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ struct SlidePoint {
     DoubleDouble x_dot;
     DoubleDouble path;  // path from the start
     DoubleDouble time;  // time from the start
-    // Energy per mass without that of x_dot. It is 0 at rest on the tip, and only friction changes
-    // it.
+    // Energy per mass without the kinetic energy of x_dot. It is 0 at rest on the tip, and only
+    // friction changes it.
     DoubleDouble energy;
 };
 
@@ -48,12 +48,12 @@ struct Slide {
     double x_base;
     SlidePoint last;  // end of the last piece
     std::vector<SlidePiece> pieces;
-    std::optional<double> rolls_by;  // the friction coefficient of a body that rolls instead
+    std::optional<double> rolls_by;  // if the body rolls instead: its friction coefficient
 };
 
 // A slide at its start, with slip to the given side (0 without friction). If it follows another
 // slide, it starts from the unrounded end of that slide. With `rolls_by`, the body rolls with
-// resistance as long as this friction holds it.
+// resistance as long as this friction coefficient suffices.
 Slide slide_from(const Scene& scene, const State& start, double side,
                  const std::optional<SlidePoint>& end_of_other = {},
                  std::optional<double> rolls_by = {});
@@ -68,7 +68,7 @@ enum class SlideStop {
     slip_vanishes,
     pressure_vanishes,
     rotation_vanishes,  // only with rolling resistance, whose couple then changes
-    law_fails,          // rolling needs more friction than available, or a pull
+    law_fails,          // rolling would need more friction, or a pull by the ground
     jams,
     out_of_bounds,
     time_is_over,

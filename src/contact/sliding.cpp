@@ -93,8 +93,8 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
 }
 
 // In the last moment the impulse of N changes omega and slip in a fixed ratio, physics (54). At B =
-// 0 a unit of impulse adds 1/h' to omega; a general formula has terms that all but cancel for a
-// body of small inertia.
+// 0 a unit of impulse adds 1/h' to omega; a formula for any B would have terms that all but cancel
+// for a body of small inertia.
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
@@ -278,8 +278,7 @@ bool has_jammed(const Scene& scene, const State& state, const Geometry& at, doub
            std::abs(c) <= rounding * body.gravity.into + c_by_blur;
 }
 
-// The start of a slip where rolling is impossible, in the direction in which the contact
-// accelerates.
+// How slip starts where rolling is impossible: in the direction in which the contact accelerates.
 Continuation starting_to_slide(const Scene& scene, const Geometry& at, const State& state,
                                const ContactForce& rolling) {
     const auto to_side = [&](double side) { return slide_or_leave(scene, at, state.omega, side); };
@@ -312,7 +311,7 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
         law_rounding * (law_size(force, scene.friction) + law_size(terms, scene.friction));
     for (double turn = least_turn; turn <= most_turn; turn *= 16) {
         const bool turns_back = pull * state.omega <= 0 && omega2 < 2 * std::abs(pull) * turn;
-        if (turns_back && state.omega != 0 && lever != 0) return false;  // turning back decides
+        if (turns_back && state.omega != 0 && lever != 0) return false;  // it turns back first
         const double heading = side_of(turns_back ? pull : state.omega);
         const Geometry later = geometry(scene.axes(), state.theta + heading * turn);
         const double mean_pull = 0.5 * (pull + rolling.acceleration(later, 0.0, lever));
@@ -328,7 +327,8 @@ bool breaks_away(const Scene& scene, const State& state, const Geometry& at,
     return false;
 }
 
-// The continuation of a state. `at` and `slip` may be the geometry and the slip an instant later.
+// The continuation of a state. For a weightless body, the angle of `state` and `at` may be that of
+// an instant later, but `slip` is the current slip.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll, double blur) {
     if (scene.friction == 0) {
@@ -382,8 +382,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll,
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta) {
     const Geometry before = geometry(scene.axes(), state.theta);
     const Geometry after = geometry(new_axes, theta);
-    // Preserves the offset of a value from its value in rolling if the offset is at most 16 times
-    // the change due to rounding.
+    // Preserves the offset of a value from that of a body in contact without slip, unless the
+    // offset exceeds 16 times the change due to rounding.
     const auto kept = [](double value, double was, double is) {
         return std::abs(value - was) <= 16 * std::abs(is - was) ? is + (value - was) : value;
     };

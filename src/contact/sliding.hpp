@@ -22,7 +22,7 @@ struct SlidingBody {
     double normal_share;
     double friction_share;
     // The lever of the normal force ahead of the contact, physics (63), and whether its couple
-    // holds a body that slides without turning.
+    // prevents the sliding body from turning.
     double ahead;
     bool is_held;
 
@@ -142,7 +142,7 @@ struct Continuation {
     // resolved.
     bool grazes = false;
     bool may_fly = false;     // the body rolls, but flight would obey the laws as well
-    bool has_jammed = false;  // whether the state is just after a JAM
+    bool has_jammed = false;  // the start is the state in which a slide has jammed
 };
 
 inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
@@ -156,7 +156,7 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true,
                           double blur = 0.0);
 
-// The state of a scene with its angle measured for new axes, which changes h and h' only by
+// The state of a scene with its angle replaced by that for new axes, which changes h and h' only by
 // rounding. The gap is preserved and, in contact, so are its rate and the slip: a contact remains a
 // contact, and a body without slip remains without slip.
 State with_angle(const Scene& scene, State state, const Axes& new_axes, double theta);

@@ -6,8 +6,8 @@ namespace rolling_ellipse {
 namespace {
 
 // Depth of the lowest point of an ellipse below its centre [m], from the implicit equation d^T M d
-// = 1 in ground axes, physics (11). The support function is not used, so that the two methods check
-// each other.
+// = 1 in ground axes, physics (11). The support function is deliberately not used, so that the gap
+// and the slip are an independent check of it.
 double lowest_depth(const Axes& axes, double theta) {
     const double along_a = std::sin(theta) / axes.b;
     const double along_b = std::cos(theta) / axes.a;
@@ -60,7 +60,8 @@ Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
 ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
     using namespace coordinate;
     const double depth = lowest_depth(axes, q[theta]);
-    // The slip is v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
+    // The slip is the component of v + omega x d along the ground; for the clockwise omega, it is
+    // x_dot + omega d_z: physics (12).
     return {position_residuals(axes, q), constraint_matrix(axes, q) * q_dot, q[z] - depth,
             q_dot[x] - q_dot[theta] * depth};
 }

@@ -1,5 +1,5 @@
-// The four constraints on the report's coordinates q = (x, z, theta, psi, r), at any state, physics
-// (13):
+// The four constraints on the report's coordinates q = (x, z, theta, psi, r), evaluated for any
+// state: physics (13)
 //     f1 = x_dot - r cos(psi - theta) theta_dot
 //     f2 = z - r cos(psi - theta)
 //     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi)

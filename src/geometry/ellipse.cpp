@@ -68,8 +68,8 @@ CarlsonPair carlson(double x, double y, double z) {
 }
 
 // Arc length of the ellipse from the tip to the contact, as a function of the sine and cosine of
-// the angle turned from the tip, physics (10). This is DLMF 19.25.10 without its last term -h', the
-// lead of the centre over the contact.
+// the angle through which the body has turned from the tip, physics (10). This is DLMF 19.25.10
+// without its last term -h', the lead of the centre over the contact.
 double arc_from_tip(const Axes& lying, double s, double c) {
     const auto [long_axis, short_axis] = lying;
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -138,8 +138,8 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // The criterion is the angle h'/h'' from equilibrium, since h' of a nearly round body is always
-    // small.
+    // The criterion is the angle from equilibrium, h'/h'': for a nearly round body, h' itself is
+    // small at every angle.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

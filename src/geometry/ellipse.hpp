@@ -22,7 +22,7 @@ struct Geometry {
     double sin;
     double cos;
     double h;    // height of the centre above the tangent line [m]
-    double dh;   // h' = x_C - x_G [m]
+    double dh;   // h' = x_C - x_G, contact minus centre [m]
     double ddh;  // h'' [m]
     double rho;  // h + h'', radius of curvature at the contact [m]
 };

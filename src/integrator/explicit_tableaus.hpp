@@ -1,9 +1,10 @@
 // Explicit Runge-Kutta methods as data.
 //
 // The rows of `a` are, in this order, the stages of a step, the weights of its result, and the
-// stages of the dense output. The stage of the result is f at the end of the step, which is also
-// the first stage of the next step. `error` contains the weights of the error estimates, `dense`
-// the weights of the terms that the dense output adds to the cubic Hermite polynomial.
+// stages of the dense output. The stage in the row of the weights is f at the end of the step,
+// which is also the first stage of the next step. `error` contains the weights of the error
+// estimates, `dense` the weights of the terms that the dense output adds to the cubic Hermite
+// polynomial.
 #pragma once
 
 namespace rolling_ellipse {

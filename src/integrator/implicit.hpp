@@ -74,10 +74,10 @@ class Stagnation {
     Vector<N> first_ = Vector<N>::Zero();
 };
 
-// Limit on the iterations of a step, which normally end earlier, once the changes have settled.
+// Limit on the number of iterations of a step. Normally the changes settle earlier.
 inline constexpr int most_iterations = 200;
 
-// Dense output of an implicit method, computed by a shorter step and hence of full order. The
+// Dense output of an implicit method, computed with a shorter step and hence of full order. The
 // change is 0 if the stages of the shorter step do not converge.
 template <class Method, class System>
 struct PartialStep {

@@ -123,7 +123,7 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // Omits a term of the interpolant that overflows because a stage overflows.
+            // Omits terms of the interpolant that are out of range because a stage overflows.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
@@ -159,7 +159,8 @@ class ExplicitMethod {
         return h * weighted_sum<Tableau::a, Tableau::stages, all_stages>(k_);
     }
 
-    // The scales 1/(atol + rtol size) of the errors; infinite where the sum is 0.
+    // The inverse scales 1/(atol + rtol size) that multiply the errors; infinite where
+    // atol + rtol size is 0.
     static Vector<N> inverse_scale(const Tolerance& tolerance, const Vector<N>& size) {
         Vector<N> inverse;
         for (int i = 0; i < N; ++i) {
@@ -199,7 +200,8 @@ class ExplicitMethod {
 
     // Size of the first step, from the magnitudes of y, y' and y'': HNW II.4.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        constexpr double longest = 1e300;  // replaces an infinite span, which could not be reduced
+        // Replaces an infinite span: no factor could shorten an infinite step.
+        constexpr double longest = 1e300;
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> inverse = inverse_scale(tolerance, size);

@@ -1,6 +1,6 @@
 // A solution, stored as the list of the points (knots) at the ends of its steps. The dense output
-// of a step is stored if it needs no further evaluation of f; otherwise it is computed when the
-// step is sampled.
+// of a step is stored if it needs no further evaluation of f and the limit on stored dense output
+// is not reached; otherwise it is computed when the step is sampled.
 //
 // An integration method is a class template over a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size
@@ -76,8 +76,8 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
     return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
 }
 
-// Calls take(i, knot, change) for each of n times between the first and the last knot; the state is
-// that of the knot plus the change. Fastest for sorted times.
+// Calls take(i, knot, change) for each of n times between the first and the last knot; the state at
+// time i is the state at the knot plus the change. Fastest for sorted times.
 template <class Integrator, int N, class Take>
 void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
                   Take take) {

@@ -66,7 +66,7 @@ struct DenseOutput {
     }
 };
 
-// Number of steps between two calls of the checkpoint. Together they take from 10 us to 4 ms.
+// Number of steps between two calls of the checkpoint. So many steps take 10 us to 4 ms.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {
@@ -74,7 +74,7 @@ struct Tolerance {
     double absolute;
 };
 
-// True if every component is at most `largest_number`.
+// True if no component exceeds `largest_number` in magnitude; false if one is NaN.
 template <int N>
 bool in_range(const Vector<N>& y) {
     return (y.array().abs() <= largest_number).all();
@@ -89,8 +89,8 @@ struct StepCounts {
 // Return value of a visitor: `changed` if it altered the point, so that f must be evaluated again.
 enum class AfterStep { unchanged, changed };
 
-// The reason why a motion ended. Integrators return one of the first four; the others apply to
-// whole motions.
+// The reason why a motion ended. Integrators return one of the first four values; the other values
+// apply to whole motions.
 enum class Ending {
     completed,
     max_steps,

@@ -129,9 +129,9 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
-// Projects by Newton's method until the residuals stop shrinking. psi and r have no mass, so that
-// they can be changed freely: if they are far off, they are first computed from theta, so that the
-// projection hardly changes theta.
+// Projects by Newton's method until the residuals stop shrinking. psi and r have no mass and can be
+// changed freely. If they are far off, they are first computed from theta, so that the projection
+// hardly changes theta.
 double ConstrainedBody::project(CoordinateState& state) const {
     constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;

@@ -24,7 +24,7 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// All about a rolling body: its coordinates and velocities (x is the integral of h from 0),
+// The coordinates and velocities of a rolling body (x is the integral of h from 0), with its
 // accelerations and multipliers.
 struct RollingDetail : MultiplierSolution {
     CoordinateState state;

@@ -22,13 +22,13 @@ struct SteppedMultipliers {
     Settings settings;
     double specific_energy;   // initial energy per mass [J/kg]
     double x_base;            // x at the start, added to the integrated x
-    DoubleDouble angle_base;  // angle to be added to the integrated angles
+    DoubleDouble angle_base;  // angle that is added to the integrated angles
     // Steps of y = (q, q_dot); the index-2 system appends lambda per mass and the multipliers mu.
     std::variant<Steps<10>, Steps<17>> steps;
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a rolling body from its state, or a start with any coordinates and velocities.
+// The start of a rolling body, given its state, or a start from any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 

@@ -15,7 +15,7 @@ struct Bracket {
     double high;
 };
 
-// Bisection between low < high, where the predicate is false at `low` and true at `high`.
+// Bisects between low < high, where the predicate is false at `low` and true at `high`.
 template <class Predicate>
 Bracket bisect(double low, double high, const Predicate& is_high) {
     for (;;) {
@@ -25,9 +25,10 @@ Bracket bisect(double low, double high, const Predicate& is_high) {
     }
 }
 
-// Finds a sign change of a function between two points by the secants of the Illinois method (M.
-// Dowell, P. Jarratt, BIT 11 (1971) 168). A secant that lands close to an end is moved a few
-// doubles inwards, so that the other end approaches, too. The caller evaluates the function:
+// Finds a sign change of a function between two points with the secants of the Illinois method (M.
+// Dowell, P. Jarratt, BIT 11 (1971) 168). Every fourth step, and every step after forty secants,
+// is a bisection. A secant that lands close to an end is moved a few doubles inwards, so that the
+// other end approaches, too. The caller evaluates the function:
 //     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
 class RootBracket {
   public:
@@ -74,7 +75,8 @@ class RootBracket {
     int moved_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none so far
 };
 
-// A guess of a root and of the slope at the root; two points around the guess are evaluated first.
+// A guess of a root and of the slope at the root. bisect_root first evaluates the guess, then the
+// point two Newton steps away, which is usually on the other side of the root.
 struct RootGuess {
     double root;
     double slope;
@@ -95,7 +97,7 @@ Bracket bisect_root(double low, double high, const Function& f,
 }
 
 // Finds the single extremum in an interval by golden-section search, to 1e-8 of the interval;
-// within that distance the function is flat to within rounding. The comparison takes two points,
+// within that distance rounding hides the changes of the function. The comparison takes two points,
 // the lower one first, and is true if the extremum lies below the upper one.
 template <class Comparison>
 double golden_section(double low, double high, const Comparison& is_below_upper) {

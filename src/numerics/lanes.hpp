@@ -1,13 +1,14 @@
 // Several doubles side by side (a Pack), and functions that give the same bits for a double and for
-// a Pack: templates over the number type T. Some files that include this are compiled for every
-// vector level (rolling/level/kernel_code.hpp), the others once. All names are in an anonymous
-// namespace, so that no function of a wide level can be linked into code for machines without it.
+// a Pack: templates over the number type T. Some files that include this header are compiled for
+// every vector level (rolling/level/kernel_code.hpp), the other files only once. All names are in
+// an anonymous namespace, so that the linker cannot use a function compiled for wide vectors in
+// code for machines without these vectors.
 //
 // Every function that takes or returns a Pack is inlined, because the wide version of a function
 // (numerics/wide.hpp) would pass a Pack in different registers.
 //
 // Operations and their order are the same at every level. Only two_product uses a fused
-// multiply-add; its result is exact with or without it.
+// multiply-add, and it gives the exact product on machines without this instruction, too.
 #pragma once
 
 #include <type_traits>
@@ -187,7 +188,7 @@ template <class T, class... Doubles>
     return sum;
 }
 
-constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
+constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits, so that n ln2_high is exact
 constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
 // sinh v and e^-v for 0 <= v < 700, from sinh r and cosh r with v = n ln 2 + r by the addition
@@ -245,8 +246,8 @@ template <class T>
 }
 
 // The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A minimax polynomial
-// (error 2e-19) is used up to 22.5 degrees; beyond that, it is applied to the angle from 45
-// degrees.
+// (error 2e-19) is used up to 22.5 degrees; beyond that, it is applied to the angle measured from
+// 45 degrees.
 template <class T>
 [[gnu::always_inline]] inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
@@ -274,7 +275,7 @@ template <class T>
 using rolling_ellipse::two_product;
 
 #if !defined(__FMA__)
-// A double as the sum of two doubles of 26 bits each.
+// Splits each double into a sum of two doubles of 26 bits.
 [[gnu::always_inline]] inline PackPair halves(Pack x) {
     const Pack shifted = 134217729.0 * x;  // 2^27 + 1
     const Pack high = shifted - (shifted - x);

@@ -1,4 +1,5 @@
-// The names of the values of an enum, which start at 0. Each enum defines its own.
+// The names of the values of an enum, in order; the values count up from 0. Each enum specializes
+// `names`.
 #pragma once
 
 #include <array>

@@ -15,7 +15,8 @@ inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
 inline constexpr double pi = 3.14159265358979311600e+00;
 inline constexpr double half_pi = 1.57079632679489655800e+00;
 
-// Largest difference [ulp] between values that count as equal: the rounding of a few operations.
+// Largest difference [ulp] between values that count as equal: the rounding errors of a few
+// operations.
 inline constexpr double equal_ulps = 8;
 
 // Largest magnitude of positions, velocities, impulses and components of states; products of a few

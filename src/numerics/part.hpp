@@ -4,7 +4,7 @@
 
 #include <array>
 
-#define ROLLING_ELLIPSE_LANES 4  // one register in the wide version of a function, otherwise two
+#define ROLLING_ELLIPSE_LANES 4  // one wide register, or two narrow ones (numerics/wide.hpp)
 #include "numerics/lanes.hpp"
 #include "numerics/quadrature.hpp"
 #include "numerics/series.hpp"
@@ -13,13 +13,13 @@
 namespace rolling_ellipse {
 namespace {
 
-using PartMatrix = std::array<PartArray, part_order>;  // [j] multiplies the value at node j
+using PartMatrix = std::array<PartArray, part_order>;  // row j multiplies the value at node j
 
 struct PartRule {
     PartArray places;
     PartArray weights;
     PartMatrix integrals;  // integrals from -1 to the nodes
-    PartMatrix moments;    // integrals of (1 + x) times a function, divided by (1 + x)^2
+    PartMatrix moments;    // integrals of (1 + x) f from -1 to the nodes, divided by (1 + node)^2
     PartMatrix legendre;   // Legendre coefficients from values at the nodes
     PartMatrix powers;     // power coefficients from Legendre coefficients
 };
@@ -33,7 +33,7 @@ inline std::array<double, part_order + 1> legendre_polynomials(double x) {
     return p;
 }
 
-// P_k integrates to (P_(k+1) - P_(k-1))/(2k + 1).
+// The integral of P_k is (P_(k+1) - P_(k-1))/(2k + 1).
 inline const PartRule& part_rule() {
     static const PartRule found = [] {
         PartRule rule{};
@@ -65,7 +65,7 @@ inline const PartRule& part_rule() {
                 }
             }
         }
-        auto& powers = rule.powers;  // of P_0 = 1, of P_1 = x and, by recurrence, of the others
+        auto& powers = rule.powers;  // P_0 = 1, P_1 = x; the other P_k follow by recurrence
         powers[0][0] = powers[1][1] = 1.0;
         for (int k = 1; k + 1 < part_order; ++k) {
             for (int i = 0; i <= k + 1; ++i) {

@@ -32,7 +32,7 @@ inline Tracked operator*(Tracked x, Tracked y) {
     return {x.value * y.value, x.magnitude * y.magnitude};
 }
 
-// Two doubles in one register, where the processor has one of that size.
+// Two doubles side by side, in one register if the processor has registers of this size.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 enum class Sign { positive, negative, undecided };
@@ -42,14 +42,15 @@ enum class Sign { positive, negative, undecided };
 //   * The law of rolling, of degree 10, has the longest chain, 37, counted along the lines of
 //     force_polynomials and grip_polynomial. A product of polynomials of degrees M and N with m and
 //     n roundings has m + n + 1 + min(M, N).
-//   * A series of degree 24 (slides) has 25 in the powers of its reach, plus those of its terms.
+//   * In a series of degree 24 (slides), the powers of its reach contribute 25, in addition to the
+//     roundings of its terms.
 //   * The Bernstein form adds 3N + 1: 2N in an entry of the matrix, a product and N sums. That is
 //     31 for degree 10, 73 for degree 24.
 //   * Subdivision at a point other than the middle adds 3N: 30 for degree 10, the only such case.
 // In total, the law has 98, and the series 98 plus those of its terms. Each subdivision in the
 // middle, of which there are up to 48, adds N sums; `divided` adds their roundings to the
-// magnitude. The parameters are rounded, too: the sign is proved for some body and start that are
-// just as close to the exact ones.
+// magnitude. The parameters are rounded, too: the sign is proved for a body and a start that differ
+// from the exact ones by no more than this rounding.
 constexpr double most_roundings = 128;
 
 // Bound on the rounding error of a number.
@@ -191,7 +192,7 @@ Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
 
 namespace detail {
 
-// Number of bisections after which a subinterval of [0, 1] counts as a point.
+// Number of bisections of [0, 1] after which a subinterval counts as a point.
 constexpr int deepest = 48;
 
 template <int N>
@@ -257,8 +258,9 @@ Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
     return right == Sign::positive ? left : right;
 }
 
-// The first point in [0, 1] from which p is provably negative. Values within rounding of zero do
-// not count as negative; if p has only such values before that point, the result is 0.
+// The first point in [0, 1] after which p is provably negative; empty if p is not provably negative
+// anywhere. Values within rounding of zero do not count as negative; if p has only such values
+// before that point, the result is 0.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     int changes = 0;

@@ -17,7 +17,7 @@ namespace rolling_ellipse {
 inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
-// The sum of terms first .. last of coefficient k of a product, from two independent sums.
+// The sum of terms first .. last of coefficient k of a product, computed as two independent sums.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
                                          int first, int last) {
@@ -104,7 +104,7 @@ struct ProductAt {
     }
 };
 
-// The factors 1/(k + 1), by which coefficient k of a rate gives coefficient k + 1 of the integral.
+// The factors 1/(k + 1) that turn coefficient k of a rate into coefficient k + 1 of its integral.
 inline constexpr auto over_next = [] {
     std::array<double, long_order + 1> found{};
     for (int k = 0; k <= long_order; ++k) found[k] = 1.0 / (k + 1);
@@ -122,11 +122,12 @@ template <class Function>
     for_each_order(call, std::make_integer_sequence<int, long_order + 1>{});
 }
 
-// The radius at which the last terms of each series are at most a twentieth of an ulp of its sum;
-// the omitted terms are a fifth of that. Half an ulp would be too much, since the error may have
-// the same sign step after step. The last four terms are used, since three of them may vanish by
-// symmetry; each is scaled to the end of the series as if successive terms fell by a factor of
-// five. Each step of the fixed-point iteration divides the error of the logarithm by eight.
+// The radius at which the last terms of each series are at most a twentieth of an ulp of the
+// largest of its first three terms; the omitted terms are smaller still. Half an ulp would be too
+// much, since the error may have the same sign step after step. The last four terms are used, since
+// three of them may vanish by symmetry; each is scaled to the end of the series as if successive
+// terms fell by a factor of five. Each step of the fixed-point iteration divides the error of
+// log(radius) by eight.
 inline double reach(std::initializer_list<const LongSeries*> all) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

@@ -123,7 +123,8 @@ struct Rolling {
 
 // Relative rounding error of energies and of the polynomials of a motion.
 constexpr double rounding = 16 * epsilon;
-// Each correction is a step of Newton's method for an extremum; more than two are rarely needed.
+// Limit on the corrections of an extremum that the scan has missed; more than two are rarely
+// needed.
 constexpr int most_corrections = 50;
 
 // The least upper energy of all positions.

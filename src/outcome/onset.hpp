@@ -40,8 +40,8 @@ struct SlipWindow {
 };
 
 // The windows of a body other than a circle, ascending: one or two. A scan over the positions finds
-// their ends, which are then refined; the certificate proves that rolling holds just outside them,
-// or names a position that the scan has missed.
+// their ends, which are then refined. The polynomials of the certificate either show no slip just
+// outside the windows or give a position that the scan has missed.
 std::vector<SlipWindow> slip_windows(const Shape& shape, double friction);
 
 }  // namespace rolling_ellipse

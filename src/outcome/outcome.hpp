@@ -1,5 +1,5 @@
-// The first event after a blow or during rolling; its inverse, the blow or friction that yields a
-// given outcome; and the thresholds between the outcomes on level ground.
+// Outcomes: the first event after a blow or during rolling. Also the blow or the friction that
+// yields a given outcome, and the thresholds between the outcomes on level ground.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class Outcome : std::int8_t {
     rolls_over,     // the body passes the tip before anything else happens
     slips,          // the contact slides
     loses_contact,  // the body leaves the ground, or is in the air
-    jams,           // the contact jams; never directly after rolling, see outcome/outcome.cpp
+    jams,           // the contact jams; this does not follow rolling, see outcome/outcome.cpp
     edge,           // rounding hides which of two outcomes occurs
 };
 
@@ -44,11 +44,11 @@ double press_to(const Scene& scene, double distance, double omega);
 double speed_to_the_tip(const Scene& scene);
 
 // The least friction coefficient with which neither the blow nor the rolling after it ever causes
-// slip, whatever the friction of the scene; infinite if no finite coefficient suffices.
+// slip, regardless of the friction of the scene; infinite if no finite coefficient suffices.
 double required_friction(const Scene& scene);
 
 // The least friction coefficient with which a body can lie still on the slope of the scene,
-// whatever its start; infinite if the slope is too steep for any equilibrium.
+// regardless of the start of the scene; infinite if the slope is too steep for any equilibrium.
 double friction_to_rest(const Scene& scene);
 
 // Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
@@ -67,7 +67,7 @@ struct Thresholds {
     // Ranges of speeds in which rolling somewhere needs more friction than available: none for a
     // circle, otherwise one or two; see outcome/onset.hpp. The last range has no upper end.
     std::vector<SpeedRange> slip_windows;
-    std::optional<double> slip_angle;     // angle at which friction fails first at slip_speed()
+    std::optional<double> slip_angle;     // angle at which rolling at slip_speed() first slips
     double friction_to_roll_over;         // max |F|/N of rolling at the roll-over speed
     double painleve_friction = infinity;  // least mu for which sliding may jam
     std::optional<double> painleve_angle;

@@ -113,8 +113,9 @@ struct Search {
         return passed;
     }
 
-    // Adds the passages between the first and the last periods: copies of those in one period,
-    // which starts where the observable, in the first period, is farthest from the value.
+    // Adds the passages between the first and the last periods: copies of the passages in one
+    // period. This period starts at the time in the first period at which the observable is
+    // farthest from the value.
     void repeat(const Stretch& stretch, double value, std::vector<double>& times) const {
         constexpr double most = 1'000'000;
         const auto& at = stretch.times;

@@ -23,13 +23,13 @@ inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact
 struct Observable {
     std::optional<Quantity> quantity;  // absent for the caller's function
     Measure measure;
-    double length;  // a length [m] whose rounding error is added: paths are sums
+    double length;  // a length [m] that adds to the rounding error, since paths are sums of lengths
 };
 
 // Observes a quantity of a motion. Motion and checkpoint must outlive the observable.
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
 
-// One segment of a motion with the turning points of an observable.
+// One segment of a motion, divided at the turning points of an observable.
 struct Stretch {
     const char* where;           // phrase for messages, such as "while it rolls"
     std::vector<double> times;   // start, turning points, end [s], ascending

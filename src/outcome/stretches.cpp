@@ -116,8 +116,8 @@ struct Survey {
     Observable theta;
     double quarters = 0.0;  // quarter turns searched so far
 
-    // The stretch of a segment, given its start [units of the motion] and its first and last time
-    // [s].
+    // The stretch of a segment that starts at `begin` [in units of the motion], between the times
+    // `first` and `last` [s].
     Stretch stretch(const Course& course, double begin, double first, double last) {
         Stretch stretch{course.where, {first, last}, {}};
         for (const DoubleDouble& knot : course.knots) {
@@ -155,9 +155,9 @@ struct Survey {
     }
 
     // Adds the turning points between the times, between which the motion is smooth. Each interval
-    // is divided into at least `least` parts, and each quarter turn into four. A caller's function
-    // gets at least 16 parts in all, since it may change while the body rests. Returns whether the
-    // observable is proved to be monotone between the times.
+    // is divided into `least` parts and four more for every quarter turn. For a caller's function,
+    // which may change while the body rests, `least` is at least 16/n, rounded up, where n is the
+    // number of times. Returns whether the observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
         if (!of.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));

@@ -52,7 +52,7 @@ double flat_speed(const Body& body, const FlatView& at, double over_flat) {
     return std::sqrt(2 * body.gravity * at.long_axis * over_flat / flat_inertia(body, at));
 }
 
-// The fate of a body that rolls over the flat position, before it passes the tip.
+// What happens to a body between the flat position, which it passes rolling, and the tip.
 enum class Fate { stays, leaves, jams };
 
 // The state at the end of a segment and the motion that follows.
@@ -72,8 +72,8 @@ struct Climb {
     // the way up, since h'' falls from the flat position to the tip and the rate of c is h'''
     // omega^3, physics (53).
     Fate fate(double omega) const {
-        // A climb with more segments has slides of zero length: N and c then vanish together at the
-        // tip.
+        // A climb with more segments contains slides of zero length. N and c then vanish together
+        // at the tip, and the body leaves the ground.
         constexpr int most_segments = 64;
         checkpoint();
         State state = without_slip(scene.axes(), flat, omega, 0.0, Mode::rolling);

@@ -26,7 +26,7 @@ struct Quarter {
     double friction;
     bool from_tip;
     double direction;    // sign of omega at the start
-    bool rises;          // whether it moves towards the tip; true if flat or upright
+    bool rises;          // whether the body moves towards the tip; true in the flat position
     ContactForce force;  // contact force at the start
     double start;        // position at the start
 
@@ -62,7 +62,7 @@ struct Quarter {
 // The position from which the law holds: the start, or a position just ahead if the law is at its
 // limit at the start; empty if the law is broken.
 std::optional<double> holds_from(const Quarter& quarter) {
-    constexpr double ahead = 1e-8;  // fraction of the angle to flat or tip, more than rounding
+    constexpr double ahead = 1e-8;  // fraction of the angle to the flat position or the tip
     if (!at_the_limit(quarter.force, quarter.friction)) {
         const bool holds = law_margin(quarter.force, quarter.friction) > 0;
         return holds ? std::optional(quarter.start) : std::nullopt;
@@ -72,9 +72,9 @@ std::optional<double> holds_from(const Quarter& quarter) {
     return quarter.holds(next) ? std::optional(next) : std::nullopt;
 }
 
-// Appends the zeros of the law between `from` and `to` near a zero of its squared form. Near the
-// tip both forces may be small, and squaring halves the number of accurate digits. Where F
-// vanishes, too, the law may hold at this zero and fail on both sides of it.
+// Appends the zeros of the law between `from` and `to` near `zero`, a zero of the squared form of
+// the law. Near the tip both forces may be small, and squaring halves the number of accurate
+// digits. If F vanishes at `zero`, too, the law may hold there and fail on both sides.
 void add_refined(std::vector<double>& places, const Quarter& quarter, double zero, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };
@@ -140,9 +140,9 @@ struct Turn {
 };
 
 // The turn to the first of the given positions after `from`. There is at least one position; the
-// positions are ascending, and each stands for its mirror image on the other side of the flat
-// position, too. Empty if the body reaches none of them: on the separatrix, its motion ends at the
-// tip.
+// positions are ascending, and each also represents its mirror image on the other side of the flat
+// position. Empty if the body reaches none of them, since on the separatrix it approaches the tip
+// forever.
 std::optional<Turn> first_meeting(const Quarter& quarter, double from,
                                   const std::vector<double>& places) {
     const double on = quarter.direction;
@@ -160,7 +160,7 @@ std::optional<Turn> first_meeting(const Quarter& quarter, double from,
     return Turn{on * ((tip - start) + (tip - places.back())), on};
 }
 
-// Where rolling ends: the first position at which N or the law's polynomial turns negative.
+// The end of rolling: the first position at which N or the polynomial of the law turns negative.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
                            const Polynomial<N>& law_polynomial, double theta) {
@@ -224,7 +224,7 @@ EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
     if (!end.angle) return infinity;
     if (*end.angle == flow.from.theta) return 0.0;
-    // The body stands on its tip with a speed that underflows in natural units.
+    // The body stands on its tip, and its speed underflows in natural units.
     if (flow.kind == MotionKind::rest) return infinity;
     return time_of_passing(flow, *end.angle, end.heading);
 }

@@ -21,7 +21,7 @@ struct EndOfRolling {
     Validity validity;
     std::optional<double> angle = std::nullopt;
     double heading = 0.0;
-    double time = infinity;  // [s]; only on slopes; see time_of_end
+    double time = infinity;  // [s], set only on slopes; see time_of_end
 };
 
 struct Certificate {

@@ -49,20 +49,21 @@ struct EnergyRange : Shape {
 
 EnergyRange energy_range(const RollingStart& start);
 
-// The range of an energy H - S above the flat position and H - 1 above the tip.
+// The range of heights for an energy that is over_flat = H - S above the flat position and
+// over_tip = H - 1 above the tip.
 EnergyRange energy_range(const Shape& shape, double over_flat, double over_tip);
 
-// The range of a rotation with the energy of the separatrix, H = 1.
+// The range of heights at the energy of the separatrix, H = 1.
 EnergyRange separatrix_range(const Shape& shape);
 
 // The polynomials of the forces in x; P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
     Polynomial<1> height;
-    Polynomial<2> weight;  // V, of D = V/u
+    Polynomial<2> weight;  // V in D = V/u
     Polynomial<5> normal_at_rest;
     Polynomial<4> normal_moving;
-    Polynomial<5> normal;        // P, of N = h P/V^2
-    Polynomial<3> friction;      // Q, of F = h' u Q/V^2
+    Polynomial<5> normal;        // P in N = h P/V^2
+    Polynomial<3> friction;      // Q in F = h' u Q/V^2
     Polynomial<4> slope_square;  // G = (h h')^2
 };
 

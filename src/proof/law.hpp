@@ -8,14 +8,15 @@
 
 namespace rolling_ellipse {
 
-// The margin of the law for friction to one side, -1 or 1; for infinite friction, it is the normal
-// force.
+// The margin of the law for a friction force in the direction `side`, -1 or 1; for an infinite
+// friction coefficient, the margin is the normal force.
 inline double law_margin(const ContactForce& force, double friction, double side) {
     if (std::isinf(friction)) return force.normal;
     return friction * force.normal - side * force.friction;
 }
 
-// The margin of the law for friction to both sides; the law holds where the margin is positive.
+// The margin of the law for the actual direction of the friction force; the law holds where this
+// margin is positive.
 inline double law_margin(const ContactForce& force, double friction) {
     return law_margin(force, friction, std::copysign(1.0, force.friction));
 }
@@ -26,9 +27,10 @@ inline double law_size(const ContactForce& force, double friction) {
     return std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
 }
 
-// Rounding error of a margin relative to its size, from all operations between angle and margin.
+// Rounding error of a margin relative to its size, from all operations that compute the margin from
+// the angle.
 inline constexpr double law_rounding = 64 * epsilon;
-// Smallest normal double, below which friction loses precision.
+// Smallest normal double; a smaller friction coefficient has fewer accurate digits.
 inline constexpr double least_friction = std::numeric_limits<double>::min();
 
 // Whether the margin of the law is 0 to within rounding.

@@ -11,8 +11,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The scene, viewed so that the slope falls towards growing angles and the long axis is parallel to
-// the ground at angle 0.
+// The scene, viewed so that a body that rolls downhill has growing angles and that the long axis is
+// parallel to the ground at angle 0.
 Scene downhill(Scene scene) {
     if (scene.a < scene.b) std::swap(scene.a, scene.b);
     scene.slope = std::abs(scene.slope);
@@ -96,8 +96,8 @@ class Well {
 
     double needed(double angle) const { return friction_needed(force(angle)); }
 
-    // Angles from first to last, evenly spaced, but denser near the axes of a thin body, where the
-    // forces change over angles of b/a and (b/a)^2.
+    // Evenly spaced angles from first to last, and more angles near the axes of a thin body, where
+    // the forces change over angles of b/a and (b/a)^2.
     std::vector<double> places(double first, double last) const {
         constexpr int count = 512;
         std::vector<double> angles{first, last};
@@ -114,8 +114,8 @@ class Well {
         return angles;
     }
 
-    // The angle at which a measure is largest, by golden-section search about every angle whose
-    // value is no smaller than its neighbours'.
+    // The angle at which a measure is largest, by golden-section search around every angle at which
+    // the measure is at least as large as at both neighbours.
     template <class Measure>
     static double highest(const std::vector<double>& at, const Measure& measure) {
         std::vector<double> values(at.size());
@@ -147,7 +147,7 @@ class Well {
     const double gyration2_;
     const RollingEquation rolling_;
     const double theta_;  // theta of the start
-    const double side_;   // +1, or -1 if the slope falls to the other side
+    const double side_;   // +1, or -1 if the slope falls towards negative x
     double upright_ = 0.0;
     double lying_ = 0.0;
     double start_ = 0.0;

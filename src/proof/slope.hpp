@@ -22,8 +22,8 @@ struct LawMeetings {
     std::optional<Meeting> broken;
 };
 
-// Examines the law on the stretches of a motion in order of time, at least up to the time `until`
-// in units of the body.
+// Examines the law on the stretches of a motion in order of time, at least up to the time `until`,
+// which is in the body's unit of time.
 class LawWatch {
   public:
     LawWatch(const SlopeFlow& flow, double friction, double until = infinity)
@@ -38,7 +38,7 @@ class LawWatch {
     bool examine(const Mirror&) { return false; }
     bool examine(const Repeat&) { return false; }
 
-    // The meetings found so far. A motion that ends close to the limit counts as having touched it.
+    // The meetings up to now. A motion that ends within rounding of the limit has touched it.
     LawMeetings met() const;
 
   private:
@@ -58,7 +58,7 @@ class LawWatch {
     const SlopeFlow& flow_;
     const double friction_;
     const double until_;
-    Stretch near_[2];  // one stretch for friction to each side
+    Stretch near_[2];  // one stretch for each direction of the friction force
     bool at_start_ = true;
     LawMeetings met_;
 };

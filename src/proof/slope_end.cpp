@@ -25,8 +25,8 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The margin of the law for friction to one side, a polynomial in x, where x in [0, 1] is the
-// position in a piece.
+// The margin of the law for one direction of the friction force, a polynomial in x, where x in
+// [0, 1] is the position in a piece.
 struct LawWatch::Law {
     double side;
     double size;  // sum of the magnitudes of the terms of the law
@@ -55,8 +55,8 @@ struct LawWatch::Law {
     double tolerance() const { return rounding * size; }
 
     // Whether the omitted terms are within the tolerance. Pieces are as long as the series of
-    // angle, speed and path allow; for a nearly round body the law is so much smaller than these
-    // that it needs shorter pieces.
+    // angle, speed and path allow; for a nearly round body the law is much smaller than these
+    // quantities and needs shorter pieces.
     bool is_resolved() const {
         return !(std::abs(coefficients[law_degree - 1]) + std::abs(coefficients[law_degree]) >
                  tolerance());
@@ -207,8 +207,9 @@ bool holds_on_part(const PartForces& forces, const GroundGravity& gravity, doubl
     return ends <= resolved * size && least - to_a_node * change > rounding * size + 40 * ends;
 }
 
-// The limits reached in the half turn after the first n of a run, as far as its parts extend. The
-// parts are used if they prove that the law holds, otherwise series.
+// The limits reached in one half turn of a run, which follows its first `half_turns` half turns. If
+// the parts of the run prove that the law holds, no limit is reached; otherwise power series follow
+// the half turn.
 LawMeetings law_in_half_turn(const SlopeFlow& flow, const SlopeRun& run, double friction,
                              double half_turns) {
     const bool holds = std::all_of(run.parts.begin(), run.parts.end(), [&](const RunPart& part) {
@@ -260,9 +261,9 @@ LawMeetings joined(const LawMeetings& met, const LawMeetings& later) {
     return {met.touched ? met.touched : later.touched, met.broken ? met.broken : later.broken};
 }
 
-// The limits reached in a run. If the law breaks in a half turn, it breaks in all later ones, too.
-// The search for the first of them takes growing steps from a guess, then bisects. The run is
-// followed at least up to the time `until` after its start.
+// The limits reached in a run. If the law breaks in a half turn, it breaks in all later half turns,
+// too. The search for the first such half turn takes growing steps from a guess, then bisects. The
+// run is followed at least up to the time `until` after its start.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double until) {
     LawMeetings met = law_in_half_turn(flow, run, friction, 0.0);
     const double all = run.half_turns - 1;
@@ -312,7 +313,8 @@ bool LawWatch::examine(Sum& sum) {
     return met_.broken.has_value();
 }
 
-// The parts of a swing are used if they prove that the law holds, otherwise series.
+// If the parts of a swing prove that the law holds, no limit is reached; otherwise power series
+// follow the motion.
 bool LawWatch::examine(const Swing& swing) {
     const auto holds = [&](const WellSide& side) {
         return std::all_of(side.parts.begin(), side.parts.end(), [&](const RunPart& part) {

@@ -17,7 +17,7 @@ struct CentreOfRolling {
 };
 
 // Computes the force and the acceleration without subtracting accelerations, which would be
-// inaccurate where the normal force on the tip of a thin body is small. With w = h h'' - h'^2 =
+// inaccurate for a thin body near its tip, where the normal force is small. With w = h h'' - h'^2 =
 // (a^2 - b^2) (b^2 cos^2 - a^2 sin^2)/h^2, D the inertia about the contact, and the components of
 // gravity into the ground and along it:
 //     N/m = ((k^2 h'' + h w) omega^2 + (k^2 + h^2) into + h h' along)/D,      physics (23)

@@ -51,7 +51,7 @@ struct Reaction {
     bool sticks = false;   // whether the collision ends with v = 0
 };
 
-// Infinite friction, physics (42): the limit of the law below, without a product infinity * 0.
+// Infinite friction, physics (42): the limit of `coulomb_friction`, without a product infinity * 0.
 Reaction unlimited_friction(const Contact& c, double restitution, Restitution law) {
     const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
@@ -255,8 +255,8 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // A negligible angle counts as 0, since the slide would end at a time that is indistinguishable
-    // from 0 in double precision.
+    // A negligible angle counts as 0: a slide that started there would end at a time
+    // indistinguishable from 0 in double precision.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;

@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// The law of restitution with a coefficient e. Stronge: restitution returns e^2 of the work of
+// Laws of restitution with a coefficient e. Stronge: restitution returns e^2 of the work of
 // compression. Poisson: the normal impulse of restitution is e times that of compression (Traite de
 // mecanique, 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
@@ -23,7 +23,7 @@ struct InitialState {
     double reaction_z;
     double free_omega;          // angular velocity without the ground: the report's eq 48
     double slip_removed = 0.0;  // initial slip that infinite friction stops at once [m/s]
-    double energy_lost = 0.0;   // energy lost when the slip stops [J]
+    double energy_lost = 0.0;   // energy lost when this slip stops, or in an impact [J]
     double gap_rate = 0.0;      // rate of the gap, without cancellation; 0 in contact [m/s]
     bool touching = false;      // whether the body touched the ground before the impulse
 };
@@ -61,8 +61,8 @@ struct LowParts {
 };
 
 // The state of a body that touches the ground just after its collision, with its mode unchanged,
-// and the rate of the gap. The rate before the collision is an argument of its own because, after a
-// low hop, it is known more accurately than z_dot.
+// and the rate of the gap. The rate before the collision is a separate argument since, after a low
+// hop, it is known more accurately than from the velocities.
 struct Collision {
     State after;
     LowParts low;

@@ -9,7 +9,7 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr double aspect_limit = 1e3;
-constexpr double blow_margin = 1e-12;  // for rounding, as a fraction of the long semi-axis
+constexpr double blow_margin = 1e-12;  // allowed for rounding, as a fraction of the long semi-axis
 
 // Rejects a moment of inertia, or a k^2, that is out of bounds. The bounds compare k^2 with the
 // square of the long semi-axis, so that the k^2 of a valid scene is valid for a body, too.

@@ -18,7 +18,7 @@
 
 namespace rolling_ellipse {
 
-// The body on level ground: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
+// A body on level ground: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
 struct Body {
     double a;
     double b;
@@ -28,7 +28,8 @@ struct Body {
     Axes axes() const { return {a, b}; }
 };
 
-// Applied impulse [N s] at the body point (dx, dz) [m] from the centre, in ground axes.
+// An applied impulse (jx, jz) [N s] and its point of application (dx, dz) [m] from the centre, in
+// ground axes.
 struct Impulse {
     double jx = 0.0;
     double jz = 0.0;
@@ -51,7 +52,7 @@ inline GroundGravity ground_gravity(double gravity, double slope) {
     return {gravity * std::cos(slope), gravity * std::sin(slope)};
 }
 
-// k^2 of a uniform disc, physics (16), the default for every body.
+// k^2 of a uniform elliptical disc, physics (16): the default for every body.
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
 struct Scene {
@@ -67,8 +68,8 @@ struct Scene {
     double theta;
     double omega;
     double x;
-    // Without z, the body touches the ground. A missing velocity is that of rolling, or 0 in the
-    // air.
+    // If z is absent, the body touches the ground. An absent velocity is that of rolling, or 0 in
+    // the air.
     std::optional<double> z;
     std::optional<double> x_dot;
     std::optional<double> z_dot;
@@ -112,8 +113,8 @@ inline constexpr SceneField scene_fields[] = {
     {"x_dot", &Scene::x_dot, unit::speed},
     {"z_dot", &Scene::z_dot, unit::speed}};
 
-// The scene with these values, in the order of the table; not validated. Without arguments every
-// required value is NaN.
+// The scene with these values, in the order of `scene_fields`; not validated. Without arguments,
+// every required value is NaN.
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers = {}, const std::optional<Impulse>& impulse = {});
 
@@ -234,8 +235,9 @@ inline bool is_weightless(const Geometry& at, double gravity_into_ground, double
            equal_ulps * epsilon * gravity_into_ground + free_acceleration_rate(at, omega) * blur;
 }
 
-// Units matched to the size of a body. They are powers of two, so that conversion is exact. Results
-// computed in them do not depend on the units of the input and stay in the range of doubles.
+// Units matched to the size of a body. They are powers of two, so that conversion is exact. In
+// these units, the size, the time scale and the mass of a body are near 1, so that computations
+// stay in the range of doubles.
 struct Units {
     double length = 1.0;  // unit of length [m]
     double time = 1.0;    // unit of time [s]
@@ -271,19 +273,20 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
 }
 
 // Where a scene comes from: typed by a user, or reached by a motion. In a state reached by a
-// motion, the body may have gained energy down a slope, and may be about to hit the ground that it
-// touches.
+// motion, the body may have gained energy on its way down a slope, and may be about to hit the
+// ground that it touches.
 enum class Origin { typed, reached };
 
-// Whether rolling resistance can balance the lever one + other, to within rounding.
+// Whether a rolling resistance of the given lever can balance the lever one + other, to within
+// rounding.
 inline bool is_within(double resistance, double one, double other) {
     const double rounding = equal_ulps * epsilon * (std::abs(one) + std::abs(other));
     return resistance > 0 && std::abs(one + other) <= resistance + rounding;
 }
 
 // Whether a body that neither slips nor turns is held in place, physics (63). This is so if its
-// centre lies above the contact patch, which extends to both sides by the lever of rolling
-// resistance.
+// centre lies vertically above the contact patch, which extends to either side of the contact by
+// the lever of rolling resistance.
 bool is_held(const Scene& scene, const Geometry& at);
 
 // The lever of rolling resistance, whose couple opposes a rotation, even one that is only about to
@@ -292,7 +295,7 @@ inline double lever_against(const Scene& scene, double rotation) {
     return scene.rolling_resistance > 0 ? std::copysign(scene.rolling_resistance, rotation) : 0.0;
 }
 
-// The largest energy, in units of m g times the long semi-axis.
+// The largest energy that a user's scene may have, in units of m g times the long semi-axis.
 inline constexpr double most_energy = 1e12;
 
 // These throw std::invalid_argument, naming the argument, the requirement and the value given.

@@ -21,7 +21,7 @@ void require_count(const std::string& name, long count) {
 }
 
 void validate_step(const Settings& settings, double t_end) {
-    constexpr double smallest_step_ulps = 10;  // in ulps of the end time, as with error control
+    constexpr double smallest_step_ulps = 10;  // in ulps of the end time, as in error control
     const Method method = settings.method;
     const std::string for_method = " for method " + quoted(name(method));
     if (!settings.step) {

@@ -36,9 +36,10 @@ struct Blow {
     Impulse impulse;
 };
 
-// Where a motion stops: at events of some kinds, or once it is proved to stay the same for ever.
+// Where a motion stops: at events of some kinds, or once it is proved to rest, or to keep rolling
+// or sliding, for ever.
 struct Stop {
-    long kinds = 0;  // the sum of 1 << EventKind
+    long kinds = 0;  // a bit mask: 1 << kind for each EventKind
     bool decided = false;
 
     explicit operator bool() const { return kinds != 0 || decided; }
@@ -55,10 +56,11 @@ struct Settings {
     std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;
     long max_events;
-    std::optional<double> rest_speed;  // slower bounces are summed [m/s]; if absent, by size
-    std::vector<Blow> blows = {};      // in order of time
+    // Slower bounces are summed [m/s]; if absent, the speed is 1e-6 sqrt(g min(a, b)).
+    std::optional<double> rest_speed;
+    std::vector<Blow> blows = {};  // in order of time
     Stop stop = {};
-    long count = 1;  // the motion stops at the event of this number among the kinds of `stop`
+    long count = 1;  // number of the event, of the kinds in `stop`, at which the motion stops
 
     bool is_for_events() const { return stop || !blows.empty(); }
 };

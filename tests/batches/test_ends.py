@@ -28,7 +28,7 @@ SETTINGS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("how", SETTINGS, ids=str)
 def test_ends_equal_simulate_bit_for_bit(how: dict[str, Any]) -> None:
-    """A motion with too many events ends at the last event that is allowed."""
+    """The end of a motion that exceeds `max_events` is at event number `max_events`."""
     most = how.get("max_events", 10_000)
     times = [math.inf] * len(SCENES) if "stop" in how else TIMES.tolist()
     ends = rl.ends(SCENES, times, **how)
@@ -72,8 +72,9 @@ def test_times_broadcast_with_the_arguments_of_a_mapping() -> None:
     assert "6 COMPLETED" in repr(ends)
 
 
-def test_a_motion_that_stops_early_has_the_exception_of_simulate_in_place_of_its_end() -> None:
-    """The exception keeps no arcs, which take kilobytes each: they are solved again."""
+def test_errors_of_ends_are_the_exceptions_that_simulate_raises() -> None:
+    """The exception does not store the arcs of its motion, which take kilobytes each. They are
+    computed again on demand."""
     slips = rl.Scene(2.0, 1.0, friction=0.3, restitution=0.8, z=2.1, theta=0.2)
     reports: list[Any] = []
     cases: list[tuple[float, Any]] = [(1e6, None), (math.inf, "decided")]
@@ -92,9 +93,9 @@ def test_a_motion_that_stops_early_has_the_exception_of_simulate_in_place_of_its
 
 
 @pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3, 1e-2])
-def test_bounces_are_counted_down_to_the_rest_speed(share: float) -> None:
-    """The nth rebound of a dropped disc has e^n times the speed of its first impact. All rebounds
-    below the rest speed count as a single event."""
+def test_bounces_below_the_rest_speed_are_a_single_event(share: float) -> None:
+    """The nth rebound of a dropped disc has e^n times the speed of its first impact. In place of
+    the first rebound below the rest speed, and of all later ones, there is a single event, REST."""
     e, speed, g = 0.6, 3.0, 9.81
     disc = rl.Scene(1.0, 1.0, z=1.0 + speed**2 / (2 * g), friction=0.0, restitution=e, gravity=g)
     rest_speed = share * np.sqrt(g)

@@ -20,7 +20,7 @@ from oracles.batches import ENDLESS, NAMED, TIMES, chunks, states
 from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
-from rolling_ellipse._verbs import workers  # its limits are lowered here
+from rolling_ellipse._verbs import workers  # the tests lower its limits
 from rolling_ellipse._verbs.batches.asked import sizes
 
 THETA = np.linspace(0.0, 1.0, 5000)  # 5000 elements are two tasks, of 2048 and 2952
@@ -28,8 +28,8 @@ MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Executor that runs each task immediately. The tasks in `lost` fail. Tasks from number
-    `hangs_after` on never finish, and from `closes_after` on they are refused."""
+    """Executor that runs each task in `submit`. Tasks whose numbers are in `lost` fail, tasks from
+    number `hangs_after` on never finish, and tasks from number `closes_after` on are refused."""
 
     def __init__(self, lost: Any = (), hangs_after: int = 10**9, closes_after: int = 10**9) -> None:
         self.lost, self.hangs_after, self.closes_after = lost, hangs_after, closes_after
@@ -64,12 +64,12 @@ class Mapping:
 
 @pytest.fixture(autouse=True)
 def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lower the limit of elements in a task, so that 5000 elements make several tasks."""
+    """Lower the number of elements per task, so that 5000 elements are divided into two tasks."""
     monkeypatch.setattr(workers, "_ELEMENTS", 2048)
 
 
 def processes() -> ProcessPoolExecutor:
-    """Pool of two spawned processes: a forked copy of a process with threads may hang."""
+    """Pool of two spawned processes, since a forked copy of a process with threads may hang."""
     return ProcessPoolExecutor(2, mp_context=get_context("spawn"))
 
 
@@ -88,7 +88,7 @@ POOLS: dict[str, Callable[[], Any]] = {
 
 
 @pytest.mark.parametrize("make", POOLS.values(), ids=POOLS)
-def test_every_pool_gives_the_same_bits(make: Callable[[], Any], tmp_path: Path) -> None:
+def test_results_are_bit_identical_on_every_pool(make: Callable[[], Any], tmp_path: Path) -> None:
     many, body = NAMED * 5, {"a": 2.0, "b": 1.0, "omega": 1.0}
     expected: Any = simulate_many(many, TIMES)
     with make() as pool:
@@ -109,7 +109,7 @@ def test_every_pool_gives_the_same_bits(make: Callable[[], Any], tmp_path: Path)
 
 
 def test_few_or_no_elements_give_the_same_result_as_without_an_executor() -> None:
-    """Scalars stay scalars; many times of one body, evaluated by a series, stay one task."""
+    """Scalars give scalars. The times of one body, for which a series is used, form one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
         for each in (body, body | {"a": [2.0]}):
@@ -174,8 +174,8 @@ class HeavyMap(Mapping):
 def test_pending_results_stay_within_the_byte_limit(
     samples: int, bytes_held: int, way: dict[str, Any], pool: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pending results stay below the limit unless a single result is larger. A chunk may be a
-    sixteenth larger than the previous one, and the limit adapts one task later."""
+    """Pending results stay below the limit unless a single result is larger. A sixteenth is added
+    to the limit, since each chunk may be a sixteenth larger than the one before."""
     monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
@@ -211,7 +211,7 @@ def test_arrays_have_nan_for_lost_scenes() -> None:
 
 
 @pytest.mark.parametrize("workers", [Here(lost=(0, 3)), Here(closes_after=4), Mapping(lost=True)])
-def test_when_a_task_is_lost_the_folder_keeps_the_scenes_of_the_others(
+def test_the_folder_keeps_finished_scenes_when_another_task_is_lost(
     workers: Any, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
@@ -260,8 +260,7 @@ def test_a_killed_process_loses_only_its_unfinished_scenes(tmp_path: Path) -> No
 
 
 def test_an_interrupt_keeps_finished_tasks_and_cancels_the_rest(tmp_path: Path) -> None:
-    """The fifth task never ends. The interrupt comes after the first four tasks and cancels all
-    tasks after them."""
+    """Only the first four tasks finish. An interrupt after them cancels all other tasks."""
     executor, out = Here(hangs_after=4), tmp_path / "out"
 
     def look(done: int, of: int | None) -> None:

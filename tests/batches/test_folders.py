@@ -20,10 +20,10 @@ from oracles.files import put_together, taken_apart
 from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
-from rolling_ellipse._verbs.batches import folders  # its version is changed here
+from rolling_ellipse._verbs.batches import folders  # a test changes its version
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
-UNUSUAL = [  # signs of zeros, infinite friction, arguments left out, last bits of a blow
+UNUSUAL = [  # negative zeros, infinite friction, omitted arguments, numbers with 16 or 17 digits
     Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
     Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(jx=0.1, jz=-0.0, dx=1 / 3)),
     Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
@@ -130,12 +130,12 @@ def test_a_folder_from_another_version_is_rejected(
     monkeypatch.setattr(folders, "version", lambda name: "0.0.9")
     with pytest.raises(ValueError, match=r"^out must be .* version '\d.*', not '0.0.9'"):
         simulate_many(GRID, TIMES, out=out)
-    list(load_many(out))  # numbers of another version can be read
+    list(load_many(out))  # motions computed by another version can be read
 
 
 @pytest.mark.parametrize(("schema", "cure"), [(1, ""), (5, ": a newer .* pip install .*")])
-def test_the_unknown_schema_of_a_folder_is_named(schema: int, cure: str, out: Path) -> None:
-    """The message names the schema even if the request contains unknown names."""
+def test_an_unknown_schema_of_a_folder_is_reported(schema: int, cure: str, out: Path) -> None:
+    """The message states the schema even if the request contains unknown names."""
     simulate_many(GRID, TIMES, out=out)
     about, arrays = taken_apart((out / "request.npz").read_bytes())
     about = about | {"schema": schema, "colour": 1}
@@ -268,7 +268,7 @@ def test_parts_of_the_same_folder_can_be_merged(out: Path, tmp_path: Path) -> No
 
 
 def test_a_chunk_under_the_name_of_another_request_is_rejected(out: Path, tmp_path: Path) -> None:
-    """The foreign chunk has states at other times."""
+    """The chunk of the other request has states at other times."""
     simulate_many(GRID, [2.0, 6.0], out=out)
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
     for mine, other in zip(chunks(out), chunks(tmp_path / "other"), strict=True):
@@ -279,7 +279,7 @@ def test_a_chunk_under_the_name_of_another_request_is_rejected(out: Path, tmp_pa
     require_equal(load_many(out), simulate_many(GRID, [2.0, 6.0]))
 
 
-def test_links_never_lead_to_a_file_outside_the_folder(out: Path, tmp_path: Path) -> None:
+def test_no_file_is_written_through_a_link_out_of_the_folder(out: Path, tmp_path: Path) -> None:
     out.mkdir()
     for name in ("end.json", "request.npz"):
         (out / name).symlink_to(tmp_path / "outside" / name)

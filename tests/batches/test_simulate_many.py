@@ -23,7 +23,7 @@ from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
 from rolling_ellipse._ask.records import UNREAD, trusted
 from rolling_ellipse._ask.settings import Options
 from rolling_ellipse._verbs.batches.asked import sizes
-from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # for an older folder
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all  # for an old end.json
 
 ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
 WAYS: dict[str, dict[str, Any]] = {
@@ -78,7 +78,7 @@ def test_arrays_equal_the_list_bit_for_bit(way: dict[str, Any]) -> None:
     errors = {(i,): str(each) for i, each in enumerate(listed) if isinstance(each, Exception)}
     assert {place: str(each) for place, each in arrays.errors.items()} == errors
     for name, values in simulate_many(NAMED * 3, TIMES, returns=names[:2], **way).items():
-        assert np.array_equal(values, arrays[name], equal_nan=True)  # without any trajectory
+        assert np.array_equal(values, arrays[name], equal_nan=True)  # no Trajectory is created here
 
 
 def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
@@ -101,7 +101,8 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
         listed = simulate_many(wanted, TIMES, returns="x").to_xarray()
         assert listed["x"].dims == ("scene", "t") and np.array_equal(listed["omega0"], speeds)
         assert listed["theta0"].dims == ("scene",) and "b" not in listed.coords
-    (end,) = (tmp_path / "out").glob("end.json")  # of a folder written before shapes were stored
+    # now end.json becomes one of those written before the axes of the scenes were stored
+    (end,) = (tmp_path / "out").glob("end.json")
     names, about = _chunks(tmp_path / "out"), json.loads(end.read_text())
     digest = _digest_of_all(names[0][0].split("-")[1], 12, names, {})
     end.write_text(json.dumps({"scenes": 12, "digest": digest}))
@@ -110,7 +111,7 @@ def test_tables_have_the_axes_of_the_scenes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["auto", "multipliers", "not raised"])
 def test_motions_are_read_when_they_are_first_used(way: str) -> None:
-    """Motions can be read one by one in any order; the last one frees the tables of their chunk."""
+    """Motions can be read in any order. Reading the last one of a chunk frees the tables."""
     motions, expected = (run(NAMED * 2, TIMES, **WAYS[way]) for run in (simulate_many, singly))
     assert type(motions) is list and len(motions) == len(expected)
     unread = {i for i, each in enumerate(motions) if UNREAD in vars(each)}
@@ -149,7 +150,7 @@ def test_times_are_accepted_as_in_simulate(t: Any) -> None:
 
 
 def test_bodies_at_the_limits_do_not_affect_their_neighbours() -> None:
-    """Bodies of extreme shapes and sizes have the bits of `simulate`."""
+    """In a batch, bodies of extreme shapes and sizes move as in `simulate`, bit for bit."""
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
@@ -157,7 +158,7 @@ def test_bodies_at_the_limits_do_not_affect_their_neighbours() -> None:
 
 
 def test_arrays_broadcast_in_c_order() -> None:
-    """Arrays broadcast in C order, with numbers, None and blows among them."""
+    """Numbers, None and arrays of blows broadcast together with arrays of numbers."""
     a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
     blow = Impulse(jx=0.0, jz=[[[-1.0]], [[-20.0]]], dx=0.5)
     grid = {"a": a[:, None], "b": 1, "friction": friction, "impulse": blow, "z": None, "x": -0.0}
@@ -192,7 +193,7 @@ def test_an_invalid_value_near_the_end_is_rejected_before_anything_is_computed()
 
 
 @pytest.mark.parametrize("nothing", [[], {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
-def test_no_scenes_give_an_empty_result(nothing: Any, tmp_path: Path) -> None:
+def test_an_empty_batch_gives_an_empty_result(nothing: Any, tmp_path: Path) -> None:
     assert simulate_many(nothing, 1.0) == [] == simulate_many(iter(()), 1.0)
     found = rl.load_many(simulate_many(nothing, [1.0], out=tmp_path / "none")).arrays()
     assert found.status.size == found["x"].size == found.to_xarray()["x"].size == 0
@@ -201,18 +202,18 @@ def test_no_scenes_give_an_empty_result(nothing: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "given",
     [
-        {"a": [], "inertia": 1e9},  # whose range depends on a
+        {"a": [], "inertia": 1e9},  # the largest inertia depends on a
         {"mass": [], "inertia": 1e9},
-        {"omega": [], "friction": math.inf, "x_dot": 3.0},  # which may roll
+        {"omega": [], "friction": math.inf, "x_dot": 3.0},  # valid if the body rolls
         {"a": [], "b": []},
     ],
 )
-def test_arguments_that_could_be_valid_are_accepted_with_no_scenes(given: dict[str, Any]) -> None:
+def test_an_empty_batch_accepts_values_that_may_be_valid(given: dict[str, Any]) -> None:
     assert rl.ends({"a": 2.0, "b": 1.0} | given, 1.0).theta.size == 0
 
 
 def test_simulate_many_takes_the_arguments_of_simulate() -> None:
-    """Only the arguments that stop a motion are missing: all motions have the same sample times."""
+    """Only `stop` and `count` are missing, since all motions have the same sample times."""
     own = {"scene", "scenes", "workers", "progress", "out", "returns", "stop", "count"}
     mine, others = (
         {name: each for name, each in inspect.signature(of).parameters.items() if name not in own}

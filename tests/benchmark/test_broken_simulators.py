@@ -35,7 +35,8 @@ TURN = 180 / math.pi
 
 
 class Break(NamedTuple):
-    """Effect on correct states, the unaffected problems, and the words in the scores of others."""
+    """A fault: its effect on correct states, the problems that it does not affect with the reason
+    for each, and the words that the scores of all other problems contain."""
 
     of: Change
     independent: dict[str, str]
@@ -110,7 +111,7 @@ def right(scores: benchmark.Scores) -> set[str]:
 @pytest.mark.parametrize("name", BROKEN)
 @pytest.mark.parametrize("accurate", [True, False])
 def test_only_answers_unaffected_by_the_fault_are_right(name: str, accurate: bool) -> None:
-    """The same holds for a simulator with errors, here from a gravity that is off by 1e-5."""
+    """Faults are added to exact motions, and to motions with a gravity too large by 1e-5."""
     broken = BROKEN[name]
 
     def mine(one: Any, t: Any, _: Any) -> Any:
@@ -172,7 +173,7 @@ def test_mistakes_in_the_output_are_named(name: str) -> None:
 
 @pytest.mark.parametrize("off", [1e-4, 1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("field", ["gravity", "inertia", "friction", "restitution"])
-def test_no_output_mistake_is_named_where_there_is_none(field: str, off: float) -> None:
+def test_wrong_parameters_are_not_reported_as_output_mistakes(field: str, off: float) -> None:
     """Errors from a wrong parameter of the scene do not look like mistakes in the output."""
     for by in (1 - off, 1 + off):
         if field != "restitution" or by < 1:
@@ -181,7 +182,8 @@ def test_no_output_mistake_is_named_where_there_is_none(field: str, off: float) 
 
 
 def every_impact(one: Any, most: int) -> list[tuple[str, float]]:
-    """Impacts of `hit.settle` in closed form: from the second on, flights shorten by a factor e."""
+    """The first `most` impacts of `hit.settle`: each flight after the second impact is e times as
+    long as the flight before it."""
     first, second = (event.t for event in one.events[:2])
     times, last = [first, second], second - first
     while len(times) < most:
@@ -233,8 +235,8 @@ def test_wrong_bounces_are_judged_wrong(change: Any, words: str) -> None:
     assert score.answer == "wrong" and words in score.reason, score
 
 
-def test_the_disc_must_have_rolled_exactly_forty_metres() -> None:
-    """In roll.circle the position counts, not only the rotation: 32 m is wrong."""
+def test_the_disc_must_have_rolled_forty_metres() -> None:
+    """In roll.circle, 39.996 m is right, and 40.04 m and 32 m are wrong."""
 
     scores = benchmark.run(
         lambda one, t, share: one.exact(t) * [share, 1, share, share, 1, share],
@@ -295,7 +297,8 @@ def test_a_wrong_event_time_is_judged_wrong_in_python_in_files_and_by_the_comman
 
 @pytest.mark.parametrize("name", sorted(IDS - set(NO_EVENTS)))
 def test_event_times_are_judged_by_the_stated_tolerance(name: str) -> None:
-    """The tolerance is 2 % of sqrt(L/g), or a thousandth of the condition, 10 % at most."""
+    """The tolerance is sqrt(L/g) times a thousandth of the condition number, but at least 2 % and
+    at most 10 % of sqrt(L/g)."""
     one = benchmark.problem(name)
     known = known_events(one)[: 5 if name == "hit.settle" else None]
     rest = known_events(one)[len(known) :]

@@ -1,4 +1,4 @@
-"""Problems that always roll, as differential-algebraic equations."""
+"""Problems whose bodies roll all the time, as differential-algebraic equations."""
 
 import re
 from dataclasses import replace
@@ -21,10 +21,11 @@ UPHILL = Scene(0.7, 1.9, mass=3.0, inertia=2.0, slope=0.1, omega=-2.0, theta=1.5
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [*NAMES, "uphill"])
 def test_the_exact_motion_and_the_jacobian_satisfy_the_equations(name: str, form: str) -> None:
-    """F is 0 to within 8 ulps of each entry of y and y', for roundings of the motion and of F.
+    """F is no larger than the change that 8 ulps of each entry of y and y' can cause in it. This
+    covers the rounding errors of the motion and of F.
 
-    Central differences have errors of step^2/6 = 2e-11 from third derivatives, which for the thin
-    body are some (a/b)^4 of the Jacobian, and roundings of 1e-16/step.
+    Central differences have an error of step^2/6 = 2e-11 times the third derivatives, which for the
+    thin body are about (a/b)^4 times the Jacobian, and a rounding error of 1e-16/step.
     """
     one = benchmark.problem("roll.rock" if name == "uphill" else name)
     if name == "uphill":
@@ -125,5 +126,6 @@ def test_ida_stays_within_its_tolerance() -> None:
         dae = one.dae(form)
         found = solve(dae, times, 3e-14, ~dae.algebraic)
         assert np.max(abs(dae.states(found.y) - states) / one.scales) < 1e-8
-    found = solve(dae, times, 3e-14, np.ones_like(dae.algebraic))  # errors of multipliers
+    # with the multipliers included in the error test, IDA fails
+    found = solve(dae, times, 3e-14, np.ones_like(dae.algebraic))
     assert not found.success and found.t[-1] < 0.1

@@ -11,7 +11,7 @@ from rolling_ellipse.benchmark.adapters import engine
 
 
 def test_ids_are_accepted_in_place_of_problems() -> None:
-    """One id or several, in a call and in a folder; adapters take ids, too."""
+    """The functions `problem`, `run` and `score` accept an id, and `run` also a list of ids."""
     several = benchmark.run(exact, problems=["slide.slope", benchmark.problem("roll.rock")])
     assert [score.problem for score in several] == ["slide.slope", "roll.rock"]
     (alone,) = benchmark.run(exact, problems="hit.settle", tags="flight, restitution,spin,stiction")
@@ -64,7 +64,8 @@ def test_the_nearest_name_is_suggested(typed: str, near: str) -> None:
 def test_values_that_are_not_finite_are_named(
     bad: float, row: int, column: int, tmp_path: Path
 ) -> None:
-    """The message names row and column, for arrays and for files, also between the given times."""
+    """The message names the row and the column for arrays and for files, even if the known answer
+    has no row at that time."""
     one = benchmark.problem("slide.stick")
     states = one.exact(one.output_times)
     states[row, column] = bad

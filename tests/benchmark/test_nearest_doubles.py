@@ -1,9 +1,9 @@
 """The numbers in the problem files are the doubles nearest to the exact motion of their scene.
 
-The files were made with power series; these tests use other methods. Flights before the first
-impact, bounces of a flat body, and a disc that slides down a slope have closed forms. Rolling is
-computed by the energy integral of reference/make_rolling_reference.py in 45 digits, and its forces
-by Newton's law.
+The files were generated with power series; these tests use other methods. Flights before the first
+impact, bounces of a body that lies flat, and a disc that slides down a slope have closed forms.
+Rolling is computed with 45 digits from the energy integral of reference/make_rolling_reference.py,
+and its forces from Newton's second law.
 """
 
 import json
@@ -23,12 +23,13 @@ DIGITS = 40
 
 @cache
 def rule() -> reference.Rule:
-    """Rule of the quadrature: 40 nodes on panels that grow by 1.8 reach the digits above."""
+    """Gauss rule with 40 nodes on each panel, and panels that grow by a factor of 1.8. It is
+    accurate to DIGITS digits."""
     return reference.gauss_rule(40, 1.8)
 
 
 def rolled(scene: dict[str, float], t: Any) -> list[Any]:
-    """State and forces at a time of a body that rolls, from the numbers of a file."""
+    """State and forces at time t of a body that rolls from the start in a problem file."""
     a, b, mass, inertia, g = (mpf(scene[key]) for key in ("a", "b", "mass", "inertia", "gravity"))
     k2 = inertia / mass
     start = reference.Scene(a, b, k2, g, mpf(scene["theta"]), mpf(scene["omega"]))
@@ -56,7 +57,8 @@ def problem(name: str) -> Any:
 
 
 def unlike(known: list[float], exact: list[Any]) -> list[tuple[float, float]]:
-    """Numbers with the nearer doubles; midway between two doubles, both count as nearest."""
+    """Pairs of a stored number that is not the nearest double, and that double. If the exact value
+    is midway between two doubles, both count as nearest."""
     return [
         (p, q)
         for p, value in zip(known, exact, strict=True)
@@ -108,7 +110,7 @@ def test_a_disc_slides_down_a_slope_under_constant_forces() -> None:
 
 
 def test_bounces_of_a_flat_body_are_equally_spaced_in_time() -> None:
-    """From rest at z, the first bounce is after sqrt(2 (z - b)/g), the others after twice that."""
+    """A fall from rest at z takes sqrt(2 (z - b)/g), and each later flight twice that time."""
     data = problem("hit.bounce_flat")
     with mp.workdps(DIGITS):
         z, b, g = (mpf(data["scene"][key]) for key in ("z", "b", "gravity"))

@@ -39,7 +39,7 @@ def test_dop853_is_accurate_to_nine_digits(name: str) -> None:
     scored = one.times <= one.horizon
     assert np.max(np.abs(states - one.states)[scored] / one.scales) < 1e-9
     known = [(event.kind.name, event.t, event.condition) for event in one.events]
-    if name == "hit.settle":  # slower bounces follow, which the known answer sums into STICK
+    if name == "hit.settle":  # the slower bounces end at the STICK of the known answer
         assert 0 < known[-1][1] - events[-1][1] < 4e-7 / one.scales[5]
         known, events = known[:-1], events[: len(known) - 1]
     assert [kind for kind, _ in events] == [kind for kind, *_ in known]

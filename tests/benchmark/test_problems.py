@@ -1,4 +1,4 @@
-"""The package gives the known answers of reference/make_benchmark.py, which shares no code with it.
+"""The package gives the known answers of reference/make_benchmark.py. They share no code.
 
 The bound: inputs are doubles, off by up to half an ulp (a relative 1.1e-16), and so are the numbers
 in the files. The condition number is the change of an answer, relative to its scale, divided by the
@@ -30,7 +30,7 @@ each_problem = pytest.mark.parametrize("name", sorted(PROBLEMS))
 
 @cache
 def motion(name: str) -> Trajectory:
-    """The motion according to the package. A jam at the start ends the motion there."""
+    """The motion computed by the package. If the body jams at the start, the motion ends there."""
     data = PROBLEMS[name]
     return simulate(Scene(**data["scene"]), data["t_end"] or 1.0, model="contact")
 
@@ -45,7 +45,7 @@ def errors(data: Any, found: Any, exact: Any) -> NDArray[np.float64]:
 
 @each_problem
 def test_states_forces_and_events_match_the_known_answers(name: str) -> None:
-    """Where the condition is large, states and forces also agree to twelve digits."""
+    """Even if the condition number is large, states and forces agree to twelve digits."""
     data, of = PROBLEMS[name], motion(name)
     rows, condition = np.array(data["states"]), np.array(data["condition"])
     samples = of.sol(rows[:, 0])
@@ -112,7 +112,8 @@ def test_the_files_are_small_and_share_one_format() -> None:
 
 
 def test_answers_follow_from_the_known_motions() -> None:
-    """A bounce counts if the rise before it exceeds 0.002 L; the last bounce sets the end time."""
+    """A bounce counts if the body rises by more than 0.002 L before it. The end of the bounces is
+    the time of the last event."""
     for name, data in PROBLEMS.items():
         answer, rows = data["answer"], np.array(data["states"])
         values = {column: rows[:, k] for k, column in enumerate(data["columns"])}

@@ -8,8 +8,9 @@ from rolling_ellipse.benchmark._events import half_swings, read_off
 NAMES = ["roll.resist", "slide.resist"]
 
 
-def test_the_slide_stops_when_friction_has_taken_its_momentum() -> None:
-    """The body turns neither at the start nor at the end: the mean normal force is the weight."""
+def test_the_slide_stops_when_friction_has_used_up_the_momentum() -> None:
+    """Without rotation, the centre has no vertical velocity. This is so at the start and at the
+    end of the slide, so that the mean normal force is the weight."""
     one = benchmark.problem("slide.resist")
     stop = one.states[0, 3] / (one.scene.friction * one.scene.gravity)
     assert one.events[0].t == pytest.approx(stop, rel=1e-15)
@@ -47,8 +48,9 @@ def test_a_body_that_rests_elsewhere_or_swings_more_often_is_judged_wrong() -> N
 
 
 def test_mujoco_rocks_to_rest_but_slides_too_far() -> None:
-    """MuJoCo is right about the rocking body, to 0.2 % of the inputs. While a body slides and
-    turns, friction and resistance are too weak, since they share a cone: the score says so."""
+    """For the rocking body, MuJoCo's error corresponds to changes of the inputs by less than 0.3 %.
+    While a body slides and turns, friction and resistance are too weak, since they share a cone.
+    The reason in the score states this."""
     mine = adapter("mujoco")
     rocks, slides = benchmark.run(mine, problems=NAMES, ladder=[0.001])
     assert rocks.answer == "right" and rocks.over_condition < 3e-3

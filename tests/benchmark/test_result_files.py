@@ -14,14 +14,14 @@ IDS = [one.id for one in benchmark.problems()]
 
 
 def test_exact_answers_in_files_are_right_and_missing_ones_are_named(tmp_path: Path) -> None:
-    """The files have synonyms for the names of columns, and 17 digits."""
+    """The files have 17 digits, and vx and vz as synonyms of the columns x_dot and z_dot."""
     benchmark.export(tmp_path)
     assert [len([*tmp_path.glob(f"*.{kind}")]) for kind in ("json", "sdf", "xml")] == [20, 18, 17]
     assert {s.answer for s in benchmark.score(tmp_path)} == {"not supported"}
     for one in benchmark.problems():
         t = one.output_times[: 51 if one.id == "roll.rock" else None]
         write_states(tmp_path, one, one.exact(t), header="t,x,z,theta,vx,vz,omega")
-    benchmark.export(tmp_path)  # does not change the results
+    benchmark.export(tmp_path)  # leaves the files of results unchanged
     (tmp_path / "roll.thin.csv").write_text("")
     scores = benchmark.score(tmp_path)
     unlike = [(score.problem, score.answer) for score in scores if not score.passed]
@@ -44,7 +44,8 @@ def test_a_truncated_file_is_rejected_naming_its_last_row(tmp_path: Path) -> Non
 
 
 def test_an_empty_events_file_counts_as_no_events_file(tmp_path: Path) -> None:
-    """Events are then inferred from the states. Of two columns with one name the first counts."""
+    """Events are then inferred from the states. The file has x_dot and its synonym vx. Only the
+    first of these columns is used."""
     one = benchmark.problem("slide.stick")
     rows = np.column_stack([one.output_times, one.exact(one.output_times), one.output_times])
     header = "t,x,z,theta,x_dot,z_dot,omega,vx"
@@ -79,7 +80,7 @@ def test_export_overwrites_nothing_and_follows_no_link(tmp_path: Path) -> None:
             mine.write_text("mine")
             make(place / name)
             if name.endswith(".csv") and (place / name).is_file():
-                benchmark.export(place)  # a table of results
+                benchmark.export(place)  # files of results may be present
             else:
                 with pytest.raises(ValueError, match=f"folder must contain no other {name}, got"):
                     benchmark.export(place)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from oracles.simulators import STATE, changed, exact, score_of, states_of
 from rolling_ellipse import EventKind, Mode, benchmark, impacts, simulate
 from rolling_ellipse.__main__ import main
-from rolling_ellipse.benchmark._events import gap_and_slip, read_off  # scores only compare them
+from rolling_ellipse.benchmark._events import gap_and_slip, read_off  # scores do not show them
 from rolling_ellipse.geometry import support_slope
 
 IDS = [one.id for one in benchmark.problems()]
@@ -123,7 +123,7 @@ def by_step(one: Any, t: Any, step: Any) -> Any:
 
 
 def rolls_only(one: Any, t: Any, h: Any) -> Any:
-    """A simulator that has no flight, whose errors grow with h, and that rocks over the tips."""
+    """A simulator without flight, whose states are too large by h, and tenfold in roll.rock."""
     if "flight" in one.tags:
         raise NotImplementedError("bodies stay on the ground")
     return one.exact(t) * (10 if one.id == "roll.rock" else 1 + h)
@@ -145,7 +145,7 @@ def test_the_exact_motion_gets_a_perfect_score() -> None:
     assert scores.wrong == [] and "20 of 20 answers are right. 20 pass" in scores.verdict()
 
 
-@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")  # held by the sticky ground
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")  # sticky ground pulls a body
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
     """Only the energy reveals a missed bounce that lies between two of the given times."""
@@ -157,7 +157,8 @@ def test_a_broken_simulator_fails_where_its_fault_acts(name: str) -> None:
 
 
 def test_forces_are_scored_where_they_are_provided() -> None:
-    """Forces are divided by m g = 9.81 N; friction is 0.2, and one row has no normal force."""
+    """Errors of forces are divided by m g = 9.81 N. The coefficient of friction is 0.2, and the
+    normal force is missing in one row."""
     one = benchmark.problem("slide.stick")
     right = exact(one, one.output_times)
     normal, friction = right.normal_force + 0.981, right.friction_force - 0.0981
@@ -260,7 +261,7 @@ def test_the_picture_shows_which_answers_are_right(tmp_path: Path) -> None:
         word = "digits" if score.answer == "right" else score.answer
         assert score.setting == 0.1 or beside[place].endswith(word)
     assert chart.ax.get_title("left").replace("\n", " ") == scores.verdict().split(". ")[0] + "."
-    ax = Figure().add_subplot()  # for a problem that is not supported
+    ax = Figure().add_subplot()  # scores can be drawn even if no problem is supported
     flies = [benchmark.problem("hit.settle")]
     scores = benchmark.run(rolls_only, problems=flies, tolerance=1e-6)
     assert scores.plot(ax=ax).ax is ax and scores[0].tolerance == 1e-6

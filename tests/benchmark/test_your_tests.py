@@ -30,7 +30,7 @@ each_row = pytest.mark.parametrize("row", TABLE, ids=name_of)
 
 
 def report(folder: Path, *names: str, old: str = "", new: str = "") -> tuple[int, str]:
-    """Exit code and output of pytest on files of the page, one of which may be changed."""
+    """Exit code and output of pytest on files from the page, with `old` replaced by `new`."""
     assert any(old in BLOCKS[name] for name in names)
     for name in names:
         text = BLOCKS[name].replace(old, new) if old else BLOCKS[name]
@@ -70,9 +70,10 @@ def test_the_recipe_for_the_rate_passes_only_for_the_rigid_limit(
 
 
 def close(known: Any) -> Any:
-    """Answers of order 1 to 10 with condition numbers up to 20, like that of `slide.resist`.
+    """Answers are of order 1 to 10, with condition numbers up to 20, as in `slide.resist`.
 
-    Inputs that are off by half an ulp move them by 20 * 1.1e-16; as much is left for roundings.
+    Inputs that are off by half an ulp change the answers by up to 20 * 1.1e-16. The tolerance is
+    twice that, since the computation also rounds.
     """
     return pytest.approx(known, rel=5e-15, abs=5e-15)
 
@@ -142,11 +143,14 @@ def test_errors_fall_with_the_stiffness_by_the_stated_exponents() -> None:
     assert len(exact) == 9 and all(sticks) and {row["a"] / row["b"] for row in exact} == {1.0}
 
 
-def test_a_dashpot_leaves_the_error_of_its_pull() -> None:
-    """The pull slows the rebound from v1 to e: the impulse of |N| exceeds that of N by 2 (v1 - e).
+def test_the_attractive_force_of_a_dashpot_causes_its_remaining_error() -> None:
+    """The attractive force slows the rebound from v1 to e. Friction is bounded by mu |N|, whose
+    impulse exceeds that of mu N by 2 mu (v1 - e).
 
-    v1 is the restitution without a pull of T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465.
-    The error of k omega is sqrt(2) times that of x_dot. At s = 1e10, 10/sqrt(s) = 1e-4 remains.
+    v1 is the restitution of a dashpot that never pulls:
+    T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465.
+    The error of k omega is sqrt(2) times that of x_dot. At the stiffness s = 1e10, the tolerance is
+    10/sqrt(s) = 1e-4.
     """
     zeta = math.log(2) / math.hypot(math.log(2), math.pi)
     root = math.sqrt(1 - zeta**2)
@@ -173,7 +177,7 @@ def test_the_tables_of_the_page_agree_with_the_data() -> None:
 
 
 def printed(problem: str, contact: str, step: float) -> list[float]:
-    """Errors on the page: of the product of transitions, by MJX and by its differences."""
+    """Errors on the page: of the product of transitions, of MJX and of its differences."""
     row = rf"^{problem} +\w+ +{contact} +{step:g} +\S+ +(\S+) +(\S+) +(\S+)$"
     (found,) = re.findall(row, PAGE, re.MULTILINE)
     return [float(each) for each in found]
@@ -217,7 +221,7 @@ def test_lammps_reproduces_the_errors_on_the_page() -> None:
     (row,) = [row for row in TABLE if name_of(row) == "disc oblique 0.1 1 0"]
     try:
         errors = [names["error"](row, k, 100) for k in (1e6, 1e8)]
-    except OSError as reason:  # of the loader
+    except OSError as reason:  # the library of MPI cannot be loaded
         pytest.skip(f"no MPI: {reason}")
     (shown,) = re.findall(r"^disc oblique +1\.0 0\.1 .* (\S+) +(\S+)$", PAGE, re.MULTILINE)
     assert errors == pytest.approx([float(each) for each in shown], rel=0.02)

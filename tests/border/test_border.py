@@ -20,8 +20,8 @@ SLIDES = simulate(scenes.slip, 1.0)._solution
 
 
 def test_unaligned_arrays_are_copied_on_entry() -> None:
-    """Unaligned numbers are copied: a `const double*` to them would be undefined behaviour. All
-    arrays come in through one type, which copies them."""
+    """Unaligned numbers are copied, since reading them through a `const double*` would be undefined
+    behaviour. All array arguments of the core have one type, which makes this copy."""
     aligned = np.linspace(0.0, 1.0, 100_001)
     there = np.frombuffer(b"-" + aligned.tobytes(), float, aligned.size, offset=1)
     copied = []
@@ -54,7 +54,8 @@ def test_failing_to_start_threads_changes_no_bit() -> None:
 
 
 def test_running_out_of_memory_raises_a_memory_error() -> None:
-    """The memory limit grows by the 4 MB of an array, so that each array in turn does not fit."""
+    """The memory limit grows in steps of 4 MB, the size of an array, so that each of the
+    allocations in a call fails in turn."""
     code = """
         import resource
         import numpy as np
@@ -124,8 +125,8 @@ LOOPS: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("loop", LOOPS.values(), ids=LOOPS.keys())
 def test_ctrl_c_interrupts_every_long_loop(loop: Callable[[], Any]) -> None:
-    """The third signal, after 0.3 s, is the interrupt; each loop would take longer. A loop that
-    does not check for signals receives all of them as one, at its end."""
+    """The third signal, after 0.3 s, raises KeyboardInterrupt; each loop would take longer. A loop
+    that does not check for signals would receive a single one, at its end."""
     met = 0
 
     def third(*_: object) -> None:
@@ -144,7 +145,7 @@ def test_ctrl_c_interrupts_every_long_loop(loop: Callable[[], Any]) -> None:
         signal.signal(signal.SIGALRM, usual)
 
 
-def test_choices_equal_those_of_the_core() -> None:
+def test_the_names_of_models_and_methods_equal_those_of_the_core() -> None:
     for name in ("MODELS", "METHODS", "STABILIZATIONS"):
         assert getattr(settings, name) == getattr(_core, name)
 
@@ -188,7 +189,8 @@ class Dial:
 
 
 def test_settings_seen_before_are_checked_again() -> None:
-    """This includes an equal number of another type and an object that has changed."""
+    """A number of another type is rejected after an equal number was accepted, and an object is
+    read again, since its value may have changed."""
     scene, dial = rl.scenes.rolling, Dial(1e-4)
     how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
     assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500

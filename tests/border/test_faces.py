@@ -1,4 +1,4 @@
-"""Printed objects show names for codes, tables with units, and HTML without colours of its own."""
+"""Objects are printed with names of codes and with units, and as HTML that sets no colours."""
 
 import copy
 import dataclasses
@@ -162,7 +162,7 @@ def test_every_repr_fits_on_one_line(make: Callable[[], Any]) -> None:
 @each_listed
 def test_values_are_compared_by_content(make: Callable[[], Any]) -> None:
     one, other = make(), make()
-    _ = one._repr_html_()  # cached values do not count
+    _ = one._repr_html_()  # cached values are not compared
     for same in (other, copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
         assert one == same and hash(one) == hash(same)
     for thing in (None, repr(one), rl.thresholds(3.0, 1.0), rl.Scene(1.0, 1.0)):
@@ -174,7 +174,7 @@ def test_a_changed_field_makes_a_value_unequal() -> None:
     for made in things:
         for field in filter(lambda each: each.init, dataclasses.fields(made)):
             if field.name in ("measured", "predicted", "covariance"):
-                continue  # `errors`, from which they follow, is compared
+                continue  # they follow from `errors`, which is compared
             value = np.zeros(2) if field.name == "errors" else -7.0
             assert dataclasses.replace(made, **{field.name: value}) != made, field.name
     assert sliding() == sliding() and sliding()[:3] != sliding()[:4]
@@ -314,7 +314,7 @@ def drawn(motion: rl.Trajectory) -> tuple[list[float], list[tuple[float, ...]], 
 
 
 @pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)
-def test_a_motion_shows_a_picture_of_its_bodies(scene: rl.Scene) -> None:
+def test_the_html_of_a_motion_has_a_picture_of_its_body(scene: rl.Scene) -> None:
     motion = rl.simulate(scene, 3.0)
     html = motion._repr_html_()
     assert 2500 < len(html) < 6000 and repr(motion)[1:-1] in html
@@ -325,13 +325,13 @@ def test_a_motion_shows_a_picture_of_its_bodies(scene: rl.Scene) -> None:
         assert max(axes) - 0.1 <= y <= height - min(axes) + 0.1
 
 
-def test_the_bodies_are_drawn_where_the_motion_puts_them() -> None:
+def test_the_body_is_drawn_at_its_sampled_positions() -> None:
     """Positions are rounded to 0.1 pixels, and clockwise rotations are clockwise in the picture."""
     motion = rl.simulate(rl.scenes.report, 3.0)
     _, places, (rx, ry) = drawn(motion)
     assert rx == pytest.approx(2 * ry, rel=0.01)  # a = 2 b
     at = motion.sol(np.linspace(0.0, 3.0, 9))
-    scale = rx / 2.0  # pixels per metre, to 0.05 / rx
+    scale = rx / 2.0  # pixels per metre; rounding rx gives a relative error of up to 0.05/rx
     for (x, y, turn), centre, z, theta in zip(places, at.x, at.z, at.theta, strict=True):
         allowed = 0.1 + 0.05 / rx * scale * abs(centre)
         assert abs((x - places[0][0]) - scale * centre) <= allowed
@@ -365,7 +365,8 @@ BOUNCES_AWAY = rl.Scene(1.0, 1e-3, theta=3.54, omega=-1e-3, slope=-1.5, restitut
 def test_a_motion_without_visible_samples_has_no_picture(
     scene: rl.Scene, t: Any, most: int
 ) -> None:
-    """Bounces down a steep slope grow until neighbouring doubles are farther apart than a body."""
+    """Bounces down a steep slope grow until neighbouring doubles of x are farther apart than the
+    length of the body."""
     motion = rl.simulate(scene, t, max_events=most, raise_on_failure=False)
     html = motion._repr_html_()
     Reader(html)

@@ -107,8 +107,8 @@ OF_UNIT_SIZE = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, 
      (OF_UNIT_SIZE, (0, 0, 3))],
 )  # fmt: skip
 def test_a_motion_is_the_same_in_other_units(scene: Scene, units: Any) -> None:
-    """In the last scene the units of length and time are a metre and a second; only the mass is
-    scaled."""
+    """In the last scene, the core's own units of length and time are a metre and a second, so that
+    only the mass is scaled."""
     one = rl.simulate(scene, TIMES, model="contact")
     other = scene_in_other_units(scene, units)
     again = rl.simulate(other, scaled(TIMES, "s", units), model="contact")

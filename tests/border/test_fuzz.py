@@ -1,4 +1,4 @@
-"""The fuzzer of `tools/fuzz_api.py`: a short run, its coverage, and planted faults it finds."""
+"""The fuzzer `tools/fuzz_api.py`: a short run, its coverage, and planted faults that it finds."""
 
 import inspect
 import subprocess
@@ -18,7 +18,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_short_run_finds_no_fault() -> None:
-    """A short run finds nothing; on failure the assertion shows the lines of each finding."""
+    """If there is a finding, the message of the assertion has the lines that reproduce it."""
     command = [sys.executable, str(TOOLS / "fuzz_api.py"), "--seed", "1", "--calls", str(CALLS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, (
@@ -54,7 +54,7 @@ def test_a_case_is_reproducible() -> None:
 
 
 def test_a_failing_case_is_shrunk(capfd: pytest.CaptureFixture[str]) -> None:
-    """Every motion of a body with restitution is a finding here, and one is printed."""
+    """Here every call of simulate with restitution=1.0 is a finding. Only one is printed."""
     from fuzz.process import Finding
     from fuzz_api import Hunt
 

@@ -1,6 +1,7 @@
-"""Public functions of arrays give the same bits for an array of any layout, and for its rows.
+"""Public functions give bit-identical results for arrays of any memory layout.
 
-Functions of numbers broadcast; each element equals a single call bit for bit.
+Each row of a result equals a single call bit for bit. Functions of numbers broadcast, and each
+element of a result equals a single call bit for bit.
 """
 
 import inspect
@@ -49,7 +50,7 @@ def drawn(form: str) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Call:
-    """A function and its arrays. With `rows`, each row of the arrays makes a single call."""
+    """A function and its arrays. If `rows` is true, it can also be called with each row alone."""
 
     function: Callable[..., Any]
     given: dict[str, Array]
@@ -182,7 +183,7 @@ each_call = pytest.mark.parametrize("name", CALLS)
 
 
 def leaves(result: Any) -> list[Any]:
-    """The numbers, arrays and texts in a result."""
+    """The numbers, arrays and strings in a result."""
     if isinstance(result, Trajectory):
         names = ("t", "x", "z", "theta", "omega", "mode", "q", "q_dot")
         return [getattr(result, name) for name in names]
@@ -214,7 +215,7 @@ def test_results_are_bit_identical_for_every_memory_layout(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name, call in CALLS.items() if call.rows])
 def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None:
-    """The rows take turns in having each of the memory layouts."""
+    """Successive rows have different memory layouts."""
     call, layouts = CALLS[name], list(LAYOUTS.values())
     many = leaves(call.function(**call.given))
     for k in range(COUNT):
@@ -228,11 +229,11 @@ def test_each_row_of_a_batch_equals_a_single_call_bit_for_bit(name: str) -> None
 
 OF_NUMBERS = [name for name in CALLS if name.startswith(("geometry", "impacts.c", "impacts.k"))]
 each_of_numbers = pytest.mark.parametrize("name", [*OF_NUMBERS, "flow", "flow: slope", "classify"])
-SHAPES = ((3, 1, 5), (4, 1), (5,), ())  # of the arguments in turn; together (3, 4, 5)
+SHAPES = ((3, 1, 5), (4, 1), (5,), ())  # of successive arguments; they broadcast to (3, 4, 5)
 
 
 def shaped(name: str, *shapes: tuple[int, ...]) -> dict[str, Array]:
-    """The first numbers of each argument, in these shapes in turn."""
+    """The arguments of a function, reduced to these shapes in turn."""
     sizes = zip(CALLS[name].given.items(), itertools.cycle(shapes))
     return {key: np.resize(values, shape) for (key, values), shape in sizes}
 
@@ -297,7 +298,7 @@ NO_ARRAYS = {"path", "folder", "figure", "figsize", "ax", "workers", "peers", "p
 
 
 def public() -> Iterator[tuple[str, Any]]:
-    """Functions and methods by name, those of public modules behind the module's name."""
+    """Public functions and methods with their names; those of a module have its name in front."""
     for name in (each for each in dir(rl) if not each.startswith("_")):
         thing = getattr(rl, name)
         inside = getattr(thing, "__all__", ()) if inspect.ismodule(thing) else ()
@@ -318,7 +319,8 @@ def takes_arrays(function: Any) -> bool:
 
 
 def test_every_function_that_takes_arrays_is_tested() -> None:
-    """A docstring says array_like, or the annotation of an argument is open, if it takes arrays."""
+    """A function takes arrays if its docstring has the word array_like, or if the annotation of an
+    argument allows an array."""
     found = {name for name, function in public() if takes_arrays(function)}
     assert len(found) > 50
     assert found <= {name.partition(":")[0] for name in CALLS}

@@ -120,7 +120,7 @@ def test_an_object_survives_every_kind_of_copy_unchanged(
     require_same(make(), copied(make()))
 
 
-def test_pickles_hold_no_more_than_needed() -> None:
+def test_cached_values_do_not_enlarge_a_pickle() -> None:
     motion = MOTIONS["contact"]()
     size = len(pickle.dumps(motion))
     for name in ("q", "energy", "r_ddot", "contact_x", "events"):

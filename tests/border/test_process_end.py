@@ -1,4 +1,4 @@
-"""A process can end or fork while one of its threads works, as if the thread did not exist."""
+"""A process can end or fork while one of its threads works, without waiting for that thread."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 from oracles.programs import run
 
 # Calls of every kind: long ones, and short ones that are repeated until the main thread ends.
-# Pictures are left out: matplotlib itself aborts there (a static map of ft2font outlives Python).
+# Pictures are left out, since matplotlib itself aborts (a static map of ft2font outlives Python).
 LONG = {
     "rk4": "simulate(R, [1e5], model='rolling', method='rk4', step=1e-4, **ON)",
     "gauss": "simulate(R, [1e5], model='rolling', method='gauss', step=1e-4, **ON)",
@@ -66,7 +66,7 @@ def test_a_daemon_thread_does_not_block_the_end_of_the_process(call: str, tmp_pa
 
 # A thread is held while it draws a figure. Meanwhile the process forks. The child, in which that
 # thread does not exist, draws the figure of another motion; the alarm ends a child that waits for
-# the thread. test_threads.py reads properties beside a held thread.
+# the thread. test_threads.py reads properties while another thread is held.
 FORK = """
 import os, pickle, signal, sys, threading, types, warnings
 import matplotlib.pyplot as plt

@@ -117,7 +117,7 @@ def test_shared_settings_stay_unchanged_while_a_film_is_written(
 
 
 def test_a_failing_picture_closes_only_its_own_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The failing picture closes its own figure, while another figure is opened beside it."""
+    """A figure that is opened while the failing picture is drawn stays open."""
     mine, usual = [], plt.figure
 
     def beside(**options: Any) -> Figure:

@@ -70,9 +70,10 @@ def test_classes_of_the_stub_have_the_members_of_the_extension() -> None:
 
 
 def test_a_typed_script_with_every_verb_runs(tmp_path: Path) -> None:
-    """mypy --strict reads the script with the tests; here it runs, and misses no verb."""
+    """mypy --strict checks the types of the script. This test runs it, and requires that every verb
+    appears in it."""
     for package in ("scipy", "pandas", "xarray"):
-        pytest.importorskip(package)  # of extras, which the trial of a wheel leaves out
+        pytest.importorskip(package)  # optional; not installed when a wheel is tried out
     assert all(isinstance(number, float | int) for number in use(tmp_path))
     script = inspect.getsource(use)
     for name in rolling_ellipse.__all__:

@@ -1,4 +1,4 @@
-"""Several Python threads get the bits of one thread alone, even from shared objects."""
+"""Several Python threads get the same bits as a single thread, even from shared objects."""
 
 import pickle
 import random
@@ -42,7 +42,7 @@ def all_of(motion: rl.Trajectory) -> list[Any]:
     return [getattr(motion, name) for name in names]
 
 
-# Calls by kind: pure functions of a place, 0 .. PLACES - 1.
+# Calls by kind: pure functions of an integer from 0 to PLACES - 1.
 KINDS: dict[str, Callable[[int], Any]] = {
     "flow": lambda i: rl.flow(0.3 * i, **BODY, theta=0.1, omega=3.2),
     "flow, times": lambda i: rl.flow(TIMES + i, **BODY, theta=0.1, omega=1.0 + i),
@@ -136,7 +136,7 @@ LATE: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("make", LATE.values(), ids=LATE)
 def test_lazily_computed_properties_are_the_same_in_all_threads(make: Callable[[], Any]) -> None:
-    """Threads read the properties of a new object together, each in another order."""
+    """Eight threads read the properties of a new object at the same time, each in its own order."""
 
     def comparable(value: Any) -> Any:
         """The value; for an object of the core, which has no fields in Python, its class."""
@@ -174,7 +174,8 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_computing_a_property_of_one_motion_does_not_block_another_motion(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While a thread is held inside a property, another thread reads that of another motion."""
+    """While one thread is held inside a property of a motion, another thread reads the property of
+    another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, released, usual = Event(), Event(), attrgetter(within)(trajectories)
 

@@ -36,7 +36,8 @@ def numbers(state: InitialState, names: tuple[str, ...] = STATE) -> list[float]:
 
 
 def time_of_blow(motion: Trajectory, rng: np.random.Generator, last: float) -> float:
-    """Any time, that of an event or of the last blow, or the middle of an arc or summed bounces."""
+    """A random time from `last`, the time of the last blow, on. It may be `last` itself, the time
+    of an event, or halfway between two events."""
     times = [last, *(each.t for each in motion.events if each.t >= last), motion.t_end]
     place = int(rng.integers(len(times)))
     middle = (times[place] + times[min(place + 1, len(times) - 1)]) / 2
@@ -90,7 +91,7 @@ def require_chained(scene: Scene, blows: Blows) -> Trajectory:
     assert numbers(event.state_after, names) == numbers(again.initial_state, names)
     ulps = 2 * np.spacing(SPAN)
     assert abs(motion.t_end - (t + after.t_end)) <= ulps and motion.status is after.status
-    alike = min(len(rest), len(after.events))  # an event at the very end may lie just beyond it
+    alike = min(len(rest), len(after.events))  # one motion may end just before the last event
     assert all(SPAN - each.t <= ulps for each in rest[alike:])
     assert all(SPAN - t - each.t <= ulps for each in after.events[alike:])
     for one, other in zip(rest, after.events, strict=False):
@@ -115,8 +116,9 @@ def size_of_energy(scene: Scene, state: InitialState) -> float:
 
 
 def require_balance(motion: Trajectory) -> None:
-    """Require that blow and ground do the work of their impulses on the mean velocities of their
-    points, and that the energy is constant in flight and in rolling without resistance."""
+    """Require that the energy gained in a blow is the work of the impulses of the blow and of the
+    ground, each at the mean velocity of the point where it acts. Also require that the energy is
+    constant in flight and in rolling without resistance."""
     scene, blows = motion.scene, iter(motion.blows)
     for event in motion.events:
         if event.kind is not EventKind.BLOW:
@@ -174,7 +176,7 @@ def test_the_random_blows_strike_in_every_mode_and_at_other_events() -> None:
     assert found == {*Mode.__members__} | extra
 
 
-def test_with_blows_auto_uses_the_contact_model_and_keeps_the_bits_of_rolling() -> None:
+def test_a_motion_with_blows_is_bit_identical_to_rolling_before_the_first_blow() -> None:
     scene = rl.scenes.report
     motion, rolling = rl.simulate(scene, 6.0, blows=REPORT), rl.simulate(scene, 6.0)
     assert motion.model == "contact" and rolling.model == "rolling"
@@ -185,7 +187,7 @@ def test_with_blows_auto_uses_the_contact_model_and_keeps_the_bits_of_rolling() 
 
 
 def test_a_blow_at_the_start_follows_the_blow_of_the_scene() -> None:
-    """Two sticking presses at one point turn the body twice as fast as a single one."""
+    """Two presses of 48 N s at one point turn the body as fast as a single press of 96 N s."""
     struck = rl.scenes.report
     both = struck.replace(impulse=Impulse.press(96.0, 1.5))
     motion = rl.simulate(struck, [0.0, 0.5], blows=((0.0, Impulse.press(48.0, 1.5)),))
@@ -216,7 +218,7 @@ def test_samples_and_sol_show_the_state_after_the_last_blow_of_a_time() -> None:
     )
 
 
-JAMMING = Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)  # Painleve
+JAMMING = Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)  # jams: Painleve's paradox
 
 
 def test_blows_after_an_early_end_are_named_in_the_message() -> None:
@@ -307,7 +309,7 @@ def test_the_losses_of_a_motion_exclude_the_work_of_its_blows() -> None:
     assert energy_error(motion).max() <= 64 * EPS
 
 
-def test_sensitivities_pass_through_a_blow() -> None:
+def test_sensitivities_include_the_effect_of_a_blow() -> None:
     """Derivatives agree with central differences, whose error is of second order in the step."""
     scene, blows = Scene(2.0, 1.0, omega=1.0, friction=0.9), [(0.7, Impulse.press(0.3, 0.5))]
     motion = rl.simulate(scene, [0.5, 1.5], blows=blows)
@@ -317,9 +319,10 @@ def test_sensitivities_pass_through_a_blow() -> None:
     assert slope == pytest.approx((near[1] - near[0]) / 2e-5, rel=1e-8)
 
 
-def test_derivatives_part_by_part_pass_through_blows() -> None:
-    """Eight events make three parts, each with the blows of its own time only. Differences of the
-    whole motion are accurate to 1e-10 of the largest derivative if all neighbours bounce alike."""
+def test_derivatives_of_a_divided_motion_include_the_effects_of_blows() -> None:
+    """The motion, with eight events, is divided into three parts, each with only the blows in its
+    time span. Differences of the whole motion are accurate to 1e-10 of the largest derivative if
+    all neighbouring motions have the same bounces."""
     push = Impulse(jx=0.2, jz=0.1)
     motion = rl.simulate(
         rl.scenes.bounce, [0.5, 1.5, 3.5], blows=[(0.3, push), (1.2, push), (2.7, push)]
@@ -329,6 +332,6 @@ def test_derivatives_part_by_part_pass_through_blows() -> None:
     assert np.abs(parts.value[..., 0] - whole.value).max() <= 1e-10 * np.abs(whole.value).max()
 
 
-def test_the_reason_ends_with_the_first_blow() -> None:
+def test_the_reason_holds_until_the_first_blow() -> None:
     said, alone = (rl.simulate(rl.scenes.report, 6.0, blows=each).reason for each in (REPORT, ()))
     assert said == f"{alone} All of this holds until the blow at t = 2 s."

@@ -139,7 +139,8 @@ def slowed_slide(scene: Scene, side: float) -> Any:
 def slide_in_its_own_clock(
     scene: Scene, start: Any, t0: float, side: float, min_b: float = 0.0, min_c: float = -math.inf
 ) -> Any:
-    """theta, omega, slip and t by SciPy, when the slip vanishes or B or c reaches its bound."""
+    """theta, omega, slip and t at the end of a slide, computed with SciPy. The slide ends when the
+    slip vanishes, or when B or c falls to its bound."""
     forces, rates = slowed_slide(scene, side)
     ends = [
         lambda _, y: side * y[2],
@@ -170,7 +171,7 @@ def test_a_slide_with_a_small_contact_response_lasts_until_lift_off(
     lift, end = motion.events[0], motion.events[0].state_before
     assert lift.kind is EventKind.LIFT_OFF and forces(end.theta, end.omega)[1] > 0.025
     expected = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0, min_c=0.0)
-    # the reference has its tolerance in each of dozens of steps, and at its end
+    # the reference has an error of its tolerance in each of dozens of steps and in its end time
     mine = [end.theta, end.omega, response(scene, end).slip, lift.t]
     assert mine == pytest.approx(list(expected), rel=1e-11)
 
@@ -179,8 +180,8 @@ def test_a_slide_with_a_small_contact_response_lasts_until_lift_off(
 def test_a_slide_may_jam_midway(scene: Scene) -> None:
     """B = c = 0 jams a slide (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
 
-    c vanishes more slowly than B: where SciPy stops, part of c remains, and so do parts of omega
-    and slip, in the fixed ratio in which an impulse of N changes them.
+    c vanishes more slowly than B, so that it is not yet 0 where SciPy stops. Until the jam, omega
+    and the slip still change, in the fixed ratio in which an impulse of N changes them.
     """
     motion = simulate(scene, 5.0, model="contact")
     assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
@@ -216,8 +217,10 @@ NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
 
 
 @pytest.mark.parametrize(("a", "b", "friction", "slip"), NO_JAMS)
-def test_a_slip_ends_just_before_a_jam(a: float, b: float, friction: float, slip: float) -> None:
-    """Near B = 0 the impulse of N takes no time: omega and the remaining energy follow from it."""
+def test_a_slip_may_end_just_before_the_body_would_jam(
+    a: float, b: float, friction: float, slip: float
+) -> None:
+    """Near B = 0 the normal force acts like an impulse, which ends the slip in almost no time."""
     body = Scene(a, b, friction=friction)
     response_of = slowed_slide(body, 1.0)[0]
     angles = np.linspace(0.0, math.pi / 2, 10001)
@@ -243,8 +246,8 @@ def test_a_slip_ends_just_before_a_jam(a: float, b: float, friction: float, slip
 @pytest.mark.parametrize("short", [1e-3, 1e-5, 1e-7, 1e-9])
 @pytest.mark.parametrize("slope", [0.0, 0.02])
 def test_short_slips_are_detected(slope: float, short: float) -> None:
-    """The friction is below the largest |F|/N of rolling by a fraction `short`. The slip lasts in
-    proportion to the square root of that fraction, down to microseconds."""
+    """The friction is below the largest |F|/N of rolling by a fraction `short`. The duration of the
+    slip is proportional to the square root of that fraction, down to microseconds."""
     rolling = Scene(2.0, 1.0, omega=3.2, slope=slope)
     times = np.linspace(0, 0.9, 200_001)
     needed = simulate(rolling, times, model="contact").friction_needed
@@ -258,7 +261,7 @@ def test_short_slips_are_detected(slope: float, short: float) -> None:
 
 
 def test_large_friction_approaches_the_infinite_limit() -> None:
-    """mu = 10^3, 10^4.5 and 10^6 approach the limit like 1/mu, in a slide that starts at N = 0."""
+    """In a slide that starts at N = 0, the difference from the limit falls as 1/mu."""
     times = np.linspace(0, 0.35, 351)
     scene = Scene(2.0, 1.0, omega=5.0)
     limit = simulate(scene, times)
@@ -277,7 +280,7 @@ def test_large_friction_approaches_the_infinite_limit() -> None:
 
 def test_only_a_slipping_contact_jams() -> None:
     """A jam requires slip: without slip the contact acceleration always has a solution. Slides end
-    before two motions become possible, and no impact leads to a state with two of them."""
+    before two motions become possible, and no impact leads to a state with two possible motions."""
     jams = 0
     for scene, motion in random_motions(1000, 31, friction=3.0, restitution=0.0):
         assert "two motions" not in motion.message or motion.t_end == 0
@@ -426,8 +429,8 @@ def test_leaving_the_ground_does_not_count_as_slipping() -> None:
 @pytest.mark.parametrize("theta", [-3e15, 1e16, 1e22, -1e50])
 @pytest.mark.parametrize("omega", [0.5, 3.0])
 def test_whole_half_turns_of_the_angle_do_not_change_the_motion(theta: float, omega: float) -> None:
-    """An angle far from zero and its remainder modulo pi give the same slides, jumps and rolls, to
-    within a few roundings of the angle and at most 40 of the time."""
+    """An angle far from zero and its remainder modulo pi give the same events, at the same times to
+    within 40 roundings and at the same angles."""
     with mp.workdps(400):
         rest = float(mp.mpf(theta) - mp.nint(mp.mpf(theta) / mp.pi) * mp.pi)
     near = Scene(1.0, 0.2, theta=rest, omega=omega, friction=0.6, restitution=0.5, x_dot=2.0)
@@ -468,7 +471,7 @@ def test_a_flight_too_fast_for_doubles_is_reported() -> None:
 
 @pytest.mark.parametrize("theta", [1e-101, -1e-150, 1e-235, -5e-324])
 @pytest.mark.parametrize("omega", [-30.0, 30.0, 1e6])
-def test_infinite_friction_acts_near_the_flat_position_as_it_does_there(
+def test_infinite_friction_acts_alike_at_and_near_the_flat_position(
     theta: float, omega: float
 ) -> None:
     """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""

@@ -20,12 +20,12 @@ from rolling_ellipse import EventKind, Scene, Status, simulate
 
 STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 VALUES = ("t", *STATE)
-UNITS = 8  # claimed largest error, in units of the table
+UNITS = 8  # claimed bound of the errors, in units of the table
 
 
 class Motion(NamedTuple):
-    """A scene and its events and states, up to its end: their kinds, their values as decimal text
-    (n, 7) and their units (n, 7)."""
+    """A scene with the kinds of its events and states, their values as decimal text (n, 7), and
+    their units (n, 7)."""
 
     name: str
     scene: Scene
@@ -35,8 +35,8 @@ class Motion(NamedTuple):
 
     @property
     def rounding(self) -> NDArray[np.float64]:
-        """Rounding of a state of doubles (n, 7): theta is known to an ulp or two, on which h, h'
-        and their rates depend."""
+        """Rounding errors of states in doubles (n, 7). An error of theta by two ulps also changes
+        h, h' and their rates."""
         scene, values = self.scene, np.array(self.values, float)
         ulp: NDArray[np.float64] = np.spacing(np.abs(values))
         theta, omega = values[:, 1], np.abs(values[:, 2])
@@ -75,8 +75,8 @@ def shares(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
 
 @each_motion
 def test_events_and_states_agree_with_a_30_digit_reference(motion: Motion) -> None:
-    """Kinds of events agree, and times and states have the claimed accuracy. A jam at the start
-    (end = 0) also ends a simulation of 1 s."""
+    """Kinds of events agree, and times and states have the claimed accuracy. Motions with a jam are
+    simulated for 1 s, and must end at the jam."""
     rows = zip(motion.kinds, motion.values, strict=True)
     times = [float(values[0]) for kind, values in rows if kind == "state"]
     jams = "jam" in motion.kinds
@@ -92,7 +92,7 @@ def test_events_and_states_agree_with_a_30_digit_reference(motion: Motion) -> No
 
 
 def test_an_error_of_1e_11_is_detected() -> None:
-    """The check is sharp: an error of 1e-11 in a value of a first event exceeds ten bounds."""
+    """An error of 1e-11 in any value of a first event is more than ten times its bound."""
     for motion in MOTIONS:
         values = np.array(motion.values, float)
         off = shares(motion, (values + 1e-11 * np.maximum(np.abs(values), 1)).tolist())
@@ -106,7 +106,7 @@ def test_the_tables_cover_all_kinds_of_events_and_bodies() -> None:
     least = {"slip": 30, "stick": 30, "reverse": 8, "lift_off": 12, "impact": 80}
     least |= {"rest": 3, "jam": 4, "state": 60}
     assert {kind: min(kinds.count(kind), count) for kind, count in least.items()} == least
-    # A blow begins another motion: test_blows_in_motion.py compares it with that of its scene.
+    # test_blows_in_motion.py compares the motion after a blow with a motion that starts with it.
     kinds_known = {kind.name.lower() for kind in EventKind.__members__.values()}
     assert kinds_known - {"blow"} == set(least) - {"state"}
     scenes = [one.scene for one in MOTIONS]

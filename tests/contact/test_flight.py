@@ -31,7 +31,8 @@ class Gap:
         )
         self.weight = np.longdouble(scene.gravity) * np.cos(np.longdouble(scene.slope))
         if abs(self.z - support(self.theta, self.a, self.b).h) <= 8 * EPS * self.z:
-            at = support(self.theta, self.a, self.b)  # a touching body touches exactly
+            # the body is in contact: remove the rounding of z and z_dot
+            at = support(self.theta, self.a, self.b)
             self.z_dot += at.slope * self.omega - np.longdouble(
                 support(start.theta, scene.a, scene.b).slope * start.omega
             )
@@ -99,7 +100,8 @@ def test_random_flights_end_at_their_first_touch() -> None:
 @pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("omega", [8.0, -40.0, 700.0])
 def test_a_graze_is_distinguished_from_a_miss(omega: float, miss: float) -> None:
-    """A tip `miss` above the ground passes and lands later; a tip `miss` below it has landed."""
+    """If a tip passes at the height `miss`, the body lands later. If it would pass at a depth of
+    `miss`, the body has landed before."""
     landings = []
     for offset in (miss, -miss):
         gap = Gap(Scene(2.0, 1.0, theta=0.3, omega=omega, z=3.0, z_dot=1.0))
@@ -171,8 +173,8 @@ def test_a_body_spinning_too_fast_for_the_resolution_of_time_still_lands(
     b: float, restitution: float
 ) -> None:
     """Bounces down a steep slope grow until a body turns by more than half a turn between two
-    doubles of time. The body lands without a gain of energy, to within roundings of its two
-    parts."""
+    doubles of time. A landing does not increase the energy, to within the rounding of the kinetic
+    and the potential energy."""
     scene = Scene(1.0, b, theta=3.54, omega=-1e-3, slope=-1.5, restitution=restitution)
     motion = simulate(scene, [0.0, 1e20], model="contact")
     times = [event.t for event in motion.events]
@@ -218,9 +220,9 @@ def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) ->
 def test_elastic_impacts_neither_gain_nor_lose_energy(
     a: float, b: float, theta: float, omega: float, z: float
 ) -> None:
-    """Impacts change the energy by less than 2e-17 each on average, a tenth of a rounding: the time
-    of contact is the nearest double, early as often as late. Rounding it up would gain 5e-17 to
-    2e-16 at each impact."""
+    """Impacts change the energy by less than 2e-17 each on average, a tenth of a rounding. The time
+    of contact is rounded to the nearest double, which is early as often as it is late. If it were
+    rounded up, each impact would gain 5e-17 to 2e-16."""
     impacts = 50_000
     scene = Scene(a, b, theta=theta, omega=omega, z=z, friction=0.0, restitution=1.0)
     motion = simulate(scene, 1e9, model="contact", max_events=impacts, raise_on_failure=False)
@@ -232,8 +234,8 @@ def test_elastic_impacts_neither_gain_nor_lose_energy(
 @pytest.mark.parametrize("theta", [0.3, 1e5])
 @pytest.mark.parametrize("slope", [0.0, -0.768, 0.4])
 def test_equal_hops_of_a_circle_add_no_roundings(slope: float, theta: float) -> None:
-    """Without friction impacts change neither spin nor path. The bound is a rounding of each input
-    and of the result for any number of hops, although equal hops round alike."""
+    """Without friction, impacts change neither omega nor x_dot. The bound covers one rounding of
+    each input and of the result, although equal roundings of equal hops could add up."""
     radius, fall, speed = 0.039, GRAVITY * math.sin(slope), -0.0357
     scene = Scene(
         radius, radius, slope=slope, theta=theta, omega=-7.99, x_dot=speed, z_dot=1.1e-3,

@@ -14,7 +14,7 @@ from oracles.numbers import EPS
 from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, geometry, simulate
 
 BODIES = [(2.0, 1.0), (1.0, 1.3), (1.0, 30.0)]
-ULPS = [-3, -1, 0, 1, 3]  # ulp of omega^2, off its value at c = 0
+ULPS = [-3, -1, 0, 1, 3]  # differences of omega^2 from its value at c = 0
 GRAZES = 2.0**-21  # [rad], twice the longest flight that is too short to resolve
 
 
@@ -38,7 +38,7 @@ def lowest(moving: Trajectory) -> float:
 @pytest.mark.parametrize("ulps", ULPS)
 @pytest.mark.parametrize(("a", "b"), BODIES)
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_tip_on_the_verge_of_lift_off_stays_on_ice(
+def test_a_weightless_tip_stays_on_frictionless_ground(
     a: float, b: float, ulps: int, side: int, restitution: float
 ) -> None:
     """The body slides on without friction and keeps (k^2 + h'^2) omega^2/2 + g h."""

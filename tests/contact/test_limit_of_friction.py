@@ -20,7 +20,7 @@ PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, star
 
 
 def needed(a: float, b: float, theta: float, omega: float) -> float:
-    """Friction that rolling needs at the start, |F|/N, by the oracle."""
+    """Friction |F|/N that rolling needs at the start, computed by the oracle."""
     on = motion(*(np.array([value]) for value in (a, b, (a * a + b * b) / 4, 9.81, theta, omega)))
     found = forces(on, *reduced([theta], a, b))
     return float(abs(found.friction[0]) / found.normal[0])
@@ -51,7 +51,7 @@ def test_a_body_at_the_friction_limit_moves_as_it_does_just_off_the_limit(
 @pytest.mark.parametrize("slope", [0.2, -0.9])
 @pytest.mark.parametrize("omega", [0.0, 1e-9, -1e-9])
 def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, ulps: int) -> None:
-    """Where h' = h tan(alpha) the body stays or rocks about the position, and hardly slips."""
+    """At the angle with h' = h tan(alpha) the body rests, or rocks and slips very little."""
     a, b, incline = 9.0, 1.0, math.tan(slope)
     c2 = a * a - b * b
     theta = math.atan(2 * incline * b * b / (c2 + math.sqrt(c2**2 - (2 * a * b * incline) ** 2)))
@@ -59,7 +59,8 @@ def test_just_enough_friction_holds_an_equilibrium(slope: float, omega: float, u
     scene = Scene(a, b, slope=slope, theta=theta, omega=omega, friction=friction)
     moving = simulate(scene, 10.0, model="contact", max_events=100)
     assert moving.status is Status.COMPLETED
-    # 1e-9 rad/s over the rate of rocking, some 1/s, or 1e-9 rad/s for 10 s without any restraint
+    # the amplitude of rocking is 1e-9 rad/s divided by a rate of some 1/s; without a restoring
+    # couple, the body turns at 1e-9 rad/s for 10 s
     assert np.max(np.abs(moving.theta - theta)) <= 1e-8
     assert np.all(np.isin(moving.mode, [Mode.ROLLING, Mode.SLIDING, Mode.REST]))
 

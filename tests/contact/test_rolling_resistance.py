@@ -1,7 +1,8 @@
 """Bodies whose normal force acts a lever ahead of the contact: its couple opposes the rotation.
 
 The laws are checked against all modes that a contact could have, and against the work of the
-couple. test_contact_reference.py judges whole motions in 30 digits, including turns and discs.
+couple. test_contact_reference.py compares whole motions with references of 30 digits, including
+motions of discs and motions whose rotation reverses.
 """
 
 import itertools
@@ -60,7 +61,8 @@ def allowed(scene: Scene, slip: float) -> list[Answer]:
 
 
 def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
-    """There are 1500 states, half without rotation and half without slip, none in flight."""
+    """About half of the 1500 states have no rotation, and half have no slip. Those that could fly
+    are skipped."""
     random = np.random.default_rng(7)
     taken = {mode: 0 for mode in Mode}
     for _ in range(1500):
@@ -99,7 +101,7 @@ def test_the_contact_takes_the_only_mode_that_its_laws_allow() -> None:
     ("friction", "lever", "theta", "inertia"),
     [(0.0, 0.5, -0.08463, 0.01), (1.33, 0.05, 0.62, None)],
 )
-def test_a_lever_alone_can_jam_a_light_body(
+def test_rolling_resistance_alone_can_jam_a_light_body(
     friction: float, lever: float, theta: float, inertia: float | None
 ) -> None:
     """It jams if k^2 + h'(h' - s mu h + s' delta) <= 0; without friction delta > 2 k."""
@@ -141,11 +143,11 @@ def test_the_energy_lost_in_rolling_is_the_work_of_the_couple(friction: float) -
         at = motion.sol(begin + (nodes + 1) / 2 * (end - begin))
         work += 0.03 * (end - begin) / 2 * float(weights @ (at.normal_force * np.abs(at.omega)))
     lost = motion.energy[0] - motion.energy[-1]
-    # 160 nodes err by less than the roundings of a half swing, which are those of m g h
+    # the error of the quadrature in each half swing is below the roundings of the energy
     assert lost == pytest.approx(work, abs=64 * EPS * motion.energy[0] * len(ends))
 
 
-def test_energy_never_grows_and_a_rocking_body_ends_askew() -> None:
+def test_energy_never_grows_and_a_rocking_body_comes_to_rest_at_an_angle() -> None:
     motion = simulate(ROCKING, np.linspace(0.0, 70.0, 7001))
     (rest,) = motion.events
     assert rest.kind is EventKind.REST
@@ -185,6 +187,6 @@ def test_a_motion_can_be_restarted_from_any_of_its_states(scene: Scene) -> None:
         assert rest.theta[-1] == pytest.approx(whole.theta[-1], abs=1e5 * EPS)
 
 
-def test_certificates_prove_nothing_with_a_lever() -> None:
+def test_certificates_prove_nothing_with_rolling_resistance() -> None:
     assert certify(ROCKING).validity is Validity.NO_PROOF
     assert "resistance" in certify(ROCKING).reason

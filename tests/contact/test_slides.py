@@ -3,7 +3,7 @@
 With s the sign of the slip, per unit mass: N = z'' + g cos(alpha) and F = -s mu N integrate to
     x' = x0' - s mu (h' omega - h0' omega0 + g cos(alpha) t) + g sin(alpha) t,
     x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2.
-test_contact_reference.py judges omega in 30 digits.
+test_contact_reference.py compares omega with references of 30 digits.
 """
 
 import math
@@ -37,14 +37,14 @@ def slides(count: int, seed: int, **given: Any) -> list[tuple[Scene, Trajectory]
 
 
 def friction_share(scene: Scene, motion: Trajectory) -> float:
-    """-mu s: slip may start from zero, so its sign is taken in the middle."""
+    """-mu s, where s is the sign of the slip in the middle: the slip may be 0 at the start."""
     h = support(float(motion.theta[20]), scene.a, scene.b)[0]
     return -math.copysign(scene.friction, motion.x_dot[20] - h * motion.omega[20])
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.2, -0.4])
 def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
-    """Each term is rounded, and theta, an argument of all terms, has errors of some ulp."""
+    """The bounds cover the rounding of each term and errors of theta by a few ulps."""
     for scene, motion in slides(20, seed=5, slope=slope):
         assert set(motion.mode) == {Mode.SLIDING}
         start = scene.initial_state
@@ -85,9 +85,9 @@ def test_a_frictionless_slide_conserves_energy() -> None:
 def test_a_frictionless_slide_creeps_over_the_tip_at_every_pass(
     a: float, b: float, theta: float, creep: float
 ) -> None:
-    """Each pass of the tip has the same omega as the first: the energy has few roundings there,
-    although the centre falls by the difference of the axes in between. The bound allows a few
-    roundings of omega, and missing the tip by 1e-15, the spacing of doubles there."""
+    """Each pass over the tip has the same omega as the first, although the centre falls by the
+    difference of the semi-axes between the passes. The bound allows for a few roundings of omega,
+    and for an error of the angle by 1e-15, the spacing of doubles near it."""
     scene = Scene(a, b, theta=theta, omega=creep, x_dot=1.0, friction=0.0)
     motion = simulate(scene, 60.0, model="contact")
     times = [float(motion.when(theta=theta + k * math.pi)[0]) for k in (1, 2, 3)]
@@ -107,8 +107,8 @@ THIN = (
          "x_dot": (-0.2339955212093542957774162, 3.66e-16),
          "z_dot": (3.670624592798674701299433, 5.69e-15)},
     ),
-    # Before it vanishes, the slip is a thousand times larger than x_dot and h omega are then. With
-    # the roundings of its largest value it would be off by 1.4e-14.
+    # The slip reaches a thousand times the values that x_dot and h omega have when it vanishes.
+    # The roundings of this largest slip would cause errors of 1.4e-14.
     (
         Scene(1.0, 0.0016, inertia=0.0044, friction=0.0037, theta=0.63, omega=-3e-4),
         0.36, ["REVERSE", "REVERSE"], 2,
@@ -160,8 +160,8 @@ NEAR_A_JAM = (
 def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], t: float) -> None:
     """B falls below 1e-11, and in the first two slides rises again before the slip vanishes.
 
-    The numbers come from reference/impulse_clock.py in 45 digits. A start in doubles has their
-    roundings; each of about 60 pieces adds one of random sign."""
+    The numbers come from reference/impulse_clock.py in 45 digits. The start is rounded to doubles,
+    and each of about 60 pieces adds a rounding of random sign."""
     end = simulate(Scene(**given), 1.0, raise_on_failure=False).events[0]
     assert end.kind is EventKind.STICK
     assert abs(end.t - t) <= 8 * EPS * t
@@ -172,8 +172,8 @@ def test_a_slide_near_a_jam_stays_accurate(given: Any, known: dict[str, float], 
 def test_the_timing_of_a_light_body_rocking_near_a_jam_stays_accurate() -> None:
     """The body makes about twenty swings in 0.3 s, and B nearly vanishes at the end of each.
 
-    The numbers are those of reference/contact_motion.py in 42 digits. Eight roundings of the time
-    turn the body by 1.5 rad/s and change omega by 600 rad/s^2 in each of them."""
+    The numbers are those of reference/contact_motion.py in 42 digits. The tolerances are eight
+    roundings of the time, multiplied by the rates of change 1.5 rad/s and 600 rad/s^2."""
     light: dict[str, Any] = {"inertia": 2.67e-4, "friction": 0.412, "slope": -0.41}
     scene = Scene(0.25, 1.0, theta=1.542, omega=-1.4, x_dot=-0.5, **light)
     motion = simulate(scene, [0.3], model="contact")
@@ -206,8 +206,9 @@ def test_a_slide_takes_few_steps() -> None:
 
 
 def test_a_slide_is_smooth_where_its_pieces_meet() -> None:
-    """Samples lie closer together than any piece: second differences are h^2 times the second
-    derivative of a smooth function, plus the rounding of three samples."""
+    """The spacing of the samples is shorter than any piece. Second differences are the square of
+    the spacing times the second derivative of a smooth function, plus the rounding of three
+    samples."""
     step = 1e-5
     times = np.arange(0.0, 1.4, step)
     motion = simulate(scenes.slip, times, model="contact")
@@ -221,9 +222,9 @@ def test_a_slide_is_smooth_where_its_pieces_meet() -> None:
 
 @pytest.mark.parametrize("theta", [1e-8, 1e-12, 1e-13, 1e-16, 1e-20, 1e-30, 1e-80])
 def test_a_slide_with_almost_no_contact_response_sticks_at_once(theta: float) -> None:
-    """Infinite friction turns a nearly flat body by 1/B, and B is proportional to theta: it sticks
-    within a time proportional to theta, as after an impulse along the ground, J = 1/(1/m + h^2/I)
-    of the slip.
+    """Infinite friction accelerates a nearly flat body in proportion to 1/B, and B is proportional
+    to theta. The body sticks within a time proportional to theta, as after an impulse along the
+    ground of 1/(1/m + h^2/I) times the slip.
 
     Until then the body turns by less than 2 theta, which changes no velocity by more than that; the
     rest is rounding. The highest powers of 1/theta in the series would overflow.
@@ -258,7 +259,8 @@ def spinning_on_a_slope(rng: np.random.Generator, roundness: float) -> Scene:
 def test_a_nearly_round_body_leaves_a_slope_where_its_normal_force_vanishes(
     roundness: float,
 ) -> None:
-    """The centre falls evenly; the body lifts off where g cos(alpha) + h'' omega^2 = 0."""
+    """The centre accelerates uniformly along the slope. The body lifts off where
+    g cos(alpha) + h'' omega^2 = 0."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     left = 0
     for scene in (spinning_on_a_slope(rng, roundness) for _ in range(60)):
@@ -291,7 +293,7 @@ def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
     """The ball slides mu g t^2/2 at the speed mu g t until a omega equals x', a factor 1 + k^2/a^2
     earlier than the time at which friction would end the spin. The remaining spin is a difference,
     exact to its roundings."""
-    spin_end = 2.0  # time at which a omega alone would vanish
+    spin_end = 2.0  # time at which friction would end the spin
     omega = 2 * turned / spin_end
     friction = omega / spin_end * k2 / GRAVITY
     scene = Scene(1.0, 1.0, inertia=k2, friction=friction, omega=omega, x_dot=0.0)
@@ -308,7 +310,7 @@ def test_a_sliding_ball_accelerates_uniformly_however_far_it_turns(
 
 
 def test_the_centre_moves_uniformly_without_friction() -> None:
-    """x_dot is constant to the last bit, and x = x0 + x_dot t: it contains no sum with h omega."""
+    """x_dot is constant to the last bit, and x = x0 + x_dot t. Neither is a sum with h omega."""
     motions = slides(40, 31, friction=0.0, slope=0.0)
     for scene, motion in motions:
         start = scene.initial_state.x_dot

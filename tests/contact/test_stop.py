@@ -28,7 +28,7 @@ def followed(scene: Scene, t: Any, **how: Any) -> rl.Trajectory:
 @pytest.mark.parametrize("kinds", KINDS)
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], count: int) -> None:
-    """Up to the stop it has the bits of the motion that does not stop."""
+    """The events up to the stop equal those of the motion without a stop, bit for bit."""
     stopped = 0
     for scene in SCENES:
         whole = followed(scene, LONG, model="contact")
@@ -52,14 +52,15 @@ def test_a_motion_stops_after_all_events_of_the_instant(kinds: tuple[str, ...], 
 
 
 def test_samples_end_at_the_stop() -> None:
-    """An end time, also an infinite one, gives 1001 even samples; given times are cut."""
+    """Any end time, even inf, gives 1001 evenly spaced samples up to the stop. Of a list of times,
+    those after the stop are dropped."""
     to_the_end, cut = (rl.simulate(THROWN, t, stop="impact") for t in (math.inf, [0.1, 0.5, 0.7]))
     assert to_the_end.t.size == 1001 and to_the_end.t[-1] == to_the_end.t_end == to_the_end.span
     assert np.all(np.abs(np.diff(to_the_end.t, 2)) <= 2 * EPS)
     assert cut.t.tolist() == [0.1, 0.5] and cut.t_end == to_the_end.t_end
 
 
-def test_kinds_may_be_named_in_any_way() -> None:
+def test_event_kinds_are_accepted_as_names_or_members() -> None:
     ways: list[Any] = ["IMPACT", "impact", EventKind.IMPACT, [EventKind.IMPACT], ("Impact",)]
     assert len({rl.simulate(THROWN, math.inf, stop=way).t_end for way in ways}) == 1
 
@@ -97,7 +98,7 @@ def test_a_motion_that_cannot_reach_its_stop_is_reported_at_once(
     assert last.status.tolist() == ["NEVER"] and last.t.tolist() == [t] and not last.errors
 
 
-def test_a_later_blow_keeps_the_stop_possible() -> None:
+def test_a_motion_with_a_later_blow_may_still_reach_its_stop() -> None:
     blows = [(2.0, Impulse(jz=30.0))]
     stopped = rl.simulate(rl.scenes.report, math.inf, stop="impact", blows=blows)
     assert stopped.events[-1].kind is EventKind.IMPACT and stopped.t_end > 2.0
@@ -139,7 +140,8 @@ def effects_of_roundings(at: rl.Ends, end: float) -> Any:
 
 
 def test_a_batch_in_five_pieces_equals_one_run() -> None:
-    """They agree within 8 units: sums of the effects of rounding all intermediate states."""
+    """The final states agree within 8 units. A unit is the sum of the changes of the final states
+    when the numbers of each intermediate state are rounded."""
     end = 6.0
     whole, last = rl.ends(SCENES, end), rl.ends(SCENES, 0.0)
     unit = effects_of_roundings(last, end)
@@ -165,7 +167,7 @@ def test_a_motion_with_too_many_events_can_be_continued() -> None:
     assert part.largest_impulse[0] == pytest.approx(whole.largest_impulse[0], rel=1e-14)
 
 
-def test_a_slide_that_starts_without_steps_left_is_not_endless() -> None:
+def test_a_slide_that_starts_without_steps_left_ends_with_max_steps() -> None:
     """As without a stop, MAX_STEPS is reported for every number of steps that is too small."""
     scene = Scene(3.6, 0.7, theta=-2.7, slope=0.4, friction=0.5)
     whole = followed(scene, 3.0, model="contact")
@@ -175,7 +177,7 @@ def test_a_slide_that_starts_without_steps_left_is_not_endless() -> None:
         assert followed(scene, 3.0, **how).status is Status.MAX_STEPS, steps
 
 
-def test_a_motion_too_fast_for_doubles_stays_as_it_is() -> None:
+def test_a_motion_too_fast_for_doubles_is_not_continued() -> None:
     """It has no state to continue from, and keeps its events, time and exception."""
     fast = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
     at = rl.ends([fast, THROWN], [1e300, 1.0])

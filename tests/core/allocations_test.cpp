@@ -1,4 +1,5 @@
-// Steps and samples allocate nothing: twice as many cause no more allocations.
+// Steps and samples allocate no memory, apart from the growth of the vectors that store the steps.
+// To show this, the test counts allocations for some number of them and for twice as many.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -85,8 +86,8 @@ const Job sampled[] = {
     {"a slide", skidding(0.1, 0.0, 3.0, 0.1), settings_of(Model::contact, Method::automatic), 1.0},
 };
 
-// The knots and the dense output are in two vectors that double their size, so that twice as many
-// steps cause one more allocation in each.
+// The knots and the dense output are stored in two vectors, which double their capacity when full.
+// Twice as many steps therefore cause at most one more allocation in each vector.
 void steps_allocate_nothing() {
     constexpr long vectors = 2;
     for (const Job& job : stepped) {
@@ -104,7 +105,8 @@ void steps_allocate_nothing() {
     }
 }
 
-// Takes twice as many samples of the same segments, each of which may allocate once.
+// Takes samples, then twice as many samples of the same segments. Each segment may allocate once
+// per call.
 template <class Sample>
 void kind_of_sample(const Job& job, const Solution& solution) {
     const Sampler sampler(solution.motion, 1000);

@@ -1,4 +1,4 @@
-// Parts of the core that Python does not reach, and the core as used by a C++ program.
+// Tests parts of the core that Python does not call, and the use of the core in a C++ program.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -52,7 +52,7 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// Elimination permutes the rows; all multipliers are halves, so that no operation rounds.
+// Elimination permutes the rows; all multipliers are 0 or 1/2, so that no operation rounds.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
@@ -62,8 +62,8 @@ void equations_are_solved_whatever_their_order(Number unit) {
     CHECK(!LU<Number, 3>(0.0 * rows).solve(right).allFinite());
 }
 
-// The polynomial is negative from 0.25 to 0.75; with a constant added, it only touches zero, or is
-// negative only near 0.5.
+// The polynomial is negative between 0.25 and 0.75. With one constant added, it only touches zero;
+// with a slightly smaller one, it is negative only near 0.5.
 void the_first_place_where_a_polynomial_is_negative() {
     const Polynomial<2> dips = polynomial(-0.25, 1.0) * polynomial(-0.75, 1.0);
     const auto place = first_negative(bernstein(dips));

@@ -12,7 +12,7 @@
 
 namespace rolling_ellipse {
 
-// The 2:1 elliptical disc of 10 kg.
+// A 2:1 elliptical disc of 10 kg on level ground.
 inline Scene ellipse(double theta, double omega, double friction = infinity) {
     Scene scene{};
     scene.a = 2.0;

@@ -1,10 +1,10 @@
-"""The C++ programs, in a second build of the core without optimisation.
+"""Tests with the C++ programs from a second build of the core, without optimisation.
 
-This build must agree with the installed extension bit for bit: motions of every model and answers
-of every proof (golden.cpp) are compared with those of the extension, and with the committed ones
-(golden.txt) if the C library is the same. Another version of the library, or the same one on a
-processor without fused multiply-add, rounds sin, cos, exp and log differently; then the bound of
-oracles/golden.py holds.
+This build must agree with the installed extension bit for bit in the motions of every model and the
+results of every proof (golden.cpp). They must also equal the committed records (golden.txt) if the
+C library is the same. Another version of the library, or the same one on a processor without fused
+multiply-add, rounds sin, cos, exp and log differently; then the differences must stay within the
+bound of oracles/golden.py.
 """
 
 import os
@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """Path of a program next to the interpreter (from the test extra), else the system's."""
+    """Path of a program: next to the interpreter (from the test extra), otherwise on the PATH."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 
@@ -48,7 +48,7 @@ def run(*command: str) -> str:
 
 @pytest.fixture(scope="module")
 def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the programs; one core builds them in a minute."""
+    """Build the programs, which takes one core a minute; return their folder."""
     cmake, ninja = found("cmake"), found("ninja")
     compiler = os.environ.get("CXX") or found("c++") or found("g++") or found("clang++")
     for name, program in {"CMake": cmake, "C++ compiler": compiler}.items():
@@ -79,7 +79,7 @@ def test_every_core_program_passes(program: str, build: Path) -> None:
     assert "all hold" in run(str(build / program))
 
 
-def test_the_second_build_equals_the_committed_records(second: Build) -> None:
+def test_the_second_build_agrees_with_the_committed_records(second: Build) -> None:
     library, records = second
     worst, where = difference(RECORDS, records)
     print(library, worst, where)
@@ -89,7 +89,7 @@ def test_the_second_build_equals_the_committed_records(second: Build) -> None:
 def test_a_c_library_that_rounds_differently_stays_within_the_bound(
     build: Path, second: Build
 ) -> None:
-    """glibc without fused multiply-add rounds as on a processor that has none."""
+    """GLIBC_TUNABLES makes glibc round as on a processor without fused multiply-add."""
     library, records = printed(build / "golden", GLIBC_TUNABLES="glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4")
     if library == second[0]:
         pytest.skip(f"{library} has one rounding only")
@@ -118,7 +118,7 @@ def compare(mine: list[Record], through_python: list[Record], bound: float) -> N
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_motions_computed_through_python_stay_within_the_bound(name: str) -> None:
-    """The bound applies, since without a compiler the bits of this C library are unknown."""
+    """Without a compiler the bits of this C library are unknown, so that only the bound applies."""
     motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
 

@@ -1,5 +1,6 @@
-"""Answers to the tasks of the course by closed forms, Newton's law, and SciPy's quadratures, roots
-and least squares. Wrong answers follow from the same formulas with the mistakes in them."""
+"""Answers to the tasks of the course, computed from closed forms and Newton's law, with SciPy's
+quadrature, root finding and least squares. Wrong answers come from the same formulas with typical
+mistakes."""
 
 import math
 from functools import cache
@@ -24,13 +25,13 @@ THROWN = {
     "restitution": 0.55, "friction": 0.18,
 }  # fmt: skip
 NOISE = np.array([[5e-4], [5e-4], [0.01]])
-SOLID = (0.035**2 + 0.025**2) / 4  # k^2 of its body
+SOLID = (0.035**2 + 0.025**2) / 4  # k^2 of the filmed body, a uniform disc
 USUAL = (
     "sign", "degrees", "DEGREES", "inertia", "friction", "angle", "small", "torque", "freedom",
 )  # fmt: skip
 PLAIN = dict.fromkeys((*STATE, "slope", "restitution", "jx", "jz", "dx", "dz"), 0.0)
 PLAIN |= {"a": 1.0, "b": 1.0, "mass": 1.0, "friction": 1e10}  # friction that prevents any slip
-PLAIN |= {"torque": False}  # whether I_C omega_dot is taken for the moment about the contact
+PLAIN |= {"torque": False}  # True for the mistake of setting the moment about C to I_C omega_dot
 
 
 @cache
@@ -39,7 +40,7 @@ def tasks_of(seed: int | None) -> dict[str, course.Task]:
 
 
 class Given(SimpleNamespace):
-    """The data of a task, completed by default values of a scene."""
+    """The data of a task, completed with default values of a scene."""
 
     def __init__(self, number: str, seed: int | None = None, **changes: Any) -> None:
         known: dict[str, Any] = PLAIN | tasks_of(seed)[number].data | changes
@@ -77,8 +78,8 @@ class Given(SimpleNamespace):
         return float(4 * quad(lambda q: 1 / self.speed(q, lift), 0, end)[0])
 
     def rocked(self) -> float:
-        """Time from release to rest, integrated from stop to stop, where the couple against the
-        rotation changes its direction or holds the body."""
+        """Time from release to rest. Each swing is integrated until the rotation stops. There the
+        couple against the rotation changes its direction, or holds the body at rest."""
         angle, now, lever = self.theta, 0.0, self.rolling_resistance
         while abs(self.at(angle)[1]) > lever:
             turn = -math.copysign(1, self.at(angle)[1])
@@ -115,7 +116,7 @@ class Given(SimpleNamespace):
         return x, z, v[0] + x / self.mass, v[1] + z / self.mass, v[2] - arm / self.inertia
 
     def pushed(self) -> float:
-        """Angular velocity after a push along the ground, which either holds the body or is ice."""
+        """Angular velocity after a push on ground that prevents slip or has no friction."""
         push = self.jx * (self.at(self.theta)[0] + self.dz) / self.mass
         return float(push / self.about_contact(self.theta)) if self.friction else self.hit()[4]
 
@@ -241,7 +242,8 @@ def film_fit(
         return ((given.frames(t) - tracks) / NOISE).ravel()
 
     how: Any = {"jac": "3-point", "x_scale": "jac", "method": "dogbox"}
-    start = THROWN | ({} if gyration2 == SOLID else {"friction": 0.09})  # at which it slides
+    # with another k^2 the search needs a start at which the contact slides
+    start = THROWN | ({} if gyration2 == SOLID else {"friction": 0.09})
     best = least_squares(missed, [*start.values()], **how)
     errors = np.sqrt(np.linalg.inv(best.jac.T @ best.jac).diagonal())
     known, off = (dict(zip(THROWN, row, strict=True)) for row in (best.x, errors))
@@ -250,7 +252,8 @@ def film_fit(
 
 @cache
 def answer(number: str, made: tuple[str, ...] = (), seed: int | None = None) -> float:
-    """The answer with mistakes. DEGREES means an answer in degrees, `degrees` data in degrees."""
+    """The answer with mistakes. DEGREES means that the answer is in degrees, and `degrees` that the
+    data are inserted in degrees."""
     if made and made[0].startswith("task"):
         return answer(made[0][5:], (), seed)
     task, of, factor = tasks_of(seed)[number], TRUE[number], 1.0

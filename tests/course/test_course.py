@@ -20,7 +20,8 @@ def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
     """A mark names the mistakes that were made, and others only if they lead to the same number.
 
     Mistakes that do not change the number are not named. The tolerances agree to within 30 % with
-    those by hand. They are at most 0.5 %, so that two answers with one mark may differ by 1 %.
+    those of `allowed`. They are at most 0.5 %, so that two answers with the same mark may differ by
+    1 %.
     """
     right, near, task = answer(number), allowed(number), TASKS[number]
     off = min(1.3 * near, near + 4e-3 * abs(right))
@@ -46,9 +47,9 @@ def test_marks_name_the_mistakes_that_were_made(number: str) -> None:
         if abs(given - right) < 0.7 * near:
             assert mistake == "none"
         elif least == ("angle",) and number in ("2.2", "2.4", "3.5"):
-            assert mistake == "other"  # at the angle 0 the body would rest, which has no mark
+            assert mistake == "other"  # at the angle 0 the body rests, and there is no answer
         elif number in ("10.1", "10.2", "10.3", "10.5") and "inertia" in least:
-            assert "inertia" not in mistake  # noise, or an estimate by hand, leads as far
+            assert "inertia" not in mistake  # noise or an estimate by hand has as large an effect
         else:
             assert {*map(str.lower, least)} in named
             for names in named:

@@ -38,7 +38,8 @@ def test_a_class_is_marked_line_by_line() -> None:
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_tables_of_spreadsheets_are_read(mark: str, tmp_path: Path) -> None:
-    """They have other separators, decimal commas, true minus signs and byte order marks."""
+    """Spreadsheets write other separators, decimal commas, minus signs (U+2212) and byte order
+    marks."""
     text = f"{answer('3.2', (), 7):.4f}".replace("-", "−").replace(".", ",")
     rows = ["Answer", "note", " Task", "seed", "student"], [f'"{text}"', "x", "3.2", "7", '"A, B"']
     content = "\r\n".join(mark.join(row) for row in rows).encode("utf-8-sig")

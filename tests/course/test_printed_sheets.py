@@ -40,7 +40,8 @@ def test_the_teachers_page_has_right_answers() -> None:
 
 
 def test_the_example_of_sheet_7_is_right() -> None:
-    """The contact slips until v = 0 and sticks until u = 0. Restitution ends by areas of work."""
+    """The contact slips until v = 0 and then sticks. Compression ends at u = 0. The end of
+    restitution follows from the works, which are areas in the diagram of u over the impulse."""
     hit: Any = Given("7.4", x_dot=0.4, z_dot=-2.0, omega=0.0, theta=0.25, mass=1.5)
     v, u, tangential, normal, coupling = response(hit, hit)
     stop = v / (0.3 * tangential - coupling)
@@ -71,7 +72,7 @@ def test_the_example_of_sheet_7_is_right() -> None:
 
 
 def test_the_gap_of_sheet_7_closes_no_faster_than_stated() -> None:
-    """The slope of h is at most a - b; steps of gap / c reach the first contact in nine."""
+    """The slope of h is at most a - b. At most ten steps of gap / c reach the first contact."""
     fall: Any = Given("7.2")
     assert np.max(np.abs(fall.at(np.linspace(0.0, math.pi, 3143))[1])) <= fall.a - fall.b
     latest = math.sqrt(2 * (fall.z - fall.b) / fall.gravity)

@@ -1,4 +1,4 @@
-"""Sheets with numbers of a student's own have the same tasks, and their marks are right, too."""
+"""A seed gives each student the same tasks with other numbers, and the answers get right marks."""
 
 import math
 import re
@@ -11,7 +11,7 @@ from oracles.contact import response
 from rolling_ellipse import course
 
 SEEDS = (0, 7, 20261, 2**53)
-SLOW = ("3.5", "6.4", "8.4", "8.5")  # by hand; test_course.py tests their printed numbers
+SLOW = ("3.5", "6.4", "8.4", "8.5")  # slow to compute; test_course.py tests the printed numbers
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -45,7 +45,7 @@ def test_numbers_of_a_seed_stay_near_the_printed_ones_and_keep_equalities() -> N
             data = own[number].data
             assert data.keys() == task.data.keys()
             near = [math.isclose(data[k], v, rel_tol=0.066) for k, v in task.data.items()]
-            assert all(near), number  # 6 %, and 0.5 % by three digits
+            assert all(near), number  # 6 %, and 0.5 % from rounding to three digits
     assert len({str(own["1.1"].data) for own in drawn}) == 50
     for own in drawn:
         assert own["6.2"].data["a"] == own["6.2"].data["b"] == own["6.1"].data["b"]
@@ -53,8 +53,8 @@ def test_numbers_of_a_seed_stay_near_the_printed_ones_and_keep_equalities() -> N
         assert own["5.1"].data == own["5.2"].data
 
 
-def test_the_slip_of_task_7_4_sticks_for_each_seed() -> None:
-    """Where the slip ends, sticking needs no more friction than is available, and the slip ends
+def test_the_slip_in_task_7_4_ends_during_the_impact_for_each_seed() -> None:
+    """At the end of the slip, sticking needs no more friction than is available. The slip ends
     before the impact does."""
     for seed in range(50):
         hit = Given("7.4", seed).landed()

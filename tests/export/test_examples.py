@@ -27,7 +27,7 @@ def test_examples_equal_those_of_the_sources(tmp_path: Path) -> None:
     assert Path(str(_core.__file__)).with_name("examples.zip").stat().st_size <= 500_000
 
 
-def test_examples_follow_no_link(tmp_path: Path) -> None:
+def test_examples_are_not_written_through_links(tmp_path: Path) -> None:
     """Links to an equal file or to a folder, and a file or a pipe in place of a folder, are
     refused; benchmark/test_result_files.py tests the same writer on other links and files."""
     away, empty = tmp_path / "away", tmp_path / "empty"

@@ -152,7 +152,7 @@ def test_invalid_values_are_rejected(name: str, contents: Contents, path: Path) 
 
 
 @pytest.mark.parametrize(("schema", "cure"), [(3, ""), (7, ": a newer .* pip install .*")])
-def test_the_unknown_schema_of_a_file_is_named(
+def test_an_unknown_schema_of_a_file_is_reported(
     schema: int, cure: str, contents: Contents, path: Path
 ) -> None:
     """The message names the schema even if the file contains unknown names."""
@@ -247,7 +247,7 @@ def test_nothing_is_unpickled(contents: Contents, path: Path, monkeypatch: Any) 
 
 
 def test_an_archive_with_a_repeated_member_is_rejected(contents: Contents, path: Path) -> None:
-    """A directory with a million members of the same bytes would take a week."""
+    """An archive that lists the same bytes a million times would take a week to read."""
     path.write_bytes(contents["rolling"])
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
         archive.writestr("x.npy", archive.read("x.npy"))

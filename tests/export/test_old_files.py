@@ -58,7 +58,7 @@ def test_motions_of_a_version_without_blows_are_read_with_the_effects_of_their_i
             impulses.append(its.mass * (becomes.z_dot - was.z_dot))
             assert becomes.reaction_z == impulses[-1] > 0 and becomes.free_omega == was.omega
             lost = event.energy_before - event.energy_after
-            assert becomes.energy_lost == pytest.approx(lost, abs=1e-12)  # of energies of 100 J
+            assert becomes.energy_lost == pytest.approx(lost, abs=1e-12)  # energies are 100 J
     first = len(alone.events)
     assert stored.arrays("events")["reaction_z"].tolist() == impulses[first:]
     alone.save(tmp_path / "new.npz")

@@ -1,4 +1,7 @@
-"""Films by a camera whose scale, ground and clock are unknown: x = s x, z = g + s z, t = t + c."""
+"""Films by a camera with unknown scale s, ground g and clock c.
+
+A body at (x, z) at time t appears in the film at (s x, g + s z) at time t - c.
+"""
 
 import math
 import pickle
@@ -25,7 +28,7 @@ def filmed(scene: Scene, scale: float = 1.0, ground: float = 0.0, late: float = 
 def test_fits_of_twenty_films_by_unknown_cameras_have_honest_errors() -> None:
     """For films with given sigma, chi2 has the mean n, its degrees of freedom, and the variance 2n;
     the bound is 5 standard deviations. Of m normal numbers 0.68 m are within 1; the bound is 4
-    standard deviations, sqrt(0.22 m). Of 110, more than two are beyond 3 in one of 300 cases."""
+    standard deviations of sqrt(0.22 m). More than two of 110 are beyond 3 in one of 300 cases."""
     rows = [judge_films.camera(seed) for seed in range(20)]
     assert not any(row["alarm"] for row in rows)
     given = [row for row in rows if row["given"]]
@@ -52,7 +55,7 @@ def test_a_clock_may_have_any_origin(start: float) -> None:
     assert abs(there.values["omega"] - here.values["omega"]) < 1e-3 * there.errors["omega"]
 
 
-def test_frames_before_the_first_datum_of_a_film_with_its_own_clock_are_left_out() -> None:
+def test_with_an_unknown_clock_frames_before_the_first_datum_are_left_out() -> None:
     film = filmed(EXAMPLE)
     t, none = np.append(np.arange(-9, 0) / 240, TIMES), np.full(9, np.nan)
     how: dict[str, Any] = {name: np.append(none, film[name]) for name in ("x", "z", "theta")}
@@ -62,7 +65,7 @@ def test_frames_before_the_first_datum_of_a_film_with_its_own_clock_are_left_out
     assert abs(fit.values["clock"] + 3) < 4 * fit.errors["clock"]
 
 
-def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
+def test_a_film_in_millimetres_with_outliers_is_fitted() -> None:
     film = filmed(EXAMPLE, 1000.0, 30.0, 0.01)
     film["z"][5::9] -= 200
     film["theta"][3::11] += 1.5
@@ -71,7 +74,7 @@ def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
     true = {"scale": 1000.0, "ground": 30.0, "clock": 0.01, "omega": 12.0, "friction": 0.18}
     off = {name: (fit.values[name] - value) / fit.errors[name] for name, value in true.items()}
     assert all(abs(each) < 4 for each in off.values()) and "not fit" not in fit.message
-    assert "x 0." in fit.message and " mm" in fit.message  # in lengths of the scene
+    assert "x 0." in fit.message and " mm" in fit.message  # lengths of the scene
 
 
 @pytest.mark.parametrize(
@@ -86,7 +89,8 @@ def test_millimetres_pixels_and_outliers_are_no_obstacle() -> None:
 def test_unknowns_that_a_film_cannot_determine_are_named(
     scene: Scene, free: tuple[str, ...], lost: str
 ) -> None:
-    """A flight without a touch determines neither ground nor scale; rest determines no clock."""
+    """A flight that does not touch the ground determines neither the height of the ground nor the
+    scale, and a body at rest does not determine the clock."""
     fit = fit_motion(**filmed(scene), scene=scene, free=free, sigma=SIGMA)
     finite = [name for name in lost.split(", ") if not math.isinf(fit.errors[name])]
     assert finite == [] and "the film cannot determine" in fit.message
@@ -100,7 +104,8 @@ def test_a_wrong_scene_is_not_explained_by_its_camera() -> None:
 
 
 def test_the_guess_decides_between_two_starts_at_one_height() -> None:
-    """A body passes its height on the way up and down, and the film begins after both times."""
+    """The body passes its starting height on the way up and on the way down. The film begins after
+    both times, so that either may be the time 0 of the scene."""
     scene = FLY.replace(z=0.3, z_dot=0.5)
     film = filmed(scene, late=0.12)
     free = ("x", "theta", "z_dot", "clock")
@@ -111,7 +116,8 @@ def test_the_guess_decides_between_two_starts_at_one_height() -> None:
 
 
 def test_camera_and_scene_are_shown_together() -> None:
-    """The picture has the coordinates of the scene; pickles and tables have the camera's values."""
+    """The picture has the coordinates of the scene. The printed fit and its pickle contain the
+    values of the camera."""
     film = filmed(ROLL, 2.0, 0.1, 0.02)
     fit = fit_motion(**film, scene=ROLL, free=("omega", *CAMERA), sigma=SIGMA)
     assert list(fit.values) == list(fit.errors) == ["omega", *CAMERA]
@@ -130,7 +136,7 @@ def test_camera_and_scene_are_shown_together() -> None:
 
 
 def test_rolling_resistance_follows_from_the_decay_of_the_swings() -> None:
-    """The guess has no resistance, and neither has the second film; errors stay below 0.01 mm."""
+    """The guess and the second film have no resistance. The stated errors are below 0.01 mm."""
     for lever in (8e-4, 0.0):
         body: dict[str, Any] = {"theta": 0.9, "omega": 0.0, "friction": 0.6}
         scene = Scene(0.035, 0.025, **body | {"rolling_resistance": lever})

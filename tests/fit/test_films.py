@@ -1,4 +1,4 @@
-"""A fit estimates the noise of a film, and says if the scene or a misreading explains the film."""
+"""A fit estimates the noise of a film, and reports if a scene or a misreading explains the film."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from judge_films import EXAMPLE, FREE, GUESS, KINDS, SIGMA, TIMES, WRONG, noisy
 from rolling_ellipse import Fit, Scene, fit_motion, simulate
-from rolling_ellipse._verbs.films.judgement import neighbours  # in fits their effect is random
+from rolling_ellipse._verbs.films.judgement import neighbours  # its effect on a fit is random
 
 TRACKS = ("x", "z", "theta")
 
@@ -35,7 +35,8 @@ def test_quarter_turn_outliers_do_not_lead_to_another_minimum(seed: int) -> None
 
 
 def test_sigma_is_estimated_for_each_track() -> None:
-    """The deviation of n numbers is known to 1/sqrt(2n); the bound is five times that."""
+    """The estimated standard deviation of n numbers has a relative error of 1/sqrt(2n). The bound
+    is five times this error."""
     true = {"x": 2e-4, "z": 1e-3, "theta": 0.02}
     fit = fitted(film(1, sigma=true), sigma=None)
     off = fit.sigma / list(true.values()) - 1
@@ -47,8 +48,8 @@ def test_sigma_is_estimated_for_each_track() -> None:
 
 
 def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
-    """Of the five frames of a flight, two determine its start. The mean of sigma^2 over 80 tracks
-    of 3 degrees of freedom is known to sqrt(2/240); dividing by five frames would give 3/5."""
+    """A track of a flight has five numbers and two unknowns. The mean of sigma^2 over 80 tracks of
+    3 degrees of freedom has an error of sqrt(2/240). Division by 5 would give a mean of 3/5."""
     scene, t = Scene(0.035, 0.025, z=2.0), np.arange(1, 6) / 60
     seen, shares = simulate(scene, t), []
     for seed in range(40):
@@ -62,8 +63,8 @@ def test_unknowns_reduce_the_degrees_of_freedom_of_a_track() -> None:
 
 def test_outliers_do_not_inflate_the_noise() -> None:
     """The median residual of n numbers gives sigma to 1.17/sqrt(n) [Rousseeuw, Croux, JASA 88
-    (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. The bound is four deviations of
-    the mean of three tracks; the median itself would be lower by a third."""
+    (1993) 1273], and 5 % of outliers, of one sign, add a fifteenth. The bound is four standard
+    deviations of the mean of three tracks. The median without its factor is a third lower."""
     t = np.linspace(0.00125, 0.4, 320)
     tracks = film(3, t)
     for name in TRACKS:
@@ -106,14 +107,14 @@ def test_wrong_films_are_rejected_and_their_misreading_is_named(kind: str, sigma
 
 
 def test_no_misreading_explains_the_film_of_a_body_in_thick_air() -> None:
-    """Correlated residuals widen errors by more than sqrt(3), the factor at correlation 1/2."""
+    """T, the measure of correlated residuals, exceeds 3.5, the bound for correct films."""
     tracks = film(11)
     fit = fitted(tracks | WRONG["in air"][0](tracks, None), sigma=None)
     assert "does not fit" in fit.message and "it fits" not in fit.message
     assert judge_films.largest(fit) > 3.5
 
 
-def test_a_track_that_freezes_or_jumps_is_reported_as_beyond_any_tracker() -> None:
+def test_a_frozen_or_jumping_track_is_reported_as_worse_than_any_tracker() -> None:
     tracks = film(2)
     still = fitted(tracks | {"theta": np.full(80, 0.5)}, sigma=None)
     assert "theta is off by" in still.message and "more than with any tracker" in still.message

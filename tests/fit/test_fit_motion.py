@@ -51,8 +51,8 @@ UNEVEN = np.sort(np.random.default_rng(2).uniform(0, 0.45, 90))
 
 def test_fits_of_twelve_films_recover_their_parameters_with_honest_errors() -> None:
     """chi2 has the mean n, its degrees of freedom, and the variance 2n; the bound is 5 standard
-    deviations. Of m normal numbers 0.68 m are within 1; the bound is 4 standard deviations,
-    sqrt(0.22 m). The probability of more than one of m = 48 beyond 3 is 0.8 %."""
+    deviations. Of m normal numbers 0.68 m are within 1; the bound is 4 standard deviations of
+    sqrt(0.22 m). With m = 48, more than one is beyond 3 with a probability of 0.8 %."""
     chi2, count, pulls = 0.0, 0, []
     for seed in range(12):
         rng = np.random.default_rng(seed)
@@ -110,7 +110,8 @@ def test_outliers_and_a_wrong_scene_are_reported_as_not_fitting() -> None:
     ],
 )
 def test_parameters_at_their_bounds_are_fitted(changes: dict[str, float]) -> None:
-    """A hop of 4 sigma_z is detected: it follows an impact at 1 m/s with a restitution of 0.2."""
+    """The error of the restitution is below 0.2: after an impact at 1 m/s, a restitution of 0.2
+    would lead to a hop of 4 sigma_z, which is detected."""
     scene = DROP.replace(**changes)
     guess = GUESS.replace(theta=scene.theta)
     fit = fit_motion(**filmed(scene, TIMES), scene=guess, free=FREE, sigma=SIGMA)
@@ -208,12 +209,11 @@ def test_many_samples_from_arrays_do_not_depend_on_each_other() -> None:
 @pytest.mark.parametrize(("rise", "away", "error"), [
     (26.0, 5.0, 0.1), (16.0, 5.0, 1.25), (16.0, 200.0, 0.1), (4.0, 5.0, 2.5), (4.0, 90.0, math.inf),
 ])  # fmt: skip
-def test_a_rival_widens_errors_by_its_distance_over_the_root_of_its_rise_of_chi2(
-    rise: float, away: float, error: float
-) -> None:
-    """Where chi2 rises by more than 9, a rival beyond 30 sizes is dropped; above 25, any rival is.
+def test_a_rival_minimum_widens_the_errors(rise: float, away: float, error: float) -> None:
+    """A rival is another minimum of chi2. It is dropped if chi2 rises by more than 25. If it widens
+    the error beyond 30, it is dropped if chi2 rises by more than 9, and otherwise the error is inf.
 
-    No film has a rival in a chosen position: the search is a parabola of chi2 with the error 0.1.
+    In place of a film, the search has a parabola of chi2 with the error 0.1 and a chosen rival.
     """
     best = SimpleNamespace(x=np.zeros(1), cost=50.0, jac=np.array([[10.0]]))
 

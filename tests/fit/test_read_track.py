@@ -67,7 +67,7 @@ def test_units_and_directions_are_the_stated_ones() -> None:
 
 
 @pytest.mark.parametrize(("period", "rate"), [(math.pi, 30.0), (2 * math.pi, 40.0)])
-def test_angles_continue_through_the_ends_of_their_range(period: float, rate: float) -> None:
+def test_angles_are_unwrapped_at_the_ends_of_their_range(period: float, rate: float) -> None:
     """Angles of fitted ellipses cover half a turn, angles of points a whole turn, with gaps."""
     true = rate * T - 1.0
     wrapped = np.mod(true, period)
@@ -98,7 +98,7 @@ def test_empty_cells_become_nan_and_repeated_names_get_numbers(tmp_path: Path) -
     assert read_track(path, t="0", x="1")[1].tolist() == [1.0, 3.0]
 
 
-def test_a_table_like_those_of_tracker_becomes_parameters() -> None:
+def test_a_scene_is_fitted_to_a_table_in_the_format_of_tracker() -> None:
     """The track begins 4 ms after the drop, and its origin is 12 mm below the ground."""
     track = read_track(DATA / "track_tracker.txt", t="t", x="x", z="y", theta="θ", degrees=True)
     guess = Scene(0.035, 0.025, z=0.1, theta=0.3, omega=10.0, x_dot=0.15, friction=0.3)
@@ -109,7 +109,7 @@ def test_a_table_like_those_of_tracker_becomes_parameters() -> None:
     assert fit.errors["ground"] < 2e-4 and "not fit" not in fit.message
 
 
-def test_two_tracked_points_become_parameters() -> None:
+def test_a_scene_is_fitted_to_two_tracked_points() -> None:
     """Pixels are 0.4 mm, guessed as 1 mm; the ground is 500 pixels below the corner."""
     points = ("x1", "y1", "x2", "y2")
     track = read_track(

@@ -48,8 +48,8 @@ PUSHES = 5000  # steps of the oracle; each impulse step is the approach speed ov
 
 def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
     """Velocities after many small normal impulses. Each is followed by the friction that stops the
-    slip, limited by the cone, and by a check whether restitution is complete; no cases are
-    distinguished. Newton's and Euler's laws, per kilogram, change the Cartesian velocities."""
+    slip, limited by the cone, and by a check of whether restitution is complete. The oracle does
+    not distinguish cases. Newton's and Euler's laws, per kilogram, change the velocities."""
     theta, x_dot, z_dot, omega = state
     h, slope = (f(theta, **BODY) for f in (geometry.support, geometry.support_slope))
     first = u = contact(state, state[1:])[1]
@@ -146,8 +146,9 @@ def test_a_light_thin_fast_turning_body_conserves_energy() -> None:
 
 
 def test_newtons_law_can_create_energy() -> None:
-    """The contact slips forwards behind the centre, so that friction increases the approach until
-    the slip stops. The initial u does not contain this increase, but all of it is returned."""
+    """The contact is behind the centre and slips forwards, so that friction increases the speed of
+    approach until the slip stops. The initial u does not contain this increase, and Newton's law
+    returns more energy than was absorbed."""
     theta = -math.pi / 4
     h, slope = geometry.support(theta, **BODY), geometry.support_slope(theta, **BODY)
     before = np.array([0.5, -1.0, 0.0])  # no spin: slip 0.5 m/s, approach 1 m/s
@@ -166,9 +167,9 @@ def test_newtons_restitution_is_the_ratio_of_gap_rates() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.4, 1.1, math.inf])
 def test_poissons_restitution_is_the_ratio_of_impulses(friction: float) -> None:
-    """The impulse of restitution is e times that of compression, the whole impulse for e = 0. An
-    impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with about ten
-    roundings."""
+    """The impulse of restitution is e times that of compression, which is the whole impulse if
+    e = 0. An impulse is computed as a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s),
+    with about ten roundings."""
     state = approaching(300)
     compression, whole = (after(state, "poisson", friction, e)[1] - state[2] for e in (0.0, 0.4))
     assert np.max(np.abs(whole - 1.4 * compression)) < 1000 * EPS
@@ -214,7 +215,7 @@ def test_kinetic_speed_follows_from_the_kinetic_energy() -> None:
     assert np.allclose(both, np.sqrt([[25, 34], [16, 25]]), rtol=4 * EPS)
 
 
-E, MU = 0.61, 0.25  # true values, which are not on the first grid
+E, MU = 0.61, 0.25  # true values, which are not points of the first grid of the fit
 
 
 def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
@@ -277,7 +278,7 @@ DIE: dict[str, Any] = {"a": 0.035, "b": 0.025}
 
 
 def thrown(seed: int, count: int, law: Any = "stronge", top: float = 0.25) -> tuple[Any, Any, Any]:
-    """True e and mu, states before, and velocities after with noise of a camera."""
+    """True e and mu, states before the impacts, and velocities after them with camera noise."""
     rng = np.random.default_rng(seed)
     true = rng.uniform((0.3, 0.08), (0.8, top))
     before = rng.uniform((-1.5, 0, -2.8, -8), (1.5, 1, -2.4, 8), (count, 4)).T
@@ -312,8 +313,9 @@ def test_the_fit_to_the_course_data_finds_the_narrow_minimum() -> None:
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
 def test_errors_match_the_scatter_about_the_truth(minimise: Any) -> None:
-    """Bounds are four standard deviations: of 40 pulls the root mean square is 1 to within
-    1/sqrt(80) of it, and the share within one error 0.68 to within sqrt(0.68 0.32/40)."""
+    """The bounds are four standard deviations. The root mean square of 40 pulls is 1 with a
+    standard deviation of 1/sqrt(80), and the share of pulls below 1 is 0.68 with a standard
+    deviation of sqrt(0.68 0.32/40)."""
     pulls = []
     for seed in range(40):
         true, before, seen = thrown(seed, 60)
@@ -341,7 +343,8 @@ def test_neither_order_nor_mirroring_changes_the_fit(minimise: Any) -> None:
 
 
 def test_undetermined_coefficients_have_infinite_errors() -> None:
-    """If all impacts stick, infinite friction fits as well. Few impacts cannot be split in two."""
+    """If all impacts stick, infinite friction fits as well. Errors are estimated from halves of the
+    series, which must have at least 20 impacts."""
     state = approaching(200, 9)
     seen = after(state, "stronge", 0.3, 0.6) + np.random.default_rng(9).normal(0, 0.05, (3, 200))
     fitted = impacts.fit(list(state), list(seen), **BODY)

@@ -48,9 +48,9 @@ def density(total: Any, count: int, sigma: float | None) -> Any:
 def test_evidence_and_covariance_agree_with_sums_over_the_whole_range(
     law: Any, sigma: float | None
 ) -> None:
-    """A plain sum over 400 by 400 cells, with about twenty per standard deviation. A kink of the
-    likelihood costs the coarser sum less than a hundredth, and so does the distance of the largest
-    likelihood from the nearest cell."""
+    """The reference is a plain sum over 400 by 400 cells, about twenty per standard deviation. A
+    kink of the likelihood changes the coarser sum of the package by less than a hundredth, and the
+    largest likelihood exceeds that of the nearest cell by less than a hundredth."""
     before, seen = noisy(law, 30, 0.15, 5)
     fitted = impacts.fit(before, seen, **BODY, law=law, sigma=sigma)
     e, angle = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400 * RIGHT)
@@ -64,7 +64,8 @@ def test_evidence_and_covariance_agree_with_sums_over_the_whole_range(
 
 
 def test_the_evidence_is_largest_for_the_law_of_the_impacts() -> None:
-    """This holds with and without sigma. A law alone has the same numbers as among all laws."""
+    """Laws are compared with and without sigma. A fit of one law has the same numbers as in a fit
+    of all laws."""
     sigmas: Any = (None, 0.05, None)
     for law, sigma in zip(impacts.LAWS, sigmas, strict=True):
         before, seen = series(law, 0.05, 60)

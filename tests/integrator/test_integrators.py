@@ -1,7 +1,7 @@
 """Stepped rolling: orders, tolerances, peers, conserved quantities, endings and refusals.
 
 The reference on level ground is the exact flow, which takes no steps and has an error of 1e-15
-(test_flow_reference.py judges it in 40 digits). The reference on a slope is the energy.
+(test_flow_reference.py compares it with 40 digits). The reference on a slope is the energy.
 """
 
 import itertools
@@ -48,7 +48,7 @@ def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
 
 
 def error(trajectory: Trajectory) -> np.ndarray:
-    """Distance from the exact motion at each sample, of theta and omega / max(largest omega, 1)."""
+    """Error at each sample: the root of the squared errors of theta and omega/max(omega, 1)."""
     exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     off: np.ndarray = np.hypot(
@@ -61,9 +61,9 @@ def same_bits(one: Trajectory, other: Trajectory) -> bool:
     return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in STATE)
 
 
-# Rotation, libration and a nearly circular body, long enough for errors to add up. The outlines are
-# mild, since order 8 is visible only between the next error term and rounding. The last number is
-# the largest step [s].
+# Rotation, libration and a nearly circular body, long enough for errors to add up. No body is thin,
+# since order 8 is visible only between the next error term and rounding. The last two numbers are
+# the end time and the largest step [s].
 ORDER_SCENES = {
     "rotation": (Scene(2.0, 1.0, omega=3.2), 5.0, 0.1),
     "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
@@ -163,9 +163,9 @@ def test_reversed_gauss_steps_return_to_the_start(name: str) -> None:
 @pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_stages_are_solved_even_next_to_an_equilibrium(name: str, angle: float) -> None:
-    """Near such angles theta'' nearly vanishes, and so do half of the changes in the iteration for
-    the stages, which must not stop because of that. A change d of the start changes the end by a
-    few d, and by rounding."""
+    """Near such angles theta'' nearly vanishes, and so does half of each change in the iteration
+    for the stages. This must not end the iteration. If the start changes by d, the end changes by a
+    few d and by rounding."""
     scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
     reference = stepped(scene, [0.03], name, 0.03)
     for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
@@ -185,9 +185,9 @@ AWAY = {
 def test_added_half_turns_and_distant_starts_make_no_difference(
     name: str, theta: float, turned: float, moved: float, most: float
 ) -> None:
-    """The ellipse is the same after half a turn, whose double is off by up to 4e-16. A fixed step
-    makes the same errors, and the motion amplifies the difference about a hundredfold. Angles of
-    1e6 have an ulp of 1e-10, which adds to the error of a motion near 0."""
+    """The ellipse is the same after half a turn, whose double is off by up to 4e-16. With a fixed
+    step both motions have the same truncation errors, and the difference grows about a hundredfold.
+    Angles of 1e6 have an ulp of 1e-10, which adds to the error of a motion near 0."""
     start = Scene(2.0, 1.0, theta=theta, omega=3.0)
     one = stepped(start, 3.0, name)
     other = stepped(replace(start, theta=theta + turned, x=moved), 3.0, name)
@@ -312,7 +312,7 @@ def test_the_last_step_ends_exactly_at_the_end_time(
 
 @each_method
 def test_samples_do_not_depend_on_each_other(name: str) -> None:
-    """Samples have the same bits among 5001 samples as among every third of those after 1001."""
+    """Every third of the samples from number 1001 on has the same bits without the others."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)

@@ -1,9 +1,10 @@
-"""The coefficients of the integrators satisfy their order conditions as doubles.
+"""The coefficients of the integrators, rounded to doubles, satisfy their order conditions.
 
 Explicit methods are tested by rooted trees: a method has order p if, for every tree of up to p
 nodes, phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving
 Ordinary Differential Equations I, II.2). Implicit methods are tested by the simplifying assumptions
-B, C, D of II.7 and IV.5 there. The arithmetic is long double, which rounds 2000 times more finely.
+B, C, D (the same work, II.7 and IV.5). The arithmetic is long double, whose roundings are 2000
+times smaller.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,9 +33,9 @@ class Violation(AssertionError):
 
 
 def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
-    """Require `actual` to equal `exact` within rounding. It is a sum of products of up to `factors`
-    rounded numbers; `terms` is the sum of the products' magnitudes. Each factor may be off by its
-    own rounding, or by twice that if it was computed."""
+    """Require `actual` to equal `exact` within rounding. `actual` is a sum of products of up to
+    `factors` rounded numbers, and `terms` is the sum of the magnitudes of the products. Each factor
+    may be off by its own rounding, or by twice that if it was computed."""
     off = np.abs(long(actual) - exact)
     allowed = 2 * factors * ROUNDING * long(terms)
     if not np.all(off <= allowed):
@@ -85,8 +86,9 @@ def elementary_weight(a: Long, b: Long) -> Callable[[Tree], Long]:
 
 
 def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> None:
-    """The weights b, sums of terms of these sizes, give the solution at the fraction s of a step to
-    the given order. For s = 0 they vanish up to it, as the difference of two such weights does."""
+    """Require that the weights b give the solution at the fraction s of a step to the given order.
+    For s = 0 this requires that phi vanishes, as for the difference of the weights of two methods.
+    Each weight is a sum of terms, the magnitudes of which add up to `sizes`."""
     phi, size = elementary_weight(a, b), elementary_weight(np.abs(a), sizes)
     for nodes in range(1, order + 1):
         for tree in trees(nodes):
@@ -122,7 +124,7 @@ def explicit(name: str) -> Explicit:
     return Explicit(t["order"], t["stages"], *map(long, (t["c"], t["a"], error, dense)))
 
 
-# orders of the lower results that each row of the error estimate uses, and of dense output
+# orders of the embedded results from which the error is estimated, and of the dense output
 ERROR_ORDERS = {"rk4": (), "dopri5": (4,), "dop853": (5, 3)}
 DENSE_ORDERS = {"rk4": 3, "dopri5": 4, "dop853": 7}
 
@@ -151,7 +153,7 @@ def check_explicit(name: str, **changed: Long) -> None:
     require_order(a, b, np.abs(b), method.order)
     for weights, order in zip(method.error, ERROR_ORDERS[name], strict=True):
         require_order(a, weights, np.abs(weights) + np.abs(b), order, 0.0)
-    for weights in method.dense:  # cubic polynomials need no more terms
+    for weights in method.dense:  # these terms vanish if the solution is a cubic polynomial
         require_order(a, weights, np.abs(weights), 3, 0.0)
     for s in (0.1, 0.37, 0.5, 0.83, 1.0):
         require_order(a, *dense_weights(method, s), DENSE_ORDERS[name], s)
@@ -167,7 +169,7 @@ def test_explicit_methods_are_explicit(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_no_method_has_a_higher_order_than_stated(name: str) -> None:
-    """The conditions distinguish orders: one order more is refused."""
+    """Each method violates a condition of the next order."""
     method = explicit(name)
     with pytest.raises(Violation):
         require_order(method.a, method.b, np.abs(method.b), method.order + 1)

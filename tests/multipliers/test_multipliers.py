@@ -87,7 +87,7 @@ def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
         (r * sine * turn + r_dot * cosine) * omega,
         2 * r_dot * sine * turn + r * cosine * turn**2,
         second * psi_dot**2,
-        0.0,  # a product has its own relative accuracy
+        0.0,  # the fourth entry is a single product: its error is relative to itself
     ]
 
 
@@ -118,8 +118,8 @@ def test_matrix_and_drift_agree_with_differentiation(shape: Shape) -> None:
 def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> float:
     """Largest residual of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or of
     Baumgarte's feedback), relative to the sums of the magnitudes of their terms. In the second
-    equation, the term of A is the sum of a row times the largest acceleration, with angles as
-    lengths: elimination can guarantee no more."""
+    equation, the term of A is the sum of a row times the largest acceleration, since elimination
+    guarantees no more. Angular accelerations are multiplied by the size of the body."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     (mass, force), (q_ddot, multipliers) = forces(scene), solved
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -149,8 +149,9 @@ def misses(scene: Scene, how: Settings, q: Long, q_dot: Long, *solved: Long) -> 
 @each_shape
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
 def test_solutions_satisfy_the_system(shape: Shape, stabilization: str) -> None:
-    """Formulas without the core give residuals of 1e-13, about 500 ulps, on a slope and at states
-    of any kind. Elimination has a residual of its growth times the nine sums of each row."""
+    """On a slope and at states of any kind, residuals computed without the core are at most 1e-13,
+    about 500 ulps. The residual of elimination is the rounding of the nine terms of each row, times
+    the growth factor."""
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
     how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
     q, q_dot = states(shape)
@@ -250,10 +251,11 @@ FORCES = ("normal_force", "friction_force")
 @each_stabilization
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_motions_agree_with_exact_rolling(scene: Scene, stabilization: Any) -> None:
-    """Motions of 2 s at rtol 1e-12 are compared with the model "rolling", exact where possible,
-    else by dop853 at 1e-13. The bound is 1e-9: each of about 100 steps is off by 1e-12, and errors
-    grow by a factor of at most about exp(lambda t) = e^3.4, as does the rounding of a large theta,
-    1.5e-11. Forces with feedback contain the velocity residual times 2 alpha m <= 60 kg/s."""
+    """Motions of 2 s at rtol 1e-12 are compared with the model "rolling", which is exact on level
+    ground and solved with dop853 at 1e-13 on slopes. The bound is 1e-9: each of about 100 steps is
+    off by 1e-12, and errors grow by a factor of at most about exp(lambda t) = e^3.4, as does the
+    rounding of a large theta, 1.5e-11. With feedback, forces contain the velocity residual times
+    2 alpha m <= 60 kg/s."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
@@ -279,7 +281,7 @@ def test_distant_starts_are_as_accurate_as_near_ones(stabilization: Any) -> None
 
 @each_stabilization
 @pytest.mark.parametrize("theta", [0.0, QUARTER])
-def test_a_resting_body_stays_put_to_within_the_rounding_of_its_tip(
+def test_a_resting_body_moves_only_by_the_rounding_of_its_angle(
     theta: float, stabilization: Any
 ) -> None:
     """A flat body does not move. On the tip the rounding of theta grows like exp(1.674 t), by a

@@ -76,8 +76,9 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
 
 
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
-    """Change of x in a slide up to an angle, where F is `friction`, which has a sign, times N. The
-    integral of N/m follows from z'' = N/m - g cos(slope) and z = h."""
+    """Change of x in a slide that takes the time `lasts` and ends at the angle theta. F is N times
+    `friction`, which has a sign. The integral of N/m follows from z'' = N/m - g cos(slope) and
+    z = h."""
     h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
     into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
     h = support(theta, scene.a, scene.b).h
@@ -110,8 +111,9 @@ def random_blow(rng: np.random.Generator, a: float, b: float, theta: float, size
 
 
 def random_scenes(count: int, seed: int, struck: float = 0.0, **given: Any) -> Iterator[Scene]:
-    """Scenes in the air, sliding or rolling, lying or standing. A tenth are circles, some are flat,
-    on the tip or at rest, and a share has a blow about strong enough to roll the body over."""
+    """Scenes in the air, sliding or rolling, lying or standing. A tenth are circles, and some are
+    flat, on the tip or at rest. The share `struck` of the scenes has a blow, which is about strong
+    enough to roll the body over."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()

@@ -106,7 +106,8 @@ def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Flo
 
 
 def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
-    """Infinite friction, none, values from ice to rubber, and values near the needed one (1e-9)."""
+    """Infinite friction, no friction, values from 0.05 to 2, and values that differ from the needed
+    friction by a relative 1e-9 to 0.1."""
     count = needed.size
     near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-9, -1, count))
     anything = 10 ** rng.uniform(np.log10(0.05), np.log10(2.0), count)

@@ -1,4 +1,4 @@
-"""Axes for pictures, modified motions, and the data of artists."""
+"""Axes for pictures, modified motions, and the data of drawn lines."""
 
 import dataclasses
 

@@ -20,7 +20,7 @@ SIGNS = st.sampled_from([1.0, -1.0])
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers in a range; numbers with a subnormal square become 0."""
+    """Numbers in a range; those up to 1e-100 in magnitude become 0."""
     return st.floats(low, high).map(lambda value: value if abs(value) > 1e-100 else 0.0)
 
 

@@ -103,7 +103,7 @@ def reduced(theta: ArrayLike, a: ArrayLike, b: ArrayLike) -> tuple[Long, Long]:
 
 
 class Outline(NamedTuple):
-    """h, h', rho, h'' [m]; h' has the sign for phi in [0, pi/2] with a the longer axis."""
+    """h, h', rho and h'' [m] as functions of the reduced angle phi, for which h' >= 0."""
 
     h: Long
     slope: Long

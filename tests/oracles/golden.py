@@ -76,7 +76,8 @@ def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
 
 
 def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
-    """Blocks of records; each starts with a record of a kind and ends before the next of it."""
+    """Blocks of records by name. Each starts with a record of the kind `first` and ends before the
+    next such record."""
     starts = [i for i, each in enumerate(records) if each.kind == first]
     ends = [*starts[1:], len(records)]
     named: dict[str, list[Record]] = {}
@@ -87,7 +88,8 @@ def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
 
 
 def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
-    """Largest difference of two numbers, relative above 1, and its records; words must agree."""
+    """Largest difference between corresponding numbers, relative for numbers above 1, and the two
+    records that contain it. All words must agree."""
     assert len(one) == len(other)
     worst, where = 0.0, "the same bits"
     for mine, theirs in zip(one, other, strict=True):

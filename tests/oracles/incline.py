@@ -1,4 +1,4 @@
-"""Rolling on a slope: forces, equilibrium, and motions for which no ground has the forces."""
+"""Forces, equilibrium and motions of a body that rolls on a slope."""
 
 import math
 import warnings

@@ -3,11 +3,12 @@
 The losses are measured at eight samples per step, and by comparison with exact rolling, which
 reference tables verify, from the start of each step. Each loss is divided by its limit:
 
-* the energy: its largest change at any time, over the largest kinetic + |potential| energy
-  (x from the start), over 1e-2 or ten rtol;
-* the constraints: the largest of |f2|, |f3| over the long semi-axis and |f4|, over 1e-3;
-* the motion: the difference of the angles at the end of a step and of the exact motion from its
-  start, over 0.1 rad or ten rtol of the size of theta.
+* the energy: its largest change, relative to the largest sum of kinetic and |potential| energy, in
+  which x is measured from the start; the limit is 1e-2 or, if larger, ten rtol;
+* the constraints: the largest of |f2| and |f3|, divided by the long semi-axis, and of |f4|; the
+  limit is 1e-3;
+* the motion: the difference between the angle at the end of a step and that of the exact motion
+  from the start of the step; the limit is 0.1 rad or, if larger, ten rtol (1 + |theta|).
 """
 
 import math

@@ -37,7 +37,10 @@ def settings(**changes: Any) -> Settings:
 
 
 def matrix(q: Long, a: float, b: float) -> Long:
-    """Matrix (..., 4, 5) in (complex) long double; d psi/d theta by tan psi = (a/b)^2 tan theta."""
+    """Matrix of the constraints, of shape (..., 4, 5), in real or complex long double.
+
+    d psi/d theta follows from tan psi = (a/b)^2 tan theta.
+    """
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
     long_a, long_b = np.longdouble(a), np.longdouble(b)
     sine, cosine = np.sin(psi - theta), np.cos(psi - theta)

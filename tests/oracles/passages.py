@@ -36,7 +36,7 @@ def random_motion(rng: np.random.Generator) -> Trajectory:
     if settings["model"] != "contact":
         given |= {"friction": math.inf, "inertia": None, "z": None, "x_dot": None, "z_dot": None}
     drawn = random_scenes(99, int(rng.integers(2**31)), **given)
-    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # steps fit no thin body
+    scene = next(one for one in drawn if 0.2 < one.a / one.b < 5)  # steps are too long if thinner
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         warnings.simplefilter("ignore", StabilityWarning)
@@ -48,7 +48,7 @@ def times_of_events(motion: Trajectory) -> Floats:
 
 
 def dense_times(motion: Trajectory) -> Floats:
-    """Even times, and times just before and at each event."""
+    """Evenly spaced times, and times just before and at each event."""
     events = times_of_events(motion)
     slow = motion.method == "radau"  # at each sample, radau solves for the stages of a step
     even = np.linspace(0.0, motion.t_end, DENSE // 8 if slow else DENSE)

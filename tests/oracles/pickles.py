@@ -23,11 +23,11 @@ COPIES: dict[str, Callable[[Any], Any]] = {
 
 
 def require_same(one: Any, other: Any, where: str = "it") -> None:
-    """Require the same types and bits in all nested parts, and arrays with the same flag."""
+    """Require the same types and bits in all nested parts, and the same writeable flags."""
     assert type(one) is type(other), where
     if isinstance(one, np.ndarray):
         assert one.dtype == other.dtype and one.shape == other.shape, where
-        if one.dtype == object:  # whose bytes are addresses
+        if one.dtype == object:  # the bytes of such an array are addresses
             assert one.tolist() == other.tolist(), where
         else:
             assert one.tobytes() == other.tobytes(), where

@@ -27,9 +27,9 @@ ORDINARY_SCENES = {
 
 
 def support(body: Ellipse) -> tuple[float, float]:
-    """Lowest point (x, z) of a patch: the image of the unit circle under p -> c + M p.
+    """Lowest point (x, z) of a patch, which is the image of the unit circle under p -> c + M p.
 
-    The circle's point lowest in direction e_z is p = -row_z / |row_z| of M.
+    The lowest point is the image of p = -row_z / |row_z|, where row_z is the second row of M.
     """
     matrix = body.get_patch_transform().get_matrix()
     (row_x, row_z), centre = matrix[:2, :2], matrix[:2, 2]
@@ -59,7 +59,7 @@ def legend_in(ax: Axes) -> Legend:
 
 
 def centre_of(body: Ellipse) -> tuple[float, float]:
-    """Centre of a patch, whose annotation in matplotlib is wrong."""
+    """Centre of a patch. The type annotation of `get_center` in matplotlib is wrong."""
     centre: Any = body.get_center()
     return centre[0], centre[1]
 
@@ -71,7 +71,7 @@ def points_of(collection: Collection | None) -> NDArray[np.float64]:
 
 
 def frames_of(image: Image) -> int:
-    """Number of frames of a GIF, which Pillow does not annotate."""
+    """Number of frames of a GIF, for which Pillow has no type annotation."""
     return int(image.n_frames)  # type: ignore[attr-defined]
 
 

@@ -1,4 +1,4 @@
-"""Numbers with units as in other libraries, and plain numbers that resemble them."""
+"""Numbers with units like those of other libraries, and plain numbers that resemble them."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Pint:
-    """An object around a number or an array, as Quantity of pint; NumPy converts it on request."""
+    """A wrapper of a number or an array, like Quantity of pint, which NumPy can convert."""
 
     def __init__(self, magnitude: Any, units: str = "centimeter") -> None:
         self.magnitude, self.units = magnitude, units
@@ -19,13 +19,13 @@ class Pint:
 
 
 class Astropy(np.ndarray):
-    """A subclass of arrays with an attribute `unit`, as Quantity and Column of astropy."""
+    """A subclass of arrays with an attribute `unit`, like Quantity and Column of astropy."""
 
     unit: Any = None
 
 
 class Unyt(np.ndarray):
-    """A subclass of arrays with a property `units`, as unyt_array, and Quantity of quantities."""
+    """A subclass of arrays with a property `units`, like unyt_array and Quantity of quantities."""
 
     @property
     def units(self) -> Any:
@@ -33,13 +33,13 @@ class Unyt(np.ndarray):
 
 
 class Brian(np.ndarray):
-    """A subclass of arrays with an attribute `dimensions`, as Quantity of brian2."""
+    """A subclass of arrays with an attribute `dimensions`, like Quantity of brian2."""
 
     dimensions = frozenset({"length"})
 
 
 class OpenMM:
-    """An object with a value and a unit, as Quantity of openmm."""
+    """An object with a value and a unit, like Quantity of openmm."""
 
     def __init__(self, value: Any) -> None:
         self.value, self.unit = value, "angstrom"
@@ -49,7 +49,7 @@ class OpenMM:
 
 
 class Labelled:
-    """An array whose notes are also attributes, as DataArray of xarray."""
+    """An array whose entries of `attrs` are also attributes, like DataArray of xarray."""
 
     __slots__ = ("attrs", "data")
 
@@ -66,7 +66,7 @@ class Labelled:
 
 
 class NetCDF:
-    """A variable with the names of its axes, as Variable of netCDF4."""
+    """A variable with the names of its axes, like Variable of netCDF4."""
 
     dimensions = ("time",)
 

@@ -63,7 +63,8 @@ class Forces(NamedTuple):
 
 
 def motion(a: Any, b: Any, gyration2: Any, gravity: Any, theta: Any, omega: Any) -> Motion:
-    """The motion through a state; its energy above flat is computed without cancellation."""
+    """The motion through a state. Its energy above rest in the flat position is computed without
+    cancellation."""
     fields = np.broadcast_arrays(a, b, gyration2, gravity, omega)
     a, b, gyration2, gravity, omega = (np.asarray(field, np.longdouble) for field in fields)
     sine, cosine = reduced(theta, a, b)
@@ -82,7 +83,7 @@ def passing_flat(a: float, b: float, gyration2: float, gravity: float, omega: Ar
 
 
 def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
-    """|omega| at a reduced angle [rad/s]; 0 where the motion does not reach it."""
+    """|omega| at a reduced angle [rad/s], or 0 if the motion does not reach that angle."""
     h, slope, *_ = outline(moving.a, moving.b, sine, cosine)
     longer, shorter = np.maximum(moving.a, moving.b), np.minimum(moving.a, moving.b)
     rise = (longer - shorter) * (longer + shorter) * sine**2 / (h + shorter)
@@ -120,14 +121,15 @@ def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
 
 # ------------------------------------------------------------ extremes over a motion
 
-COLUMN = (slice(None), None)  # index that stacks motions
+COLUMN = (slice(None), None)  # index that turns an array with one entry per motion into a column
 
 
 class Chart(NamedTuple):
     """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v: even steps in v resolve all scales.
 
-    The narrowest feature, of thin bodies with small inertia, is (b/a)^2 wide. tan phi = 1e9 stands
-    for the tip. Every force is even in pi/2 - phi there, so that the difference is 1e-18.
+    The narrowest feature, of thin bodies with small inertia, is (b/a)^2 wide. The chart of a
+    rotation ends at tan phi = 1e9 instead of the tip. There every force is an even function of
+    pi/2 - phi, so that it differs from the force on the tip by a relative 1e-18.
     """
 
     waist: Long
@@ -254,7 +256,7 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
 def contact_loss_lift(a: Any, b: Any, gyration2: Any, gravity: Any, samples: int = 300) -> Long:
     """Smallest `lift` for which N reaches 0: N is linear in the energy at each angle."""
     still = motion(a, b, gyration2, gravity, 0.0, 0.0)
-    still = still._replace(lift=still.gravity * 2 * np.maximum(still.a, still.b))  # beyond the tip
+    still = still._replace(lift=still.gravity * 2 * np.maximum(still.a, still.b))  # passes the tip
     on = chart(still)
 
     def lift(moving: Motion, on: Chart, v: Long) -> Long:

@@ -1,7 +1,7 @@
-"""The 2:1 disc on Earth, started from flat with a speed close to that which rolls it over.
+"""A 2:1 disc on Earth, started from its flat position at a speed close to the roll-over speed.
 
-mpmath and the energy integral of reference/make_rolling_reference.py give the side and distance
-from that speed, and the time until the body lies flat again.
+mpmath gives the sign and size of the difference from the roll-over speed. The energy integral of
+reference/make_rolling_reference.py gives the time until the body lies flat again.
 """
 
 from functools import cache
@@ -12,7 +12,7 @@ import mpmath as mp
 
 from oracles.numbers import DIGITS
 
-A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # exact doubles, except g
+A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # exact in doubles, except GRAVITY
 
 
 class Throw(NamedTuple):
@@ -29,7 +29,8 @@ class Throw(NamedTuple):
 
 @cache
 def rule() -> reference.Rule:
-    """Rule of the quadrature: 30 nodes on panels that grow by 1.8 reach 1e-25."""
+    """Gauss rule with 30 nodes on each panel, and panels that grow by a factor of 1.8. Its error is
+    1e-25."""
     with mp.workdps(DIGITS):
         return reference.gauss_rule(30, 1.8)
 
@@ -55,5 +56,5 @@ def throw(k: int, side: int) -> Throw:
         scene = reference.Scene(A, B, GYRATION2, GRAVITY, 0.0, omega)
         moving = reference.RollingEllipse(scene, rule())
         thrown = Throw(omega, float(mp.mpf(omega) / exact - 1), float(2 * moving.quarter_time))
-        assert moving.rocks != thrown.rolls_over  # the energy and the speed agree
+        assert moving.rocks != thrown.rolls_over  # the energy gives the same answer
         return thrown

@@ -5,19 +5,20 @@ from typing import Any
 import numpy as np
 
 ORDER = 30
-# A quarter turn as a sum: angles are counted from the nearest one, as thin bodies require
+# A quarter turn is QUARTER + REST. Angles are measured from the nearest quarter turn, since thin
+# bodies need their last digits.
 QUARTER = np.longdouble(float.fromhex("0x1.921fb54442d18p+0"))
 REST = np.longdouble(float.fromhex("0x1.1a62633145c07p-54"))
 Columns = Any  # an array of long doubles for each motion
 
 
 def product(p: Columns, q: Columns, k: int) -> Columns:
-    """The coefficient k of a product."""
+    """Coefficient k of the product of two power series."""
     return np.sum(p[: k + 1] * q[k::-1], axis=0)
 
 
 def quotient(p: Columns, q: Columns, found: Columns, k: int) -> Columns:
-    """The coefficient k of p/q, given all earlier ones."""
+    """Coefficient k of a quotient of power series from p_k, q and the earlier coefficients."""
     return (p - np.sum(q[1 : k + 1] * found[:k][::-1], axis=0)) / q[0]
 
 

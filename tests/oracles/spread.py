@@ -53,7 +53,8 @@ def state(t: float, **motion: float) -> Floats:
 
 
 def path_grain(motion: Inputs) -> Floats:
-    """Rounding of theta, omega and x, a difference of rounded lengths of the size of the body."""
+    """Additional rounding of (theta, omega, x): x is the difference of two rounded lengths, which
+    are of the size of the body."""
     return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
 
 

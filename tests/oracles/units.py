@@ -42,7 +42,7 @@ def scene_in_other_units(scene: Scene, units: Powers) -> Scene:
 def assert_same_in_other_units(one: Trajectory, other: Trajectory, units: Powers) -> None:
     """Samples and events of the second motion are those of the first in its units.
 
-    A zero may have another sign: that of z_dot at the start of a circle, h' omega with h' = 0.
+    Zeros may differ in sign, as z_dot = h' omega does at the start of a circle, where h' = 0.
     """
     assert np.array_equal(one.mode, other.mode) and len(one.events) == len(other.events)
     for name, unit in (STATE | {"t": "s"}).items():

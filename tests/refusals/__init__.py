@@ -1,8 +1,8 @@
 """Wrong calls of the package, in one table per module.
 
-**A new refusal goes into the table of its module**: a row is the name of the argument with which
-the message must start, and the call; `wrong` makes rows of one call with many wrong values. If no
-argument is wrong (a package is missing), the row has the class of the exception instead.
+**A new refusal goes into the table of its module**: a row contains the name of the argument, with
+which the message must start, and the call. `wrong` makes rows for one call with many wrong values.
+If no argument is wrong (a package is missing), the class of the exception replaces the name.
 `test_messages.py` makes the calls, checks the grammar of the messages, and compares the lines that
 raise with the sources; `test_numbers.py` has the rules that all numbers share.
 """
@@ -35,7 +35,7 @@ def but(*taken: Any) -> list[Any]:
 
 
 def wrong(call: Callable[..., Any], usual: dict[str, Any], **values: Any) -> Iterator[Row]:
-    """Rows of a call: each argument takes one wrong value after another."""
+    """Rows for a call in which one argument at a time has one of its wrong values."""
 
     def later(given: dict[str, Any]) -> Callable[[Path], Any]:
         return lambda _: call(**given)

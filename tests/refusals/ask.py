@@ -91,7 +91,7 @@ REFUSALS: list[Row] = [
     *wrong(AIR.to_mjcf, {}, timestep=[*NOT_POSITIVE, 5e-324, 1e300], contact_steps=NOT_POSITIVE),
     ("restitution", lambda _: AIR.replace(restitution=0.5).to_mjcf()),
     *(("friction", lambda _, to=to: to()) for to in (AIR.to_mjcf, AIR.to_sdf)),
-    # scenes as text, and links of the live page with Scene's names and with older ones
+    # scenes as text, and links to the live page with the names of Scene or with older names
     *((key, lambda _, source=source: Scene.from_json(source)) for key, source in SOURCES),
     ("source", from_a_file),
     *wrong(ROLLING.to_link, {}, t=[*NOT_POSITIVE, "6"]),

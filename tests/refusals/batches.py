@@ -92,7 +92,8 @@ def spoilt(change: Callable[[Path], Any], scenes: Any = MANY) -> Callable[[Path]
 
 
 def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
-    """Replace arrays in the one chunk, or in another file; None removes an array."""
+    """Change arrays in the only chunk, or in another file. A change that returns None removes the
+    array."""
 
     def change(path: Path) -> None:
         file = next(path.glob(name))
@@ -107,7 +108,7 @@ def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
 
 
 def put(place: Any, value: float) -> Callable[[Any], Any]:
-    """Replace the number at a place of an array."""
+    """Replace the number at an index of an array."""
 
     def change(values: Any) -> Any:
         values[place] = value

@@ -11,7 +11,7 @@ from refusals import Row
 
 
 def told(*arguments: str) -> Callable[[Path], Any]:
-    """The command line's one-line error of a call."""
+    """A call of the command line with these arguments."""
     return lambda _: _motion(motion_parser().parse_args(list(arguments)))
 
 

@@ -1,4 +1,4 @@
-"""Refusals of the border to the core: sizes of arrays, and times outside a solution."""
+"""Refusals of the Python bindings of the core: sizes of arrays, and times outside a solution."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ SEVEN = [np.array([value]) for value in (1.0, 2.0, 1.0, 0.2, 1.0, 9.81, 1.25)]
 
 
 def numbered(count: int, wrong: int) -> list[Any]:
-    """Arguments of two numbers each, except one of three."""
+    """Arrays of two numbers, except the one at index `wrong`, which has three."""
     return [THREE if i == wrong else TWO for i in range(count)]
 
 

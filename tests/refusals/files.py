@@ -60,7 +60,8 @@ def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
 
 
 def facts(motion: rl.Trajectory = CONTACT, **given: Any) -> Iterator[Row]:
-    """Rows that each replace one fact of the JSON; double underscores join the parts of a name."""
+    """Rows that each replace one value in the JSON. In a name, double underscores separate the keys
+    that lead to the value."""
 
     def put(name: str, value: Any) -> Change:
         *road, last = (int(key) if key.isdigit() else key for key in name.split("__"))
@@ -92,7 +93,7 @@ def text(content: str) -> Row:
 def members(
     compression: int = zipfile.ZIP_STORED, *, text: str | None = '{"schema": 4}', **contents: bytes
 ) -> Row:
-    """A row for an archive of the text, if any, and these members."""
+    """A row for an archive that contains the text, unless it is None, and these members."""
     file = io.BytesIO()
     if text is not None:
         contents = {"about": npy(text), **contents}
@@ -114,7 +115,8 @@ def header(shape: str, dtype: str = "<f8", version: bytes = b"\x01\x00") -> byte
     return b"\x93NUMPY" + version + len(said).to_bytes(2, "little") + said
 
 
-# : Headers too long or short, too deep, of objects, of another version, and a pickle.
+# : Headers of arrays that are too large, too small, nested too deeply, of objects or of another
+# : version, and a pickle.
 HEADERS = [
     *map(header, ("(1000000000000,)", "(13,)", "(-12, -1)", f"({'1, ' * 70}12)", "'all'",
                   "(" * 500 + "12" + ",)" * 500, "-" * 7000 + "1")),
@@ -124,7 +126,7 @@ HEADERS = [
 
 
 def broken(_: Path) -> Any:
-    """Use a name whose module fails to load, for the first time."""
+    """Look up a name of the package whose module cannot be loaded."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rl, "_import_module", lambda *_: np.no_such_name)  # type: ignore[attr-defined]
         return rl.__getattr__("plot")

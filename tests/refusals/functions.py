@@ -30,7 +30,7 @@ HIT: dict[str, Any] = {
     "theta": 0.3, "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5,
     **AXES,
 }  # fmt: skip
-# : Quantities measured before an impact, in four rows.
+# : theta, x_dot, z_dot and omega before an impact, in four rows.
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
@@ -69,7 +69,7 @@ def written(folder: Path, content: bytes) -> Path:
 
 
 def marked_by(folder: Path, scale: float) -> Any:
-    """The mark of sheet 8 for scaled impacts."""
+    """The mark of task 8.1 if all measured numbers are multiplied by a scale."""
     rows = scale * np.vstack(course.measured_impacts()).T
     np.savetxt(folder / "seen.csv", rows, delimiter=",", header=IMPACTS, comments="")
     with patch.dict("os.environ", {TABLE: str(folder / "seen.csv")}):
@@ -93,7 +93,7 @@ REFUSALS: list[Row] = [
         rl.flow_jacobian, FLOW, wrt=[[], "x", 3, ["t", "t"], "gyration2"], t=[*NOT_FINITE, "x"],
         a=NOT_POSITIVE, workers=WORKERS,
     ),
-    # the body almost stops on its tip: a change by a rounding is a swing or a turn
+    # the body almost stops on its tip, where a rounding decides whether it swings back
     ("wrt", lambda _: rl.flow_jacobian(1e9, **AXES, theta=1.0, omega=3.0)),
     *wrong(rl.classify, TURN, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
            gyration2=NOT_POSITIVE, theta=NOT_FINITE, omega=NOT_FINITE, friction=[-1.0, NAN],

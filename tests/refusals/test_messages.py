@@ -40,7 +40,7 @@ UNREACHABLE: dict[str, str] = {
     "there is no integrator for the method '": "settings refuse such a method before",
     "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
     " for its first piece since angles below 1e-100 are none to endless friction",
-    # reason of a run that has no answer, kept in the race
+    # texts that a race stores as the reason of a run without an answer
     "flow must be given a scene that rolls": "a reason",
     "raise IntegrationError(motion)": "a reason",
     'NotImplementedError("': "a reason",
@@ -115,7 +115,7 @@ def test_a_rejected_picture_leaves_no_figure(all_provoked: list[Provoked]) -> No
     assert all_provoked and pyplot.get_fignums() == []
 
 
-ours: Any = rolling_ellipse  # types refuse these calls, too
+ours: Any = rolling_ellipse  # Any, since a type checker would reject these calls
 HIT = {**dict.fromkeys(("theta", "x_dot", "z_dot", "omega", "friction"), 0.3), "restitution": 0}
 AT_REST = ours.simulate(ours.Scene(2.0, 1.0), 1.0)
 
@@ -150,7 +150,7 @@ def test_a_familiar_but_wrong_word_is_answered_with_the_right_one(said: str, cal
 
 
 def raising(path: Path) -> Iterator[tuple[int, int, str]]:
-    """First line, last line and text of each statement of a file that raises."""
+    """First line, last line and text of each statement in a file that raises an exception."""
     source = path.read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(source)):
         raises = isinstance(node, ast.Raise) and node.exc is not None
@@ -179,7 +179,7 @@ def test_every_raise_of_the_package_can_be_reached(all_provoked: list[Provoked])
 
 
 def thrown_texts(path: Path) -> Iterator[str]:
-    """Texts of exceptions in a file of C++, neighbouring literals joined."""
+    """Texts of the exceptions in a C++ file, with adjacent literals joined."""
     source = path.read_text(encoding="utf-8")
     for found in THROW.finditer(source):
         depth, end = 1, found.end()

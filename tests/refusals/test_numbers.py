@@ -167,7 +167,7 @@ def test_more_axes_than_numpy_can_broadcast_are_rejected(name: str, door: Door) 
 
 
 def test_numbers_of_every_type_are_converted_to_doubles() -> None:
-    """Numbers of any type count as their doubles, alone and in arrays."""
+    """Numbers are accepted alone and in sequences, arrays and array types of other libraries."""
     numbers: list[Any] = [
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
         Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),

@@ -1,4 +1,4 @@
-"""Refusals of a trajectory: wrong parts of it, and wrong arguments of its methods."""
+"""Refusals of a trajectory with wrong fields, and of wrong arguments of its methods."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -69,18 +69,18 @@ REFUSALS: list[Row] = [
     *wrong(DROPPED.sensitivity, {}, wrt=[
         [], "psi", 5, [5], ["theta", "theta"], "jx", "friction", "restitution"]),
     *wrong(DROPPED.sensitivity, {"wrt": "theta"}, side=[2, 0.5, [1], None, True]),
-    *wrong(MOTION.sensitivity, {}, wrt=["x_dot", "z"]),  # which follow rolling
+    *wrong(MOTION.sensitivity, {}, wrt=["x_dot", "z"]),  # both follow from theta and omega
     *(("wrt", lambda _, motion=motion, wrt=wrt: motion.sensitivity(wrt)) for motion, wrt in (
-        (rl.simulate(FLAT, 2.0), "theta"),  # settles on its side; no motion beside it is known
+        (rl.simulate(FLAT, 2.0), "theta"),  # no motion near one that settles on its side is known
         (rl.simulate(DROPPED.scene, DROPPED.events[0].t), "theta"),  # ends in an impact
-        (rl.simulate(scenes.bounce, BOUNCED.events[5].t), "theta"),  # the last part does
+        (rl.simulate(scenes.bounce, BOUNCED.events[5].t), "theta"),  # the last part ends in one
         (rl.simulate(CHAOS, 20.0), "theta"),  # changes grow too much
         (rl.simulate(FLAT, 2.0), "slope"),
         (NOISY, "theta"))),
     *(("motion", lambda _, motion=motion: motion.sensitivity("theta"))
       for motion in (STARTED, AT_REST, JAMMED, GIVEN)),
     *wrong(DROPPED.growth, {}, wrt=[[], "psi", 5, ["theta", "theta"], "friction", "t"]),
-    *wrong(MOTION.growth, {}, wrt=["x_dot", "z", "z_dot"]),  # which follow rolling
+    *wrong(MOTION.growth, {}, wrt=["x_dot", "z", "z_dot"]),  # all follow from theta and omega
     ("wrt", lambda _: rl.simulate(DROPPED.scene, DROPPED.events[0].t).growth("theta")),
     *(("motion", lambda _, motion=motion: motion.growth())
       for motion in (STARTED, AT_REST, JAMMED, GIVEN, rl.simulate(scenes.drop, 0))),

@@ -21,7 +21,7 @@ from .scenes import Body
 from .values import SHAPES, Draw, call
 
 MODULES = {"rl": rl, "rl.geometry": rl.geometry, "rl.impacts": rl.impacts, "rl.report": rl.report}
-#: Public functions by their names in lines.
+#: Public functions by the names that lines use.
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     f"{prefix}.{name}": getattr(module, name)
     for prefix, module in MODULES.items()
@@ -29,7 +29,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     if inspect.isfunction(getattr(module, name))
 }
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
-#: Functions with cases of their own.
+#: Functions with special cases; `any_function` does not draw them.
 OWN = ("rl.simulate", "rl.simulate_many", "rl.ends", "rl.load", "rl.load_many", *PICTURES)
 #: Functions that use files or take seconds per call; tests/refusals tests their arguments.
 SLOW = (
@@ -50,7 +50,7 @@ def _time(draw: Draw, of: Body) -> float:
     return draw.pick(1, -1) * of.clock * size
 
 
-#: Numbers by the name of the argument; functions of arrays get columns of them.
+#: Draws a number by the name of its argument; functions of arrays get arrays of such numbers.
 NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     **{name: _beside(name) for name in ("a", "b", "mass")},
     "t": _time,
@@ -67,7 +67,7 @@ NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     **dict.fromkeys(("d", "distance"), lambda d, of: of.length * d.between(-1, 1)),
     **dict.fromkeys(("jx", "jz", "dx", "dz"), lambda d, _: d.between(-3, 3)),
 }  # fmt: skip
-#: Functions that take one number for each argument.
+#: How the names of functions begin whose arguments are single numbers.
 OF_NUMBERS = ("thresholds", "blow_to", "fit", "eq_48", "struck_speed", "simulate")
 
 
@@ -147,7 +147,7 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
 
 
 def any_function(draw: Draw, of: Body) -> list[str]:
-    """One call to a public function, and the text of its answer."""
+    """One call to a public function, and the texts that represent its result."""
     asked = (*["rl.flow"] * 6, *["rl.classify", "rl.certify", "rl.period", "rl.blow_to"] * 3)
     asked += ("rl.outcome", "rl.thresholds", "rl.impacts.collide", "rl.report.simulate") * 2
     name = draw.pick(*asked, *PLAIN)
@@ -331,7 +331,7 @@ CONTENTS = (
     f"b'{_TABLE}'.replace(b',', b';')", f"b'{_TABLE}'.replace(b'0', b'\"')",
     "b'{{}}'", "b'PK\x03\x04'",
 )  # fmt: skip
-#: Calls that read or write files at a path where a hostile object may be.
+#: Calls that read or write files at a path at which there may be a hostile object.
 ON_FILES = (
     *["rl.load(path='there/a')", "rl.WorkPrecision.load(path='there/a')"],
     *["forged = rl.read_track(path='there/a', t='t', x='x', z='z', scale={extreme})"] * 3,

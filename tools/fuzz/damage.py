@@ -13,7 +13,7 @@ from typing import Any
 
 from oracles.files import put_together, taken_apart
 
-#: Objects that can stand in place of a file.
+#: Objects that can take the place of a file.
 THINGS: dict[str, Callable[[Path], Any]] = {
     "pipe": os.mkfifo,
     "folder": os.mkdir,
@@ -25,7 +25,7 @@ THINGS: dict[str, Callable[[Path], Any]] = {
 
 
 def put(kind: str, path: str, content: bytes = b"") -> str:
-    """Put a file or another object alone into the folder of a path; return the path."""
+    """Empty the folder of a path, then put a file or other object at the path; return the path."""
     place = Path(path)
     shutil.rmtree(place.parts[0], ignore_errors=True)
     place.parent.mkdir(parents=True)

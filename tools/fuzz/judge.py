@@ -70,8 +70,8 @@ class Case:
         self._finite = True
 
     def run(self, line: str, limit: float) -> tuple[bool, list[tuple[str, str]]]:
-        """Run a line, for `limit` seconds of processor time; return whether the next line can
-        follow, and the findings."""
+        """Run a line for at most `limit` seconds of processor time; return whether the next line
+        can run, and the findings."""
         name, code = _LINE.fullmatch(line).groups()  # type: ignore[union-attr]
         forged = "forged" in line
         self._finite &= not _NOT_FINITE.search(re.sub(r"friction=inf\b", "", code))
@@ -106,7 +106,7 @@ class Case:
         if isinstance(error, ValueError | TypeError):
             names = self._argument_names(code)
             if forged:
-                names |= {"q", "q_dot"}  # arguments made of forged arrays
+                names |= {"q", "q_dot"}  # arguments that contain forged arrays
             if "trajectories" in names:
                 names.add("trajectory")
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):

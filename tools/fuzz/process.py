@@ -1,4 +1,4 @@
-"""A separate process runs the cases, since a case may crash or never return.
+"""Run the cases in a separate process, since a case may crash or never return.
 
 A timer limits the processor time of each line; its signal is handled like Ctrl-C. A process that
 does not respond to the signal is ended by faulthandler's watchdog.

@@ -29,7 +29,7 @@ class Broken(Exception):
 
 
 def keeps(write: Any, folder: str) -> Any:
-    """Write into a folder, and require that nothing in it or behind its links has changed."""
+    """Write into a folder; require that its old entries, and files behind links, do not change."""
     before = _seen(folder)
     try:
         return write(folder)
@@ -42,7 +42,7 @@ def keeps(write: Any, folder: str) -> Any:
 
 
 def _seen(folder: str) -> dict[str, Any]:
-    """The status of all entries of a folder, and the content of regular files."""
+    """The status of all entries of a folder and of the file "mine", and the content of files."""
     found = [*Path(folder).rglob("*"), Path("mine")]
     return {
         str(each): (os.lstat(each)[:4], each.read_bytes() if each.is_file() else None)
@@ -51,14 +51,14 @@ def _seen(folder: str) -> dict[str, Any]:
 
 
 def marked(task: str, **environment: str) -> Any:
-    """Mark an answer of the course with its table of impacts."""
+    """Mark an answer of the course after setting environment variables, such as its data file."""
     os.environ.update(environment)
     return rl.course.mark(task, 1.0)
 
 
 def of_result(value: Any, finite: bool) -> Finds:
-    """Check any result. It must not contain NaN if all arguments are finite; a scene must not in
-    any case."""
+    """Check any result. It must not contain NaN if all arguments are finite; a scene must never
+    contain NaN."""
     if isinstance(value, rl.Trajectory):
         yield from of_trajectory(value)
     elif (finite or isinstance(value, rl.Scene)) and (where := _nan_in(value)) is not None:
@@ -124,14 +124,15 @@ def of_trajectory(found: rl.Trajectory) -> Finds:
 
 @np.errstate(all="ignore")
 def energy_growth(found: rl.Trajectory) -> float:
-    """Largest growth of the energy from one sample to the next, relative to its largest part."""
+    """Largest growth of the energy from one sample to the next, relative to the largest sum of
+    the magnitudes of kinetic and potential energy."""
     scale = np.max(np.abs(found.kinetic_energy) + np.abs(found.potential_energy))
     return float(np.max(np.diff(found.energy)) / scale)
 
 
 @np.errstate(all="ignore")
 def _blur(found: rl.Trajectory) -> float:
-    """Relative error of the energy due to rounded angles and a given `rest_speed`.
+    """Relative error of the energy due to rounded angles and the setting `rest_speed`.
 
     The relative change per radian is 1.6 a/b for D, a/2b for h; with infinite friction the forces
     depend on the distance to a tip; bounces below rest_speed are summed, with an error of at most

@@ -28,7 +28,7 @@ MANNERS: tuple[tuple[str, str, str], ...] = (
     ("auto", "rk4", ""),
     ("contact", "exact", ""),
 )
-# Powers of the units of length, time and mass in the numbers of a scene and of an impulse.
+# Exponents of length, time and mass in the unit of each field of a scene and of an impulse.
 POWERS = {
     name: exponents(unit).tolist() for k in ("Scene", "Impulse") for name, unit in UNITS[k].items()
 }
@@ -36,7 +36,7 @@ POWERS = {
 
 @dataclass(frozen=True)
 class Body:
-    """The numbers of a drawn scene, with scales for drawing other numbers that suit it."""
+    """The numbers of a drawn scene, and its scales, from which other suitable numbers are drawn."""
 
     values: dict[str, Any]  # numbers of the scene, without the impulse
     blow: dict[str, float]
@@ -99,7 +99,7 @@ def impulse(draw: Draw, of: Body) -> str:
 
 
 def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
-    """Scene of a body; with probability `mutate` one or two of its arguments are hostile."""
+    """Draw a scene of a body; with probability `mutate`, some of its arguments may be hostile."""
     if draw.chance(0.1):
         return f"rl.scenes.{draw.pick(*rl.scenes.__all__)}"
     arguments = {name: repr(value) for name, value in of.values.items()}
@@ -112,7 +112,7 @@ def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
 def times(draw: Draw, of: Body) -> tuple[str, float]:
     """Source text of sample times, and the last of these times."""
     last = of.clock * draw.pick(draw.between(0, 12), draw.between(0, 12), draw.power(-3, 2))
-    if draw.chance(0.08):  # times for long climbs of slopes and for many half turns
+    if draw.chance(0.08):  # long enough for long climbs of slopes and many half turns
         last = of.clock * draw.power(1, 8)
     if draw.chance(0.12):
         last = draw.pick(0.0, 5e-324, 1e300, draw.power(-320, 300), draw.power(-6, 6) * of.clock)

@@ -24,7 +24,7 @@ EXTREMES = (
     "nextafter(1.5, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e22", "1e6", "1e-6",
 )  # fmt: skip
 
-# Numbers of other types: the package accepts them, or refuses them with the name of the argument.
+# Numbers of other types: the package accepts each, or rejects it and names the argument.
 DRESSED = (
     "True", "np.bool_(True)", "np.float16(1.5)", "np.float32(1.5)", "np.int8(1)",
     "np.uint64(2**64 - 1)", "np.longdouble(1) / 3", "Fraction(1, 3)", "Decimal('0.5')",
@@ -32,7 +32,7 @@ DRESSED = (
     "type('Mine', (float,), {})(2.0)", "type('Whole', (), {'__index__': lambda self: 3})()",
 )  # fmt: skip
 
-# Values that are not a number, or more than one number.
+# Values that are not one number.
 WRONG = (
     "None", "'1'", "'nan'", "''", "b'1'", "bytearray(b'1')", "1j", "complex(1, 0)",
     "np.complex64(1)", "np.complex128(2)", "np.array([1 + 2j, 3])", "np.ma.masked",
@@ -54,7 +54,7 @@ WRONG = (
 
 SHAPES = ((), (), (), (1,), (3,), (7,), (0,), (2, 3), (2, 1), (1, 1), (2, 0), (40,))
 
-# Source texts that make an array of the given numbers.
+# Expressions that create an array, or another sequence, from a list of numbers.
 MAKES = (
     *["np.array({0})"] * 8, *["{0}"] * 3, "tuple({0})", "np.array({0}, dtype='>f8')",
     "np.repeat({0}, 2)[::2]", "np.array({0}[::-1])[::-1]", "np.array({0}, dtype=np.longdouble)",
@@ -100,7 +100,7 @@ class Draw:
         return float(10.0 ** self.between(low, high))
 
     def count(self, most: int) -> int:
-        """Draw a whole number up to `most`, small ones as likely as large ones."""
+        """Draw a whole number from 1 to `most`, on a logarithmic scale."""
         return round(self.power(0, math.log10(most)))
 
     def beside(self, value: float) -> float:
@@ -135,7 +135,7 @@ class Draw:
         return self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
 
     def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
-        """Source text of an array-like of the numbers."""
+        """Source text of an array, or of another sequence, with the given numbers."""
         if shape is not None and len(shape) != 1:
             return f"np.array({list(values)}).reshape({shape})"
         if all(abs(v) < 1e9 for v in values) and self.chance(0.05):

@@ -36,9 +36,9 @@ Impulse impulse_from(const double*& asked) {
     return found;
 }
 
-// The question in these numbers: those of the scene, in the order of `columns`, the end time, the
-// number of blows, and the time and impulse of each. An absent number is NaN, as is jx in a scene
-// without a blow.
+// Reads a question from numbers: those of the scene in the order of `columns`, the end time, the
+// number of later blows, and the time and impulse of each. An absent number is NaN, as is jx if the
+// scene has no blow.
 Question question_from(const double* asked) {
     SceneNumbers known;
     for (auto& number : known) {
@@ -68,8 +68,9 @@ std::size_t events_until_blow() {
     return count;
 }
 
-// The part of a question from the last blow of the last motion on: a scene in the state before that
-// blow, with the impulse of the blow in the question. Without a blow, it is the whole question.
+// The part of a question after the last blow of the last motion: a scene in the state before that
+// blow, with the impulse that the question has for it. Without a blow during the motion, the whole
+// question.
 Question from_blow(const Question& of) {
     const std::size_t count = events_until_blow();
     if (count == 0) return of;
@@ -115,7 +116,7 @@ std::string json(const Values& values) {
     return json("[]", values, [](const auto& each) { return json(each); });
 }
 
-// The time of the last blow, what it does, and the motion after it.
+// The time of the last blow and the description of the motion after it.
 std::string json_of_description() {
     const Scene struck = from_blow(question).scene;
     const std::size_t count = events_until_blow();
@@ -160,9 +161,9 @@ extern "C" const char* ask(const double* asked, int in_words) {
     return answer.c_str();
 }
 
-// The first outcome after the last blow that `ask` would report for the last motion with another
-// last blow, or an error message. Only a body that is struck in the air is simulated; the last
-// motion remains available to `samples`.
+// The first outcome that `ask` would report if only the last blow of the last motion were replaced;
+// or an error message. A motion is simulated only if the body is struck in the air, and `samples`
+// still samples the last motion of `ask`.
 extern "C" const char* first(const double* asked) {
     try {
         const Question struck = from_blow(question_from(asked));

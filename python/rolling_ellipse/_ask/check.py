@@ -36,7 +36,7 @@ _LONGEST = 300  # largest number of characters of a value in a message
 _FEW = 64  # longest list for the fast path, which saves no time for longer ones
 _FLOATS = {float}
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
-_PIECE = 2**17  # numbers converted at a time, in at most 10 ms; Ctrl-C acts between pieces
+_PIECE = 2**17  # numbers converted at once, in at most 10 ms; Ctrl-C acts between pieces
 _SLICED = (list, tuple, range)
 _TEXT = (str, bytes, bytearray, memoryview)  # sequence types that are not searched for numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # number types that need no further check
@@ -137,7 +137,7 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
-    """Do the work of `_doubles` for a value without masks or units; split a long list in pieces."""
+    """Convert a value without masks or units as `_doubles` does; split long lists into pieces."""
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
@@ -178,7 +178,7 @@ def _size(value: Any) -> int:
 
 
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
-    """Yield the pieces of an array in C order, each after the index of its first number."""
+    """Yield the pieces of an array in C order, each with the index of its first number."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
     for first in range(0, values.size, _PIECE):
         yield first, flat[first : first + _PIECE]

@@ -74,7 +74,7 @@ codecs.register_error("rolling_ellipse", _without_code)
 
 
 def printable(text: str) -> str:
-    """Return a text that standard output can print: ASCII for characters that it cannot encode.
+    """Return a text in which ASCII replaces all characters that standard output cannot encode.
 
     On an ASCII, Latin-1 or cp1252 console, printing an arrow would raise an error.
     """

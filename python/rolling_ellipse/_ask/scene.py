@@ -107,11 +107,11 @@ class Scene(FieldsOnly, Listed):
         Angle of the ground [rad], descending towards +x; ``|slope| <= 1.5``.
     friction : float
         Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
-        as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.
-        An initial slip does not follow that limit: if a large coefficient would press the body into
-        the ground until it jams, an impulse of the ground removes the slip at t = 0, which costs
-        energy (`initial_state.energy_lost`). A slip in the opposite direction continues with N = 0.
-        Without friction a moving contact is SLIDING, even that of a circle.
+        as long as N > 0; afterwards the body slides with N = 0, as in the limit of large
+        coefficients. An initial slip does not follow that limit: if a large coefficient would press
+        the body into the ground until it jams, an impulse of the ground removes the slip at t = 0,
+        which costs energy (`initial_state.energy_lost`). A slip in the opposite direction continues
+        with N = 0. Without friction a moving contact is SLIDING, even that of a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     rolling_resistance : float
@@ -324,7 +324,7 @@ class Scene(FieldsOnly, Listed):
 
     @cached_property
     def initial_state(self) -> InitialState:
-        """State just after the impulse, by the collision law without restitution (InitialState)."""
+        """InitialState just after the impulse, from the collision law without restitution."""
         start = _core.initial_state(self.core)
         known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
         return InitialState(**known, reason=in_words(start["reason"]))
@@ -332,7 +332,7 @@ class Scene(FieldsOnly, Listed):
     to_json, to_link, to_mjcf, to_sdf = to_json, to_link, to_mjcf, to_sdf
 
     def _changed(self) -> dict[str, Any]:
-        """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
+        """Return the semi-axes, and all other fields that differ from their defaults."""
         values = ((field, getattr(self, field.name)) for field in fields(self))
         return {field.name: value for field, value in values if value != field.default}
 
@@ -341,7 +341,7 @@ class Scene(FieldsOnly, Listed):
         return f"Scene({', '.join(given)})"
 
     def _rows(self) -> list[Row]:
-        """Return the rows of a table: the changed fields, then the mode at the start."""
+        """Return table rows of all fields that differ from their defaults, and of the start."""
         changed = self._changed()
         impulse = changed.pop("impulse", None)
         rows: list[Row] = [
@@ -356,7 +356,7 @@ class Scene(FieldsOnly, Listed):
 
 
 def _doubt(name: str, value: float) -> str:
-    """Return a remark on a valid value in rad or rad/s that looks as if it were in degrees."""
+    """Return a remark if a value in rad or rad/s was probably meant in degrees, otherwise ""."""
     whole = _DEGREES.get(name)
     return " (degrees? times pi/180)" if whole and value and value % whole == 0 else ""
 

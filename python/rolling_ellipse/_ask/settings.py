@@ -143,7 +143,7 @@ def _whole(name: str, value: Any) -> int:
     return count
 
 
-_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by type of field
+_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by the type of the field to be checked
     "Model": partial(choice, valid=MODELS),
     "Method": partial(choice, valid=METHODS),
     "Stabilization": partial(choice, valid=STABILIZATIONS),

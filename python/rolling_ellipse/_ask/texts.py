@@ -17,8 +17,8 @@ _Given = dict[str, Any]
 _VERSION = 1
 _NAMES, _BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 LINKS = ("#", "http:", "https:", "file:")
-_BESIDE = ("t", "blows", "lang")  # in a link: end and blows of the motion, language of the page
-_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # arguments of Scene by older name
+_BESIDE = ("t", "blows", "lang")  # other keys of a link: end and blows of the motion, language
+_OLDER = {"k": "inertia", "height": "z", "slip": "x_dot"}  # names in older links, and in Scene
 
 
 def to_json(scene: Any) -> str:
@@ -127,7 +127,7 @@ def _of_link(link: str) -> _Given:
         names = [*(name for name in names if name not in _OLDER.values()), *_OLDER]
         required += ["mass", "theta", "omega", *_OLDER]
     given = _known("source", pairs, names, required)
-    if blows := given.get("blows"):  # t, jx, jz, dx, dz of each
+    if blows := given.get("blows"):  # t, jx, jz, dx, dz of each blow
         message = f"a scene has no blows during its motion: pass {blows} to simulate as blows="
         warnings.warn(message, UserWarning, stacklevel=4)
     numbers = {name: _linked(name, given[name]) for name in given if name not in _BESIDE}

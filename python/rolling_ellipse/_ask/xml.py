@@ -23,7 +23,8 @@ def to_mjcf(scene: Any, *, timestep: float = 0.001, contact_steps: float | None 
         Time step [s].
     contact_steps : float or None
         Time constant of the contact in steps, with elliptic friction cones and an impedance of
-        0.9999; MuJoCo requires at least 2. None: MuJoCo's default contact, with 0.02 s.
+        0.9999; MuJoCo requires at least 2. None: MuJoCo's default contact, with a time
+        constant of 0.02 s.
 
     Raises
     ------

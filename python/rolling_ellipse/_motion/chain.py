@@ -1,10 +1,11 @@
 """Derivatives of a motion with many events, computed part by part with the chain rule.
 
-A part has a few events and starts in the middle of an arc, in the state of the motion at that time.
-Let M be its derivatives with respect to that state, and P those with respect to the parameters of
-the body. Then the derivatives S at the start of the part become M S + P at its end. Differences
-only have to cope with the growth within a part. Hence derivatives exist even if no neighbour of the
-whole motion has the same events, up to a growth of 1e13.
+A part has a few events. It starts in the middle of an arc, in the state of the motion at that time.
+Let M be the derivatives of the state at the end of the part with respect to its start, and P those
+with respect to the parameters of the body. If S are the derivatives of the state at the start,
+those at the end are M S + P. Only the neighbours of a single part need to have the same events.
+Hence derivatives exist up to a growth of 1e13, even if all neighbours of the whole motion have
+other events.
 """
 
 from __future__ import annotations
@@ -24,12 +25,13 @@ from .inputs import BODY, STATE, size_of, units_of
 from .samples import FREE, Pair
 from .trajectory import Trajectory
 
-EVENTS = 3  # number of events of a part
-# Duration of the shortest flight that is cut, in units of sqrt(L/g). It rises to L/1000, a hundred
-# times the steps that give differences with ten digits. A lower hop would require smaller steps.
+EVENTS = 3  # number of events per part
+# Duration of the shortest flight that is cut, in units of sqrt(L/g). Such a flight rises to L/1000,
+# a hundred times the steps that give differences with ten digits. A lower hop needs smaller steps.
 _HOP = 0.1
-# Relative difference between the derivatives along the computed arcs and the exact ones, in units
-# of rounding times the growth of the motion: at most 42 in 120 motions with a growth of up to 4e12
+# Bound on the relative difference between the derivatives along the computed arcs and the exact
+# ones, in roundings times the growth of the motion. The largest difference in 120 motions with a
+# growth of up to 4e12 was 42.
 _ROUNDINGS = 64
 
 
@@ -46,7 +48,7 @@ class Chained(NamedTuple):
 
 
 class Part(NamedTuple):
-    motion: Trajectory  # sampled where the whole motion is, and at the start of the next part
+    motion: Trajectory  # sampled like the whole motion, and at the start of the next part
     rows: FloatArray  # indices of the part's samples and events in the whole motion
     end: float  # time at which the part ends in the whole motion
 
@@ -57,7 +59,7 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
     whole = Chained(np.zeros((len(STATE), rows, len(names))), *np.zeros((2, rows, len(names))))
     start = np.zeros((len(STATE), len(names)))
     scales = [size_of(motion.scene, name) for name in names]
-    growth = 1.0  # of changes of the inputs, or of the state at the end of the first part
+    growth = 1.0  # largest growth of a change of an input, or of the state after the first part
     # For each earlier part: the derivatives of the current state with respect to the state at the
     # end of that part, and the errors made in it
     since: list[tuple[FloatArray, FloatArray]] = []
@@ -86,22 +88,23 @@ def chained(motion: Trajectory, names: tuple[str, ...], side: int) -> Chained | 
 
 
 def free_of(scene: Scene) -> tuple[str, ...]:
-    """Return the coordinates of a start that neither contact nor grip determines."""
+    """Return the coordinates of the start of a scene that its contact does not determine."""
     mode = (scene if scene.impulse is None else scene.replace(impulse=None)).initial_state.mode
     in_air = scene.z is not None
     return tuple(name for name in FREE[mode] if in_air or getattr(scene, name) is not None)
 
 
 def by_state(part: Trajectory, free: Iterable[str]) -> Pair:
-    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6); 0 if not free.
+    """Return derivatives with respect to the start, (6, r, 6), and errors, (r, 6).
 
+    Entries are 0 for coordinates that are not in `free`.
     Both the states and the start are in natural units.
     """
     # The shape of an arc does not depend on x
     names = [name if name in free and name != "x" else None for name in STATE]
     value, error = _derivatives(part, names, 0)
     units = units_of(part.scene)
-    value[0, : len(part.t), 0] = ("x" in free) / units[0]  # x shifts with its start
+    value[0, : len(part.t), 0] = ("x" in free) / units[0]  # all x shift with the first one
     return value * units, error * units
 
 
@@ -136,7 +139,10 @@ def parts_of(motion: Trajectory, events: int) -> list[Part]:
 
 
 def _cuts(motion: Trajectory, events: int) -> list[int]:
-    """Return how many events precede each cut, from none to all; cuts are in the middle of arcs."""
+    """Return the number of events before each cut: 0 for the start, and all for the end.
+
+    The other cuts are in the middle of arcs.
+    """
     cuts, spin = [0], float(units_of(motion.scene)[-1])
     for count, (before, after) in enumerate(pairwise(motion.events), 1):
         mode = before.state_after.mode

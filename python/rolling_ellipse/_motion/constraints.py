@@ -190,9 +190,9 @@ def energy_error(motion: Trajectory) -> FloatArray:
     """Return |E - E0| over the largest kinetic + |potential| energy, (n,).
 
     E0 is the energy of the first sample. Losses in impacts and by friction are not errors: after an
-    event that may change the energy, E0 is the energy of the next sample. In a slide, or while the
-    body rolls with resistance, the error is NaN. Heights are measured from the ground at the first
-    sample, so that the origin of x does not matter.
+    event that may change the energy, E0 is the energy of the next sample. In a slide with friction,
+    or on the ground with rolling resistance, the error is NaN. Heights are measured from the ground
+    at the first sample, so that the origin of x does not matter.
     """
     scene = motion.scene
     along = motion.x - motion.x[0]

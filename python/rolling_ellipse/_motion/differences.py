@@ -1,4 +1,4 @@
-"""Derivatives of a motion from differences between neighbours, with the best of many steps."""
+"""Derivatives of a motion: differences between neighbouring motions, for the best of many steps."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _GROWN = 8.0  # trials end when the error exceeds the smallest one by this facto
 _UNITS = 8  # error bound [ulp] of states and times that the package guarantees
 
 _LEAST_LEVER = 1e-200  # [m]; replaces a rolling resistance of 0
-_END = "no event"  # stands for a missing event
+_END = "no event"  # name of the end of a motion, for messages
 
-# For each side: offsets in steps, and weights of sixth order (Fornberg [1])
+# For each side: offsets in steps, and weights of sixth order (Fornberg, see `sensitivity`)
 _FORWARD = np.arange(7.0), np.array([-147, 360, -450, 400, -225, 72, -10]) / 60
 RULES = {
     0: (np.array([-3.0, -2, -1, 1, 2, 3]), np.array([-1, 9, -45, 45, -9, 1]) / 60),
@@ -75,7 +75,8 @@ class Best:
     """
 
     def __init__(self, shape: tuple[int, ...], least: Any) -> None:
-        self.value, self._least = np.zeros(shape), least  # errors are relative to `least` or more
+        # Errors are relative to the largest component of a vector, or to `least` if that is larger
+        self.value, self._least = np.zeros(shape), least
         self.error, self.step = np.full(shape[1:], np.inf), np.zeros(shape[1:])
         self._done = np.zeros(shape[1:], bool)
         self._last: tuple[FloatArray, FloatArray, Any] | None = None
@@ -112,7 +113,7 @@ def neighbours(motion: Trajectory, name: str, side: int) -> tuple[Best, ValueErr
             if name == "rolling_resistance" and not motion.scene.rolling_resistance:
                 motion = _with_turns(motion)
             value, rounding = _differences(motion, settings_of(motion), name, side, step)
-        except ValueError as refusal:  # no such scene, or different events
+        except ValueError as refusal:  # the changed scene is invalid, or its events differ
             problem = refusal
             continue
         if best.take(value, rounding, step):
@@ -131,7 +132,7 @@ def _with_turns(motion: Trajectory) -> Trajectory:
 
 
 def error_of_method(motion: Trajectory, name: str, side: int, best: Best) -> FloatArray:
-    """Return the distance of the vectors of `neighbours` from those with tighter settings."""
+    """Return how far the vectors of `neighbours` are from those computed with tighter settings."""
     settings, step = settings_of(motion), float(best.step[size(best.value).argmax()])
     finer = dataclasses.replace(
         settings, rtol=settings.rtol / 8, atol=settings.atol / 8,
@@ -219,7 +220,7 @@ def kinds_of(events: Iterable[Event]) -> list[str]:
 
 
 def knots_of(motion: Trajectory) -> FloatArray:
-    """Return the times of the start, the events and the end; one law holds between them."""
+    """Return the times of the start, the events and the end."""
     return np.array([0.0, *(event.t for event in motion.events), motion.t_end])
 
 

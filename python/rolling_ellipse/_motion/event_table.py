@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-_EFFECTS = "reaction_x", "reaction_z", "energy_lost"  # fields of states after an event only
+# Fields that are read only from the state after an event
+_EFFECTS = "reaction_x", "reaction_z", "energy_lost"
 _CODES = {"kind": EventKind, "mode_before": Mode, "mode_after": Mode}
 
 
@@ -133,7 +134,7 @@ def _unit(column: str) -> str:
 
 
 def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
-    """Return the columns of a table from rows of the core, for one body or for one body per row."""
+    """Return the columns of a table from rows of the core, for one body or a body for each row."""
     columns: dict[str, Any] = dict(zip(_core.COLUMNS["events"], rows.T.copy(), strict=True))
     with np.errstate(all="ignore"):
         for when in ("before", "after"):
@@ -148,7 +149,7 @@ def columns_of(rows: FloatArray, body: Any) -> dict[str, Any]:
 
 
 def with_effects(rows: FloatArray, body: Any) -> FloatArray:
-    """Return rows of an older version, without blows, with the effects of their impacts added."""
+    """Add the effects of impacts to rows of an older version, which has no blows."""
     columns = dict(zip(_core.COLUMNS["events"], rows.T, strict=False))
     mass, inertia, *_ = body
 

@@ -100,7 +100,7 @@ class Event(FieldsOnly):
 
 
 class Events(tuple[Event, ...]):
-    """A tuple of events in order of time that prints as a table; its slices do the same.
+    """A tuple of events in order of time that prints as a table, as do its slices.
 
     For many events the table shows the first and the last ones.
     """

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made", bound="Trajectory")
 _NEAR = 5  # number of samples of a local polynomial
-_PIECE = 2**12  # times solved for at once, in at most 20 ms; Ctrl-C acts between pieces
-_SMALL = 0.01  # gap over max(a, b), or slip over sqrt(g max(a, b)), of a body that rolls
+_PIECE = 2**12  # times evaluated together, in at most 20 ms; Ctrl-C acts between pieces
+_SMALL = 0.01  # largest gap over max(a, b), and slip over sqrt(g max(a, b)), in rolling
 
 
 def from_arrays(

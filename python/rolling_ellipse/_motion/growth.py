@@ -1,4 +1,4 @@
-"""How fast small changes of a motion's state grow, as sums of logarithms arc by arc."""
+"""The growth of small changes of a motion's state, as sums of logarithms over the arcs."""
 
 from __future__ import annotations
 
@@ -164,11 +164,11 @@ def _stretched(part: Trajectory, basis: FloatArray, free: tuple[str, ...]) -> Pa
     derivatives are too inaccurate.
     """
     value, errors = (each[..., len(part.t) - 1, :] for each in by_state(part, free))
-    error = math.sqrt(len(STATE)) * float(errors.sum())  # of the image of any unit vector
+    error = math.sqrt(len(STATE)) * float(errors.sum())  # of any unit vector's image
     if not error < WORST * max(1.0, size(value).max()):
         raise ValueError(f"steps agree only to {error:.1g}")
     columns, made, r = value @ basis, np.zeros_like(basis), np.zeros((basis.shape[1],) * 2)
-    unsure = np.zeros(len(r))  # error of each direction
+    unsure = np.zeros(len(r))  # error of each column of Q
     for j, column in enumerate(columns.T):
         for _ in range(2):  # Gram-Schmidt, repeated because a small remainder loses accuracy
             along = made.T @ column

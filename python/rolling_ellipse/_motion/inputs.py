@@ -54,7 +54,10 @@ def value_of(scene: Scene, name: str) -> float:
 
 
 def size_of(scene: Scene, name: str) -> float:
-    """Return the natural size of an input: its magnitude, or its natural unit if that is larger."""
+    """Return the natural size of an input: its magnitude, or its natural unit if that is larger.
+
+    The natural sizes of theta and t are their natural units.
+    """
     length, _, one, speed, _, spin = units_of(scene).tolist()
     push = scene.mass * speed
     units = {

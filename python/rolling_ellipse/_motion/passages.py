@@ -46,7 +46,7 @@ def when(
 ) -> Any:  # fmt: skip
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    The times are accurate to the last bits and do not depend on the motion's samples. A
+    The times are accurate to a few ulp and do not depend on the motion's samples. A
     `CompletenessWarning` is issued if some may be missed, as is possible for every `function`.
 
     Parameters

@@ -248,7 +248,7 @@ def _derivatives(
     ends = slice(n, n + 1), slice(n + 1, None)  # rows of the end and of the events
     whole = motion.sol(np.append(motion.t, motion.t_end))
     value = np.zeros((len(STATE), n + 1 + len(motion.events), len(names)))
-    error, others = np.zeros((2, *value.shape[1:]))  # errors of differences, and of the motion
+    error, others = np.zeros((2, *value.shape[1:]))  # errors of the differences, and of the motion
     problems: list[ValueError | None] = [None] * len(names)
     for k, name in enumerate(names):
         if name == "t":
@@ -299,7 +299,10 @@ def without_derivative(name: str, reason: object) -> ValueError:
 def _relative(
     motion: Trajectory, names: tuple[str, ...], value: FloatArray, error: FloatArray
 ) -> FloatArray:
-    """Return the largest errors of (r, k) relative to the largest entries of (6, r, k), (k,)."""
+    """Return the largest error for each input, relative to its largest derivative, (k,).
+
+    A derivative counts as at least one natural unit per natural size of its input.
+    """
     least = [1.0 if name == "t" else 1 / size_of(motion.scene, name) for name in names]
     largest = np.maximum(np.abs(value).max(axis=(0, 1), initial=0.0), least)
     return error.max(axis=0, initial=0.0) / largest
@@ -327,6 +330,6 @@ def _distance(motion: Trajectory, name: str, side: int) -> float:
 
 
 def _same_events(motion: Trajectory, changes: dict[str, float]) -> bool:
-    with suppress(ValueError):  # no such scene, or different events
+    with suppress(ValueError):  # the changed scene is invalid, or its events differ
         return bool(moved(motion, settings_of(motion), changes))
     return False

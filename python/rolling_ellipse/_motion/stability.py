@@ -23,10 +23,10 @@ def advice(motion: Trajectory) -> str | None:
     """Return a sentence of advice if a motion has lost energy or left its constraints, or None.
 
     Both errors are measured at the steps and between them. Rolling conserves energy; its change is
-    taken relative to the largest kinetic plus |potential| energy, with x = 0 at the start. A
-    projection enforces constraints and energy for any step size, but it hides the local error. The
-    distance by which it moves a state reveals this error, because the constraint error of a step is
-    part of its local error and of the same order. If that distance is a tenth of the body, the
+    divided by the largest kinetic plus |potential| energy, with x = 0 at the start. A projection
+    enforces constraints and energy for any step size, but it hides the local error. The distance by
+    which it moves a state reveals this error, because the constraint error of a step is part of its
+    local error and of the same order. If that distance exceeds a tenth of the long semi-axis, the
     projected state belongs to another motion.
     """
     losses = motion._solution.losses()

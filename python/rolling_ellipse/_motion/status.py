@@ -43,7 +43,7 @@ class Status(enum.Enum):
 
 
 COMPLETED = Status.COMPLETED  # a module variable, since access through the class is 5 times slower
-_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two possible motions
 # The Status for each code of the core's endings
 STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
 
@@ -61,4 +61,4 @@ class IntegrationError(RuntimeError):
 
 
 class WorkerError(RuntimeError):
-    """An executor lost a task, so its scenes have no result; `__cause__` is its exception."""
+    """An executor lost a task, whose scenes have no result; `__cause__` is the exception."""

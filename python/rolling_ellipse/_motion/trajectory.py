@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 # Attributes for files, pickles and `sol`, which `dir` omits
 _STORED = {"computed", "kept_events", "contact", "coordinates", "span", "start", "settings"}
 _Number = TypeVar("_Number", bound=np.generic)
-# Reasons that are omitted because `initial_state` gives them; one of them can come first
+# Reasons that are omitted because `initial_state` gives them; only the first can be one of these
 _NOT_NEW = ("no_blow", "sticks", "in_the_air")
 
 
@@ -72,7 +72,7 @@ def _derived(
 
 
 def _part(whole: str, key: Any) -> cached_property[FloatArray]:
-    """Return a property of a Trajectory that is a part of another property."""
+    """Return a property of a Trajectory that is one item of another property."""
     return _derived(lambda self: getattr(self, whole)[key])
 
 
@@ -218,7 +218,8 @@ class Trajectory(FieldsOnly):
         """Solve a scene up to the last of the times, and sample it at all times reached.
 
         A start (q, q_dot) off the constraints replaces the start of the scene. For a motion with a
-        stop, `times` may be 0-d: the latest end, with evenly spaced samples up to the actual end.
+        stop, `times` may be a 0-d array, the latest end; the samples are then evenly spaced up to
+        the actual end.
         """
         until = times if times.ndim else times.reshape(1)
         solution, samples = _core.simulate(scene.core, settings.core, until, start)
@@ -376,10 +377,10 @@ class Trajectory(FieldsOnly):
         At the time of an event the scene continues in the mode after the event. It does not include
         later ``blows``. If the motion ended because of ``max_events``, its next event is due at
         `t_end`. An impact that is due is then the first event of the new motion, at t = 0 or one
-        rounding later; this is the only way to obtain a scene that moves into the ground. A change
-        of mode that is due happens without an event if the state is at the limit of its mode to
-        within rounding, otherwise a moment later. Bounces too low to be resolved are summed after
-        an impact; a scene that starts among them sums them after one more impact.
+        rounding later, although the constructor of Scene rejects bodies that move into the ground.
+        A change of mode that is due happens without an event if the state is at the limit of its
+        mode to within rounding, otherwise a moment later. Bounces too low to be resolved are summed
+        after an impact; a scene that starts among them sums them after one more impact.
 
         Raises
         ------

@@ -52,7 +52,7 @@ class Alone:
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 _LOOKS = ("color", "linewidth", "linestyle", "alpha", "labels", "colors", "figsize", "ax", "count")
-_NARROW = 2.5  # axes narrower than this get small letters [inch]
+_NARROW = 2.5  # legends of axes narrower than this have x-small letters [inch]
 _NAMED = 8  # maximum number of motions in a legend: more would fill the picture
 
 _SHARED = {
@@ -78,7 +78,7 @@ ValueError
 TypeError
     If a motion is not a Trajectory, or another argument has the wrong type.""",
 }
-"""Parts of docstrings; each replaces its `{name}`."""
+"""Shared parts of docstrings; `picture` replaces each `{key}` with its part."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -219,7 +219,7 @@ def pyplot_figure(**options: Any) -> Figure:
 
 
 def picture_file(path: Any) -> str | None:
-    """Return the name of the file to write, if any; it must not be the name of a quantity."""
+    """Return the name of the file to write, or None; raise ValueError if it names a quantity."""
     name = None if path is None else file_name("path", path)
     if any(name == each.name for each in QUANTITIES):
         raise ValueError(
@@ -238,7 +238,7 @@ def write(drawn: Artists, name: str | None) -> None:
 
 
 def save_figure(figure: FigureBase, path: Any, **options: Any) -> Any:
-    """Write the root figure to a file and return the name, or to an object with `write`.
+    """Write the root figure to a file and return its name, or write it to an open file.
 
     A name without a suffix gets the suffix of matplotlib's default format.
     """
@@ -260,7 +260,7 @@ def close(figure: Figure) -> None:
 
 
 def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: Any) -> None:
-    """Raise ValueError unless `figsize` is two positive numbers and the figure is a new one."""
+    """Raise ValueError if `figsize` is not two positive numbers, or the figure already exists."""
     if figsize is None:
         return
     wrong = shown(figsize)
@@ -273,13 +273,13 @@ def _check_size(figsize: Any = None, ax: Any = None, figure: Any = None, **_: An
 
 
 def _new_figure(size: tuple[float, float], figsize: Any) -> Figure:
-    """Open a pyplot figure whose size is `figsize`, or that set by the style, or else `size`."""
+    """Open a pyplot figure of size `figsize`, or by default of the style's size, or of `size`."""
     styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
     return pyplot_figure(figsize=figsize or (None if styled else size), layout="constrained")
 
 
 def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
-    """Return the entries for which a legend has room: all, or some evenly spaced ones."""
+    """Return the entries to show in a legend: all, or `_NAMED` evenly spaced ones."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
 

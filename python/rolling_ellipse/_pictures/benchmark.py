@@ -22,7 +22,7 @@ _SHAPES = {"right": "o", "wrong": "X", "failed": "s"}
 
 @dataclass(frozen=True, repr=False)
 class ScoresChart(Artists):
-    """Artists of `Scores.plot`; keys are the id of a problem and a setting."""
+    """Artists of `Scores.plot`; each key is the id of a problem and a setting."""
 
     marks: dict[tuple[str, float | None], Line2D]
 

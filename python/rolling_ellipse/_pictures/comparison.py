@@ -25,14 +25,14 @@ from .axes import listed, some_of
 from .palette import Palette, palette_of
 
 _ABOUT = "method", "model"
-MOST_FACTS = 3  # maximum number in a label: more would not fit into a small picture
+MOST_FACTS = 3  # maximum number of facts in a label; more would not fit
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
 MARKERS = (".", "x", "+", "1", "2")
 
 
 @dataclass(frozen=True)
 class Style:
-    """The style of one motion among several; without a colour, each quantity has its own."""
+    """The style of one motion; if `colour` is None, the quantities differ in colour."""
 
     label: str = ""
     colour: Any = None
@@ -78,7 +78,7 @@ class Comparison:
             artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
-        """Return legend entries: the curves of a single motion, or motions and quantities."""
+        """Return legend entries: the curves of a single motion, or all motions and quantities."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
         return [*self.motion_handles(solid=True), *self.quantity_handles(*quantities)]
@@ -153,11 +153,12 @@ def _styles(labels: Sequence[str], palette: Palette, colors: Any) -> tuple[Style
 
 
 def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:
-    """Return a name for each trajectory: the given one, or one made of what differs among them.
+    """Return a name for each trajectory: its label, or else its distinguishing facts.
 
     Without `labels` a name consists of the method, the model and the fields of the scene that
-    differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". After three facts an ellipsis follows. If
-    two such names are equal, the names are "1", "2", "3". The name of a single trajectory is empty.
+    differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". If more than three facts differ, the name
+    has the first three and an ellipsis. If two such names are equal, the names are "1", "2", "3".
+    The name of a single trajectory is empty.
     """
     count = len(trajectories)
     if labels is not None:

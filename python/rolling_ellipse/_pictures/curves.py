@@ -24,7 +24,7 @@ _NAMES = tuple(each.name for each in QUANTITIES)
 
 @dataclass(frozen=True, repr=False)
 class Curves(Artists):
-    """Artists of `plot_curves`: lines[i] are those in axes[i], one for each motion."""
+    """Artists of `plot_curves`: lines[i] has the lines in axes[i], one for each motion."""
 
     lines: tuple[tuple[Line2D, ...], ...]
     marks: tuple[Artist, ...]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # ends.py imports this file
     from .._verbs.batches import Ends
 
 _CODES: dict[str, Any] = {"mode": ("mode at the end", Mode), "first": ("first event", EventKind)}
-_NONE = -1  # code of no event
+_NONE = -1  # the code that means no event
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,7 +65,7 @@ def draw_ends(ends: Ends, quantity: str, path: Any, ax: Axes | None, figsize: An
 
 
 def _place(axis: Axis, label: str, at: FloatArray) -> FloatArray:
-    """Label an axis and return the positions of its values: ranks if one of them is infinite."""
+    """Label an axis and return the positions of its values, or their ranks if any is infinite."""
     axis.set_label_text(label)
     if np.isfinite(at).all():
         return at

@@ -28,7 +28,7 @@ QUANTITIES = (
     "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
     "friction_force", "energy", "kinetic_energy", "potential_energy",
 )  # fmt: skip
-_ROUNDING = 1e-13  # the error axis extends to ten times this or more: rounding then looks small
+_ROUNDING = 1e-13  # the error axis extends to at least ten times this, so rounding looks small
 _LEAST = 1e-17  # lower end of the error axis
 
 
@@ -57,7 +57,7 @@ def draw_errors(
             lines += ax.plot(t, values, color=style.colour or colours[rank], label=name, **how)
     shown.restyle(*lines)
     largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
-    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # before the scale: zeros alone have none
+    ax.set_ylim(_LEAST, 10 * max(largest, _ROUNDING))  # a log axis cannot fit zeros
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(label)
     if largest < _LEAST:
@@ -71,9 +71,10 @@ def draw_errors(
 
 @dataclass(frozen=True, repr=False)
 class Energy(Artists):
-    """Artists of `plot_energy`; item i of each tuple belongs to motion i.
+    """Artists of `plot_energy`; item i of each tuple of lines belongs to motion i.
 
-    Tuples of another `kind` are empty; `lost` has the losses by rolling, sliding and impacts.
+    `lost` has three such tuples: the losses by rolling, by sliding and by impacts. Fields that the
+    chosen `kind` does not draw are empty.
     """
 
     total: tuple[Line2D, ...]
@@ -257,9 +258,10 @@ def plot_error(
         "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
         "friction_force", "energy", "kinetic_energy" or "potential_energy".
     reference : Trajectory, optional
-        The motion with which all others are compared at their times; it must last at least as long
-        as they do. It is required for a motion that started from given coordinates or lasts longer
-        than 1e15 half turns. The returned artists include the references used.
+        The motion with which every trajectory is compared, at the times of the trajectory. It must
+        last at least as long as all of them. It is required for a motion that started from given
+        coordinates or lasts longer than 1e15 half turns. The returned artists include the
+        references used.
     {ax}
     {motions}
 

@@ -1,4 +1,4 @@
-"""Plots of fits: tracks over the fitted motion, predicted over measured impacts, and residuals."""
+"""Plots of fits: measured and fitted motions, measured and predicted impacts, and residuals."""
 
 from __future__ import annotations
 

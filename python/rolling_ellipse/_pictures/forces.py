@@ -1,4 +1,4 @@
-"""Plots of the contact forces over time, and of the friction that they need."""
+"""Plots of the contact forces over time, and of the coefficient of friction that they need."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _Limits = tuple[PolyCollection | None, ...]
 _FORCES = {"normal_force": "normal", "friction_force": "friction"}
 _SPIKE = 20.0  # in weights: a larger force would flatten ordinary ones on a linear scale
 _LIMIT: dict[str, Any] = {"lw": 1.2, "ls": ":", "label": "available"}
-_STEEP = 3.0  # largest |F|/N in view: it is infinite where N vanishes
+_STEEP = 3.0  # largest |F|/N in view; |F|/N is infinite where N vanishes
 
 
 @dataclass(frozen=True, repr=False)
 class Forces(Artists):
     """Artists of `plot_forces`; item i belongs to motion i, except in `axes` and `marks`.
 
-    `limits` are None where friction is unlimited; `impulses` are stems normal to the ground and
-    along it; `needed` and `available` (the coefficients of friction) are empty if only one Axes was
-    given.
+    `limits` has None for each motion with unlimited friction; `impulses` has stems normal
+    to the ground and along it; `needed` and `available` (the coefficients of friction) are empty if
+    only one Axes was given.
     """
 
     normal: tuple[Line2D, ...]
@@ -125,7 +125,7 @@ def draw_forces(ax: Axes, shown: Comparison) -> tuple[_Lines, _Lines, _Limits, t
     if ax.dataLim.height < 1e-9 * weight:  # flight throughout: the forces give no scale
         ax.set_ylim(-weight, weight)
     if max(float(np.max(np.abs(m.normal_force))) for m in motions) > _SPIKE * weight:
-        decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
+        decade = 10.0 ** round(math.log10(weight))  # a power of ten: no tick in the linear part
         ax.set_yscale("symlog", linthresh=decade, linscale=1.5)
         ticks = SymmetricalLogLocator(base=10, linthresh=decade)
         ticks.set_params(numticks=ax.yaxis.get_tick_space())
@@ -160,7 +160,7 @@ def _draw_impulses(ax: Axes, shown: Comparison) -> tuple[Stems, ...]:
         hits = [event for event in events_shown(motion) if event.kind is EventKind.IMPACT]
         t, stem, pair = np.repeat([hit.t for hit in hits], 3), [0, 1 / time, np.nan], list[Line2D]()
         for rank, part in enumerate(("reaction_z", "reaction_x")):
-            impulses = [getattr(hit.state_after, part) or np.nan for hit in hits]  # 0 has no stem
+            impulses = [getattr(hit.state_after, part) or np.nan for hit in hits]  # NaN: no stem
             colour = style.colour or palette_of(ax).curves[rank]
             name = f"impulse / {time:g} s" if hits and rank == 0 else "_"
             pair += ax.plot(t, np.outer(impulses, stem).ravel(), color=colour, label=name, **line)

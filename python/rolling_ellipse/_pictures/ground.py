@@ -27,10 +27,10 @@ from .palette import PLUM, palette_of
 
 Places = tuple[FloatArray, FloatArray]  # x and z, (n,) [m]
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
-SHOWN_TURNS = 3.0  # maximum in a still picture: more turns would make it a thin stripe
+SHOWN_TURNS = 3.0  # maximum number in a still picture; more turns would make it a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 QUARTER = math.pi / 2
-_TICKS = 8.0  # maximum number of ticks of the ground per inch
+_TICKS = 8.0  # maximum number of ticks on the ground per inch; in all, 16 to 24
 _LONG = 1e6  # larger numbers are left to matplotlib, which factors out an offset
 
 
@@ -132,8 +132,8 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
 class Ruler:
     """Tick marks on the ground; every fifth is longer and labelled with its position.
 
-    They make the rolling visible. Only ticks within `span` [m] of a given point are drawn, so that
-    the cost does not grow with the distance.
+    The marks make the rolling visible. Only ticks within `span` [m] of a given point are drawn, so
+    that the cost does not grow with the distance.
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:

@@ -31,13 +31,13 @@ ABOVE_FIRST, BESIDE = BELOW_FIRST[::-1], ((1, 0), (-1, 0))
 
 
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
-    """Return ascending positions, at least a gap apart, close to the ascending preferred ones.
+    """Return ascending positions at least `gap` apart, near the ascending positions `wanted`.
 
     The sum of the squared displacements is minimal: positions too close to each other become a
-    block around their mean.
+    block around the mean of their preferred positions. All are between `low` and `high`.
     """
     steps = gap * np.arange(wanted.size)
-    blocks: list[tuple[float, int]] = []  # mean of the members' preferred starts, and their number
+    blocks: list[tuple[float, int]] = []  # start of each block, and its number of members
     for start, count in zip((wanted - steps).tolist(), [1] * wanted.size, strict=True):
         while blocks and blocks[-1][0] > start:
             before, members = blocks.pop()
@@ -155,7 +155,11 @@ def _best(
     label: Label, extent: FloatArray, lines: FloatArray, taken: FloatArray, page: FloatArray,
     most: float,
 ) -> _Spot | None:  # fmt: skip
-    """Return the free spot with the lowest cost: lines crossed, rank of the side, and distance."""
+    """Return the free spot of lowest cost, or None.
+
+    Covered points of lines, the rank of the side and the distance from the preferred place add to
+    the cost.
+    """
     line = label.line * page
     along = _along(line)
     share = np.linspace(0.0, 1.0, 2 + int(1.5 * along[-1] / extent[1]))

@@ -1,4 +1,4 @@
-"""An overview of a motion in one figure: the body at even times, over curves of its quantities."""
+"""An overview of a motion in one figure: the body at several times, and curves over time."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from .sampling import for_dots, over_time
 from .stills import Strobe, check_strobe, plot_strobe
 
 _STATES = {"theta": "θ [rad]", "omega": "ω [rad/s]", "z": "z of centre [m]"}
-_MANY = 100.0  # beyond this angle [rad] its rounding error is drawn among the errors
-_SHARE = 0.16  # height of the bodies' axes relative to the width of the figure
+_MANY = 100.0  # the rounding error of larger angles [rad] is drawn among the errors
+_SHARE = 0.16  # height of the axes with the bodies, relative to the width of the figure
 
 
 @dataclass(frozen=True, repr=False)
 class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity.
 
-    The first of `axes`, also `ax`, shows the positions; the Axes of a curve is its attribute, as in
-    ``theta.axes``.
+    The first of `axes`, which is also `ax`, shows the positions. Each curve has its Axes as an
+    attribute, for example ``theta.axes``.
 
     `phase` is None for angles that `plot_phase` rejects; `lost_energy` is None without rolling
     resistance.
@@ -146,7 +146,7 @@ def _headline(trajectory: Trajectory, note: str) -> str:
 
 
 def _draw_loss(ax: Axes, motion: Trajectory) -> Line2D:
-    """Draw the energy lost since the start."""
+    """Draw the energy lost since the first sample."""
     lost = motion.energy[0] - motion.energy
     return draw_line(ax, motion, lost, color=palette_of(ax).grey, label="lost")
 
@@ -167,7 +167,7 @@ def _draw_errors(ax: Axes, shown: Comparison) -> tuple[Line2D, Line2D, Line2D]:
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
     """Give two columns of three panels a common time axis, and panels of several lines a legend."""
     for panel in panels[4:]:
-        name_curves(panel)  # before the marks, which only the legend of the forces explains
+        name_curves(panel)  # before marks are drawn: only the legend of the forces explains them
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)

@@ -18,7 +18,7 @@ from .._ask.records import cached_property
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
 _DARK = "#e8ecf4", "#6fb3d9", "#ffa033", "#8d99a6", "#36332e", "#3f6f8c", "#d58aa8"
-_APART = 0.25  # smallest difference in a component between two colours that look different
+_APART = 0.25  # two colours look different if a component differs by at least this
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,13 @@ class Palette:
 
     @cached_property
     def times(self) -> colors.Colormap:
-        """Colours from early to late."""
+        """The colour map of times, from early to late."""
         pale = "#bcd9ea" if self.blue == BLUE else self.shade(0.3)
         return colors.LinearSegmentedColormap.from_list("times", [pale, self.blue, self.ink])
 
     @property
     def curves(self) -> tuple[str, ...]:
-        """Colours for several motions."""
+        """The colours of several motions, in order of use."""
         return self.ink, self.orange, self.blue, self.sky, self.plum
 
 

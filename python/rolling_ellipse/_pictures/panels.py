@@ -1,7 +1,7 @@
 """Curves over time and the marks under them, shared by plots of forces, energies and errors.
 
 The `style` of a curve is that of its motion. A single motion has the plain style, and its
-quantities differ in colour. Modes are greys with different hatches, so that they differ in print.
+quantities differ in colour. Modes are drawn as greys with different hatches, which print well.
 Events are dotted lines with names. Where the model of a motion is not valid, the background is
 grey.
 """
@@ -30,7 +30,7 @@ from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns
 
 DASHES = ("-", "--", "-.")  # for the first, second and third quantity of a motion
-_RANGE = 0.6  # opacity of a range, as ranges may overlap
+_RANGE = 0.6  # opacity of ranges, which may overlap
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
     Mode.SLIDING: (0.05, 0.28, "////"),
@@ -42,7 +42,7 @@ _SYMBOLS = {
     "theta": "θ", "omega": "ω", "omega_dot": "dω/dt", "psi": "ψ", "contact_x": "contact",
     "normal_force": "N", "friction_force": "F", "friction_needed": "F/N",
 }  # fmt: skip
-_FEW_EVENTS = 8  # if there are more, they are counted rather than named
+_FEW_EVENTS = 8  # maximum number of events that are named; more are only counted
 _ROW = 0.05  # height of the row of one motion, as a share of the axes' height
 
 
@@ -159,7 +159,10 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str, named: bool) -> list[
 
 
 def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
-    """Shade the time after validity is lost with opacity `share`; `colour` marks its start."""
+    """Shade the time after the loss of validity; draw its start as a line of a given `colour`.
+
+    The opacity of the shade is proportional to `share`.
+    """
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []

@@ -83,9 +83,9 @@ def plot_phase(
 
     Notes
     -----
-    The lines show the motions themselves, whatever samples the trajectories have. If there are many
-    turns, exact periodic rolling is drawn for one turn only, because all turns are alike, and other
-    motions for their first 1000 half turns; the title then says so.
+    The lines show the motions themselves, whatever samples the trajectories have. If exact periodic
+    rolling lasts more than 60 turns or swings, only one is drawn, because all are alike. Other
+    motions are drawn for at most their first 1000 half turns. The title says so in both cases.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """Return the finely sampled part of a motion to draw, and a note if it is not the whole."""
+    """Return the finely sampled part of a motion to draw, and a note if it is not all."""
     if not is_at_hand(motion):
         return motion, ""
     start, end = span_of(motion)
@@ -178,7 +178,7 @@ def folded(theta: Any, flat: float) -> Any:
 
 
 def knows_turns(motion: Trajectory) -> bool:
-    """Whether doubles resolve the angles of a motion to thousandths of a radian."""
+    """Return whether doubles resolve the angles of a motion to thousandths of a radian."""
     return bool(np.spacing(np.abs(motion.theta).max()) <= _COARSE)
 
 
@@ -195,7 +195,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
-    """Set the limits to whole eyes of the separatrix, or fit them to the motion if it is small."""
+    """Fit the limits of theta to whole eyes of the separatrix, or all limits to a slow motion."""
     theta, omega = (np.concatenate([getattr(m, n) for m in motions]) for n in ("theta", "omega"))
     fastest = float(np.max(np.abs(omega)))
     if fold:

@@ -1,4 +1,4 @@
-"""The phase map: the first outcome of rolling, over two of shape, energy and friction.
+"""The phase map: the first outcome of rolling over two of aspect ratio, energy and friction.
 
 Two quantities vary along the axes of the plane; the third is fixed. Each point stands for a uniform
 disc that passes the flat position at some speed. Quantities have the units of the arguments of
@@ -36,12 +36,12 @@ AXIS_NAMES = {
     "aspect": "a/b", "energy": "energy / that to roll over", "speed": "ω lying flat [rad/s]",
     "friction": "μ",
 }  # fmt: skip
-_LEVELS = {"energy", "speed"}  # either follows from the other
+_LEVELS = {"energy", "speed"}  # each follows from the other
 _WIDEST = 1e3  # largest a/b, as in the whole package
 _FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
 _SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
 _FASTEST = 2.0  # largest speed shown, in units of sqrt(g/b)
-COLOURS = {  # luminances differ by a factor of 1.25 or more, except that of EDGE, which is thin
+COLOURS = {  # luminances differ by a factor of 1.25 or more, except that of EDGE, a thin line
     Outcome.RESTS: "#ffffff",
     Outcome.ROCKS: SKY,
     Outcome.ROLLS_OVER: BLUE,

@@ -25,17 +25,17 @@ from .ground import flat_angle
 FEW = 120.0  # maximum number of half turns or swings that are drawn one by one over time
 PARTS = 800  # number of time intervals for a motion with more half turns than `FEW`
 _IN_A_PART = 96  # samples per interval
-_POINTS = 400, 32  # initial number of points of a curve: at least, and per half turn
+_POINTS = 400, 32  # initial number of points of a curve: the minimum, and the number per half turn
 _MOST_POINTS = 30_000  # maximum number of points of a curve
 _FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
 _ROUNDS = 16  # maximum number of halvings of an interval
 _BEND = 1e-3  # a curve bends if it is farther from its chord than this fraction of its range
-_COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
-_STEADY = 1.05  # counts of half turns with a smaller ratio agree
+_COUNTS = 1024, 4096, 16_384, 65_536  # numbers of times at which half turns are counted
+_STEADY = 1.05  # successive counts of half turns agree if their ratio is at most this
 _EVENTS = 4000  # if there are more events, only the first and the last 2000 are drawn as jumps
 _SAMPLES = "t", "theta", "omega", "x", "coordinates", "contact"
 _COMPARED = 64  # number of samples compared with the motion
-_SEEN = 1e-6  # no picture shows a smaller relative difference
+_SEEN = 1e-6  # smaller relative differences are invisible in a picture
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
 _Places = npt.NDArray[np.intp]
@@ -44,7 +44,7 @@ _Places = npt.NDArray[np.intp]
 def over_time(motion: Trajectory) -> Trajectory:
     """Return a motion at the times used to draw its curves, from the first to the last sample.
 
-    A motion of more than `FEW` half turns has more samples than its curve has points; see `curve`.
+    A motion of more than `FEW` half turns has so many samples that `curve` returns ranges.
     """
     if not is_at_hand(motion):
         return motion
@@ -53,7 +53,7 @@ def over_time(motion: Trajectory) -> Trajectory:
     if count <= FEW:
         return _refined(motion, start, end, count)
     part = (end - start) / PARTS
-    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn of each interval
+    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a little more than a half turn
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
     starts = start + part * np.arange(PARTS) + 0.5 * (part - window)
     times = np.add.outer(starts, inside).ravel()
@@ -68,12 +68,12 @@ def for_dots(motion: Trajectory) -> Trajectory:
 
 
 def between(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
-    """Return a motion finely sampled from `start` to `end` [s]: about `count` half turns."""
+    """Return a motion finely sampled from `start` to `end` [s], a span of `count` half turns."""
     return _refined(motion, start, end, count) if is_at_hand(motion) else motion
 
 
 def _refined(motion: Trajectory, start: float, end: float, count: float) -> Trajectory:
-    """Return a motion at even times, and at more times where a quantity bends (see `_BEND`)."""
+    """Return a motion at evenly spaced times, and more times where a quantity bends (`_BEND`)."""
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
     times = np.union1d(even_times(start, end, points), _jumps(motion, start, end))
     values = _bending(motion, times)
@@ -96,7 +96,7 @@ def _refined(motion: Trajectory, start: float, end: float, count: float) -> Traj
 
 
 def halve(times: FloatArray, places: _Places) -> tuple[FloatArray, _Places]:
-    """Return increasing times with midpoints of some intervals, and the indices of the halves."""
+    """Insert the midpoints of some intervals into `times`; return these and the halves' indices."""
     middles = 0.5 * (times[places] + times[places + 1])
     first = places + np.arange(places.size)
     return np.insert(times, places + 1, middles), np.stack([first, first + 1], axis=1).ravel()
@@ -121,7 +121,7 @@ def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def are_ranges(motion: Trajectory) -> bool:
-    """Whether the curves of a motion are drawn as ranges."""
+    """Return whether the curves of a motion are drawn as ranges."""
     return motion.t.size > _MOST_POINTS
 
 
@@ -131,7 +131,7 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 
 
 def period_of(motion: Trajectory) -> float:
-    """Return the period of a motion [s]; NaN if it has none or may leave the model of rolling."""
+    """Return the period of rolling [s]; NaN if there is none or the scene does not determine it."""
     if motion.model != "contact" and motion.start is None:
         with suppress(ValueError):  # a body that rolls downhill forever has no period
             return period(motion.scene)
@@ -161,11 +161,11 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] after `turns` turns or, if earlier, a path of `turns` 2 pi max(a, b).
+    """Return the time [s] of `turns` turns or, if earlier, of a path of `turns` 2 pi max(a, b).
 
-    The time is at most that of the last sample and that of the end of the first whole swing: the
-    second turning point. A turning point is where the rate ("omega", "x_dot") changes sign, or the
-    start if the rate is 0 there.
+    The time is not later than the last sample or the end of the first whole swing, which is the
+    second turning point. A turning point is a time at which the rate ("omega" or "x_dot") changes
+    sign, or the start if the rate is 0 there.
     """
     start, end = span_of(motion)
     if not is_at_hand(motion):
@@ -174,7 +174,7 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
         until = min(end, _used_up(motion.sol(even_times(start, end, 2001)), turns, rate))
         if not start < until < start + (end - start) / 8:
             return until
-        end = start + 2 * (until - start)  # a second pass with a finer grid
+        end = start + 2 * (until - start)  # search again on a finer grid
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
@@ -193,7 +193,7 @@ def _taken(values: Any, places: npt.NDArray[np.intp]) -> Any:
 
 
 def is_at_hand(motion: Trajectory) -> bool:
-    """Whether a trajectory can be sampled at any time; warn if it cannot.
+    """Return whether a trajectory can be sampled at any time; warn if it cannot.
 
     A motion computed by `simulate` can, even if it was read from a file. Between samples from
     another source the motion is unknown.
@@ -231,9 +231,9 @@ def _jumps(motion: Trajectory, start: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """Return the time of `turns` turns, or of the end of the first swing if that is earlier.
+    """Return the first of three times: of `turns` turns, of as long a path, of a whole swing.
 
-    The time is infinite if the samples reach neither.
+    The time is infinite if the samples end before all of them.
     """
     t, x, scene = seen.t, seen.x, seen.scene
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)
@@ -241,7 +241,7 @@ def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
     used = np.maximum.accumulate(np.maximum(turned, moved)) / turns
     end = math.inf if used[-1] <= 1 else float(np.interp(1.0, used, t))
     speed = getattr(seen, rate)
-    swung = int(speed[0] != 0)  # turning points before the end of a swing; 0 if it starts at one
+    swung = int(speed[0] != 0)  # turning points before the end of the swing; 0 if the start is one
     for i in np.flatnonzero(speed[:-1] * speed[1:] < 0)[swung : swung + 1]:
         zero = t[i] + (t[i + 1] - t[i]) * speed[i] / (speed[i] - speed[i + 1])
         end = min(end, float(zero))

@@ -1,4 +1,4 @@
-"""The work-precision diagram: the front of some contenders beside that of all others."""
+"""The work-precision diagram: the front of a group of contenders and that of all others."""
 
 from __future__ import annotations
 
@@ -103,21 +103,21 @@ def _chosen(argument: str, wanted: Any, runs: Sequence[Run]) -> set[str]:
 
 
 class _Race:
-    """The points of each contender, and the fronts of the two camps."""
+    """The points of each contender, and the fronts of the highlighted group and of the others."""
 
     def __init__(
         self, results: WorkPrecision, x: str, y: str, runs: tuple[Run, ...], highlight: Any
     ) -> None:
         self.x, self.y, self.runs = x, y, runs
         self.gaps = replace(results, runs=runs).gaps(t_end=runs[0].t_end)
-        limits = results.judged_by(runs[0].t_end).limits(x)  # attainable and judged limits
+        limits = results.judged_by(runs[0].t_end).limits(x)  # `floor` and `attainable`
         self.limit = float(np.nanmax([_LEAST, *limits]))
         self.points: dict[str, list[Point]] = {}
         for run in runs:
             at, value = max(run.value(x), self.limit), run.value(y)
             if run.completed and value > 0 and not math.isnan(at):
                 points = self.points.setdefault(run.name, [])
-                if not points or points[-1][0] != at:  # finer settings may gain nothing
+                if not points or points[-1][0] != at:  # a finer setting may have the same error
                     points.append((at, value))
         own = {run.name for run in runs if "own" in run.tags}
         if highlight is not None:
@@ -160,7 +160,7 @@ def _least(front: dict[Point, str], error: float) -> tuple[float, str]:
 
 
 def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, Any]:
-    """Draw lines and fronts; the `members` of a small multiple stand out, or else one camp."""
+    """Draw lines and fronts; emphasize the `members` or, by default, the highlighted group."""
     palette = palette_of(ax)
     colors = {"highlight": palette.blue, "others": palette.orange}
     strong = race.ours if members is None else members
@@ -169,7 +169,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
         color, width, size = palette.shade(0.28), 0.7, 1.5
         if name in strong:
             color, width, size = colors["highlight" if name in race.ours else "others"], 1.0, 2.6
-        # a single answer is accurate enough for every larger error
+        # a line to all larger errors, for which a single point is accurate enough
         first = [(max(_MOST, points[0][0]), points[0][1])] if len(points) == 1 else []
         lines[name] = ax.plot(
             *zip(*first, *points, strict=True), color=color, lw=width, marker="o", ms=size, mew=0,
@@ -178,7 +178,7 @@ def _drawn(ax: Axes, race: _Race, members: Collection[str] | None) -> dict[str, 
     for camp, front in race.fronts.items():
         if front:
             corners = [corner for _, part in parts(front) for corner in part]
-            apart = members is None or camp == "highlight"  # in a multiple, orange is for members
+            apart = members is None or camp == "highlight"  # in multiples only members are orange
             fronts[camp] = ax.plot(
                 *zip(*corners, strict=True), solid_capstyle="butt",
                 color=colors[camp] if apart else palette.shade(0.6),
@@ -218,7 +218,7 @@ def _framed(ax: Axes, race: _Race) -> Line2D | None:
 
 
 def _named(ax: Axes, race: _Race, chart: WorkPrecisionChart) -> dict[str, Any]:
-    """Write the factors between the fronts, the names of contenders, and that of the limit."""
+    """Write the factors between the fronts, the names of contenders, and the word at the limit."""
     palette = palette_of(ax)
     halo = palette.background
     ours, others = race.fronts["highlight"], race.fronts["others"]

@@ -45,7 +45,7 @@ def axes(scene: Scene) -> list[dict[str, Any]]:
 
 
 def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) -> Impulse:
-    """Return the press of the scene, or one of medium strength, clipped to the axes' ranges."""
+    """Return the vertical blow of the scene, or one of medium strength, clipped to the ranges."""
     own: Any = scene.impulse
     d, F = (own.dx, -own.jz) if own is not None else (0.75 * place["most"], 0.0)
     if F <= 0:
@@ -55,13 +55,13 @@ def first_blow(scene: Scene, place: dict[str, Any], strength: dict[str, Any]) ->
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion of a scene after a blow, without the warnings that its message repeats."""
+    """Return the motion of a scene after a blow; its message states what a warning would."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def card(scene: Scene, words: dict[str, str]) -> str:
-    """Return the scene's parameters in words; rarely changed ones follow by name if changed."""
+    """Return the scene's parameters in words, and all other changed parameters by name."""
     seldom = scene._changed().keys() - {"a", "b", "mass", "friction", "restitution", "slope"}
     facts = [
         filled(words, "card", a=scene.a, b=scene.b, m=scene.mass, mu=scene.friction,
@@ -92,7 +92,7 @@ def numbers(scene: Scene) -> dict[str, float | None]:
 def strip(motion: Trajectory) -> dict[str, Any]:
     """Return a motion for the player, in a window chosen for the body before the blow.
 
-    A motion that would need too many samples gets a few evenly spaced ones.
+    A motion that would need too many samples has `_SAMPLES` evenly spaced ones.
     """
     scene = motion.scene
     longer, start = max(scene.a, scene.b), scene.initial_state

@@ -1,4 +1,4 @@
-// Charts next to the film: the frame of a map, and curves over time. Needs strip.js.
+// Charts next to the film: the axes of a map, and curves over time. Needs strip.js.
 
 /** The part of a canvas that a map fills [CSS px]. */
 export function cellsOf({ clientWidth, clientHeight }) {
@@ -6,7 +6,7 @@ export function cellsOf({ clientWidth, clientHeight }) {
   return { left, top, across: clientWidth - left - 12, up: clientHeight - top - 36 };
 }
 
-/** Label both sides of a map: values at fractions of its width and height, and axis names. */
+/** Label the axes of a map with names, and with values at fractions of its width and height. */
 export function paintSides(ink, { grey }, { left, top, across, up }, xs, ys, names) {
   for (const [part, value] of xs)
     text(ink, grey, round(value), left + part * across, top + up + 14, "center", 11);
@@ -34,7 +34,7 @@ export function curveOf(points) {
   return { points, least: Math.min(...values), most: Math.max(...values) };
 }
 
-/** The ticks of an axis in steps of 1, 2 or 5. */
+/** The ticks of an axis, in steps of 1, 2 or 5 times a power of ten. */
 function ticksOf(low, high) {
   const least = (high - low) / 7, power = 10 ** Math.floor(Math.log10(least));
   const step = power * [1, 2, 5, 10].find((n) => n * power >= least * (1 - 1e-12));
@@ -42,7 +42,8 @@ function ticksOf(low, high) {
   return Array.from({ length: count }, (_, i) => (first + i) * step);
 }
 
-/** Draw curves, each with name, colour and dash, over time up to an end, and a mark for now. */
+/** Draw curves over time up to an end, each with name, colour and dash. Vertical lines mark the
+ * impacts and the current time. */
 export function paintCurves(ink, colours, canvas, curves, { low, high, end, now, impacts }) {
   const [left, top] = [44, 18], across = canvas.clientWidth - left - 14;
   const up = canvas.clientHeight - top - 24;

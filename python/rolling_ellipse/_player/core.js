@@ -1,11 +1,11 @@
 // The exact core as WebAssembly: it turns a scene into samples, events and sentences. All numbers
 // are in SI units. A scene may have `blows` during its motion: rows of t, jx, jz, dx and dz. This
-// module needs no other.
+// module needs no other module.
 
-const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // intervals of a motion, and turn in each [rad]
+const [FEWEST, MOST, TURN] = [300, 3000, 0.2]; // fewest and most intervals, turn in each [rad]
 
 export class Core {
-  /** The core from its bytes; an error if the page may not use WebAssembly. */
+  /** Load the core from its bytes; throws an error if the page may not use WebAssembly. */
   static async of(bytes) {
     const nothing = new Proxy({}, { get: () => () => 0 }); // the core needs nothing from its system
     const { instance } = await WebAssembly.instantiate(bytes,
@@ -33,13 +33,13 @@ export class Core {
     return answer;
   }
 
-  /** The numbers of a scene, an end and the blows before it, for a call. */
+  /** The arguments of a call: the numbers of a scene, the end time, and the blows. */
   numbers(scene, end) {
     const { blows = [] } = scene, numbers = this.names.scene.map((name) => scene[name] ?? NaN);
     return [...numbers, end, blows.length, ...blows.flat()];
   }
 
-  /** Simulate a scene up to an end, with sentences if requested; an error states why it cannot. */
+  /** Simulate a scene up to `end`, with sentences if requested; a RangeError says what is wrong. */
   ask(scene, end, inWords = true) {
     const answer = this.text(this.call("ask", this.numbers(scene, end), inWords));
     if (!answer.startsWith("{")) throw new RangeError(answer);
@@ -49,14 +49,14 @@ export class Core {
     return found;
   }
 
-  /** The first outcome after the last blow, as `ask` reports it; the last motion is kept. */
+  /** The first outcome after the last blow, as `ask` would report it; the motion of `ask` stays. */
   first(scene, end) {
     const answer = this.text(this.call("first", this.numbers(scene, end)));
     if (answer !== answer.toUpperCase()) throw new RangeError(answer);
     return answer;
   }
 
-  /** The columns of samples of the last motion at some times. */
+  /** Samples of the last motion at the given times, as columns by name. */
   samples(times) {
     const { sample: names } = this.names, place = this.call("samples", times, times.length);
     const rows = new Float64Array(this.exports.memory.buffer, place, names.length * times.length);
@@ -64,14 +64,14 @@ export class Core {
       [name, Float64Array.from(times, (_, i) => rows[i * names.length + k])]));
   }
 
-  /** The motion of a scene up to an end: what happens, times, columns of samples, and a track. */
+  /** The motion of a scene up to an end: the answer of `ask`, times, samples, and a track. */
   motion(scene, end) {
     const found = this.ask(scene, end), times = this.timesOf(found, scene.theta);
     const columns = this.samples(times);
     return { found, times, columns, track: trackOf(times, columns) };
   }
 
-  /** Alternating ends and middles of intervals; events, and the doubles before them, are ends. */
+  /** Alternating ends and middles of intervals. Events, and times just before them, are ends. */
   timesOf({ until, events }, theta) {
     if (!until) return Float64Array.of(0);
     const turn = Math.abs(this.samples([until]).theta[0] - theta);
@@ -85,7 +85,7 @@ export class Core {
   }
 }
 
-/** Columns for a track; across a jump, the force midway is the mean of both sides. */
+/** Columns for a track; between the two sides of a jump, a force has the mean of both values. */
 function trackOf(times, columns) {
   const isEnd = (_, i) => i % 2 === 0, track = { t: times.filter(isEnd) };
   for (const name in columns) track[name] = columns[name].filter(isEnd);

@@ -1,17 +1,17 @@
-// The player with a hand that strikes the body, also while it moves, computed in the page by the
-// core, and a map of the outcomes of all blows. Needs all earlier modules.
+// The player with a hand that strikes the body, at rest or in motion, and a map of the outcomes of
+// all blows. The core computes motions and outcomes in the page. Needs all earlier modules.
 
 const STROBES = 8;
-const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // default and farthest ends of the force plot [weights]
-const STEPS = { // columns and rows of the map moved by each key
+const [LOW, HIGH] = [[-0.5, -3], [1.5, 5]]; // usual and farthest ends of the force axis [weights]
+const STEPS = { // columns and rows by which each key moves on the map
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1],
   Home: [-99, 0], End: [99, 0], PageDown: [0, -4], PageUp: [0, 4],
 };
 const CELLS = [48, 32]; // columns and rows of the map
 const COARSE = [8, 4, 2, 1]; // sizes of its cells, in turn
-const NEAR = 26; // distance within which a pointer holds the hand [px]
-const BUDGETS = [10, 6]; // time of a frame spent on cells of the map: usually, and
-// while numbers change [ms]
+const NEAR = 26; // distance within which a pointer grabs the hand [px]
+const BUDGETS = [10, 6]; // time per frame for cells of the map [ms]: usually, and
+// while numbers change
 
 export class Explorer extends Player {
   /** Start with the core; if WebAssembly is missing or forbidden, only the film plays. */
@@ -28,7 +28,7 @@ export class Explorer extends Player {
   begin() {
     const { strips: [strip], given, axes, shape } = this.film, [width, height] = CELLS;
     Object.assign(this, { strip, axes, given: { ...given }, lowest: shape, fine: 2 });
-    Object.assign(this, { earlier: [], since: 0 }); // blows before the given one, and its time
+    Object.assign(this, { earlier: [], since: 0 }); // blows before the last one, and its time
     this.image = Object.assign(document.createElement("canvas"), { width, height });
     this.renew();
   }
@@ -41,7 +41,7 @@ export class Explorer extends Player {
     find(".undo").onclick = () => this.undo();
     find(".copy").onclick = ({ currentTarget }) => this.copy(currentTarget, this.code());
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
-    const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger taps the map
+    const mouse = ({ pointerType }) => pointerType !== "touch"; // a finger only taps the map
     this.grab(this.map, mouse, (event) => this.pointed(event));
     new IntersectionObserver(([{ isIntersecting }]) => {
       this.fills = isIntersecting;
@@ -60,7 +60,7 @@ export class Explorer extends Player {
     return this.film.scene.rolling_resistance > 0;
   }
 
-  /** Connect the sliders of the page, each to an axis of the map. */
+  /** Connect each slider of the page with an axis of the map. */
   hands(find) {
     this.sliders = [find(".where"), find(".hard")];
     this.sliders.forEach((slider, k) => {
@@ -68,7 +68,7 @@ export class Explorer extends Player {
     });
   }
 
-  /** Move on the map with the keys, or undo the last blow. */
+  /** Move on the map with the arrow keys, or undo the last blow with Escape. */
   key(event) {
     const { key, target } = event, steps = STEPS[key];
     if (key === "Escape" && !target.matches("select, [inputmode]")) this.undo();
@@ -79,9 +79,9 @@ export class Explorer extends Player {
     this.changeParts(Object.fromEntries(moved.map((k) => [k, this.part(k) + steps[k] / CELLS[k]])));
   }
 
-  /** Call `moved` for a pointer from a press accepted by `holds` to its release, and for a tap. */
+  /** Call `moved` while a pointer whose press `holds` accepts is down, and for taps on the map. */
   grab(canvas, holds, moved) {
-    let held = false, now = 0; // the time at which the pointer strikes
+    let held = false, now = 0; // time of the motion when the pointer was pressed
     canvas.addEventListener("pointerdown", (event) => {
       held = holds(event);
       if (!held) return;
@@ -118,7 +118,8 @@ export class Explorer extends Player {
     this.draw();
   }
 
-  /** The number on an axis of the map, with its name and range; d covers the struck body. */
+  /** An axis of the map: the name of its number, its range and its step. The range of d is the
+   * width of the body at the time of the blow. */
   axis(k) {
     if (k > 0) return this.axes[k];
     const { strip: { a, b }, axes: [{ name, most, step }], film: { core } } = this;
@@ -126,13 +127,13 @@ export class Explorer extends Player {
     return { name, least: -reach, most: reach, step: (step * reach) / most };
   }
 
-  /** The given number's position along an axis, as a fraction. */
+  /** The position of the current number along an axis, as a fraction. */
   part(k) {
     const { name, least, most } = this.axis(k);
     return Math.min(1, Math.max(0, (this.given[name] - least) / (most - least)));
   }
 
-  /** Set the numbers at fractions of the axes. */
+  /** Set the numbers to the values at fractions of the axes. */
   changeParts(parts) {
     this.change(Object.fromEntries(Object.entries(parts).map(([k, part]) => {
       const { name, least, most, step } = this.axis(k), count = (part * (most - least)) / step;
@@ -140,13 +141,13 @@ export class Explorer extends Player {
     })));
   }
 
-  /** The scene of given numbers with all blows, for the core: absent numbers are null. */
+  /** The scene for the core, with the given numbers and all blows; absent numbers are null. */
   sceneOf(given) {
     const { scene } = this.film, [[, jx, jz, dx, dz], ...blows] = this.blows(given);
     return { ...scene, friction: scene.friction ?? Infinity, jx, jz, dx, dz, blows };
   }
 
-  /** Compute the motion for the given numbers; an error states why there is none. */
+  /** Compute the motion for the current numbers; a RangeError states why there is none. */
   renew() {
     const { strip, film: { end, core } } = this;
     const { found, times, columns, track } = core.motion(this.sceneOf(this.given), end);
@@ -164,7 +165,7 @@ export class Explorer extends Player {
     return [...this.earlier, [this.since, ...this.impulseOf(given)]];
   }
 
-  /** The impulse for given numbers as jx, jz, dx and dz, and the inverse. */
+  /** The impulse for given numbers, as jx, jz, dx and dz; `givenOf` is the inverse. */
   impulseOf({ d, F }) {
     return [0, -F, d, 0];
   }
@@ -174,7 +175,7 @@ export class Explorer extends Player {
     return { d: Math.min(most, Math.max(least, dx)), F: -jz };
   }
 
-  /** Make a blow the last one after some earlier ones, and show the body at its time. */
+  /** Set the earlier blows and the last one, and show the body at the time of the last one. */
   follow(earlier, [since, ...impulse]) {
     Object.assign(this, { earlier, since });
     this.change(this.givenOf(impulse));
@@ -185,7 +186,8 @@ export class Explorer extends Player {
     return this.now === this.since || this.now < this.strip.motion.end;
   }
 
-  /** Replace all later blows by one at the time on the clock; false if it is there already. */
+  /** Strike now: add a blow like the last one at the time on the clock, and remove later blows.
+   * Returns false if the hand cannot strike, or if the last blow is already at this time. */
   strike() {
     const { now, playing } = this, blows = this.blows();
     if (now === this.since || !this.canStrike) return false;
@@ -194,7 +196,7 @@ export class Explorer extends Player {
     return true;
   }
 
-  /** Take back the last of several blows. */
+  /** Remove the last blow, unless it is the only one. */
   undo() {
     const before = this.earlier.at(-1);
     if (before) this.follow(this.earlier.slice(0, -1), before);
@@ -202,7 +204,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- the hand
 
-  /** The distance of the hand from the point of a blow [m]. */
+  /** Distance of the hand from the struck point [m] for strength F; `strength` is the inverse. */
   length(F) {
     return (0.5 + (1.7 * F) / this.film.strongest) * Math.max(this.strip.a, this.strip.b);
   }
@@ -212,7 +214,7 @@ export class Explorer extends Player {
     return Math.max(0, length / Math.max(a, b) - 0.5) * (strongest / 1.7);
   }
 
-  /** Hand and point of the blow, in pixels. */
+  /** The strength of the blow, and the places of the hand and of the struck point in pixels. */
   hand(view) {
     const { x, z } = this.strip.motion.at(this.now), { d, F } = this.given;
     return { F, top: view.at(x + d, z + this.length(F)), point: view.at(x + d, z) };
@@ -277,7 +279,7 @@ export class Explorer extends Player {
       + (isCut ? this.say("forces_cut", { peak }) : "");
   }
 
-  /** Write what the blow does, and announce where it is. */
+  /** Write what happens, and the place and strength of the blow at the sliders and the map. */
   describe() {
     const { d, F } = this.given;
     this.tell();
@@ -294,7 +296,7 @@ export class Explorer extends Player {
     this.host.dataset.blow = `${d} ${F}`;
   }
 
-  /** Python code in which the first blow, and an argument with later ones, replace braces. */
+  /** Python code: the first blow replaces {blow}, and an argument with the later blows {blows}. */
   code(lines = this.film.code) {
     const [[, first], ...later] = this.blows().map(([t, ...impulse]) => [t, this.codeOf(impulse)]);
     const pairs = later.map((pair) => `(${pair.join(", ")})`).join(", ");
@@ -332,7 +334,7 @@ export class Explorer extends Player {
     paintSides(ink, this.colours, area, ends(this.axis(0)), ends(this.axis(1)),
       [this.labelOf(0), this.labelOf(1)]);
     if (!done) this.filling ||= requestAnimationFrame(() => {
-      this.filling = 0; // a picture in this frame paints the map, too
+      this.filling = 0; // a requested picture will paint the map, too
       if (!this.waiting) this.paintMap(performance.now() + BUDGETS[0]);
     });
   }
@@ -360,7 +362,7 @@ export class Explorer extends Player {
     return false;
   }
 
-  /** Colour of a cell and its strength: that of the first outcome, whose name is then shown. */
+  /** The colour and opacity of a cell, from its first outcome, which the legend then shows. */
   colourOf(given) {
     const { core, end, outcomes } = this.film, first = core.first(this.sceneOf(given), end);
     this.box.querySelector(`[data-outcome=${first}]`).hidden = false;
@@ -374,7 +376,7 @@ export class Explorer extends Player {
 
   // ------------------------------------------------------------------------------- pictures
 
-  /** Draw over the body: the motion's path, and the hand. */
+  /** Draw over the body: the path of the motion, outlines of the body along it, and the hand. */
   over(ink) {
     const { strip, colours, views: [view] } = this, end = strip.motion.end;
     ink.globalAlpha = 0.4;
@@ -399,7 +401,7 @@ export class Explorer extends Player {
     text(ink, colours.plum, words, top[0] + 17, top[1] + 4, "left");
   }
 
-  /** Fit the picture to a width: the numbers of the ruler are 34 pixels high. */
+  /** Set the shape of the picture for a width, with 34 pixels for the numbers of the ruler. */
   fit(width) {
     const [left, right, , top] = this.strip.window;
     this.film.shape = Math.max(this.lowest, top / (right - left) + 34 / width);
@@ -434,13 +436,13 @@ export class Explorer extends Player {
   }
 }
 
-/** A number in the range of an axis, rounded to a hundredth of its step or less. */
+/** A number limited to the range of an axis and rounded to a hundredth of its step or less. */
 function within({ least, most, step }, value) {
   const decimals = Math.max(0, 2 - Math.floor(Math.log10(step)));
   return Math.min(most, Math.max(least, Number(value.toFixed(decimals)))) + 0;
 }
 
-/** The cells of the map with their sizes, all large ones first. */
+/** The cells of the map with their sizes, from the largest size to the smallest. */
 function* cellsInTurn() {
   for (const size of COARSE)
     for (let j = 0; j < CELLS[1]; j += size)

@@ -1,4 +1,4 @@
-"""A page for moving a blow over a body and seeing its motion at once, without a Python kernel."""
+"""A page on which a blow is moved over a body and its motion appears at once, without a kernel."""
 
 from __future__ import annotations
 
@@ -186,9 +186,10 @@ class Explorer(FieldsOnly):
         return self._fragment("Explorer")
 
     def _fragment(self, starts: str, module: str = "", **more: Any) -> str:
-        """Return the page's content; a class in `module` may start it, with `more` data.
+        """Return the page's content, with the name of the JavaScript class that starts it.
 
-        The content includes the film of the first blow, for browsers that cannot run the core.
+        The class may be defined in `module`, and `more` has further data for it. The content
+        includes the film of the first blow, for browsers that cannot run the core.
         """
         axes = blows.axes(self.scene)
         blow = blows.first_blow(self.scene, *axes)

@@ -20,10 +20,10 @@ from .._pictures.ground import blows_of, touching_x
 from .._pictures.sampling import halve
 from .page import document, fragment
 
-_PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of 2000
+_PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel if the width is 2000 pixels
 _HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and the ruler, as shares of the width
 _TALLEST = 0.42  # maximum height of a film over its width; half of it for each of several motions
-MOST_SAMPLES = 20_000  # maximum for one motion, 1 MB
+MOST_SAMPLES = 20_000  # maximum number for one motion: 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 FORCES = ("normal_force", "friction_force")
 _MIDDLES = {name: f"{name}_middle" for name in FORCES}
@@ -72,7 +72,7 @@ def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
 
 
 def _middles(motion: Trajectory) -> dict[str, FloatArray]:
-    """Return forces at the midpoints of intervals and at the end; across a jump, their mean."""
+    """Return forces midway between samples and at the end; across a jump, the mean of its sides."""
     t = motion.t
     between, jumps = motion.sol(np.append((t[:-1] + t[1:]) / 2, t[-1])), np.diff(t, append=np.inf)
     middles = {}
@@ -100,7 +100,7 @@ def sample_times(
     jumps = [event.t for event in motion.events if begin < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
     times = np.unique(np.concatenate([even_times(begin, end, _FIRST + 1), jumps, just_before]))
-    # Intervals in which the cubic may be off
+    # Indices of intervals in which the error has not been checked yet
     places = np.flatnonzero(np.diff(times) > 1e-12 * (end - begin))
     while places.size and times.size <= most:
         left, right = times[places], times[places + 1]
@@ -178,7 +178,7 @@ def film_html(animation: RollingAnimation) -> str:
     seen = cameras(motions, None, head, foot, beside)
     if seen.shape > (most := _TALLEST * max(1, (not beside) * len(motions) / 2) + rows * _HEAD):
         seen = cameras(motions, most, head, foot, beside)  # low enough for a notebook's cell
-    wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # of the whole picture
+    wide = seen.columns * (seen.windows[0][1] - seen.windows[0][0])  # width of the picture [m]
     strips = [
         {
             **body(motion),

@@ -47,9 +47,10 @@ def fragment(
     """Return a `div` with pictures of the motions, and a script that replaces them with the player.
 
     If scripts are disabled, the pictures and the text remain. A page may contain the same fragment
-    several times. Data without words get the English ones. `around` is HTML around the player.
-    `starts` is the class to start; `module` is JavaScript that defines it, if the package does not.
-    No key event leaves the `div`, whose JupyterLab marker keeps the notebook from acting on keys.
+    several times. If `data` has no words, the English ones are added. `around` is HTML around the
+    player. `starts` is the class to start; `module` is JavaScript that defines it, if the package
+    does not. The `div` stops all key events, and its JupyterLab marker keeps the notebook from
+    acting on keys.
     """
     scripts, sheets = SCRIPTS.get(starts, SCRIPTS["Explorer"])
     texts = data.get("words") or words("en")
@@ -103,7 +104,7 @@ def core() -> str:
 
 
 def words(language: str | Mapping[str, str]) -> dict[str, str]:
-    """Return the table of a language, or a copy of a mapping with the keys of the English table.
+    """Return the table of a language, or a copy of a mapping with the same keys.
 
     A text must not use a placeholder that the English text lacks.
     """

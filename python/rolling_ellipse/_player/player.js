@@ -4,7 +4,7 @@
 const NUDGES = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -10, ArrowUp: 10 };
 const RATES = [0.1, 0.25, 0.5, 1, 2, 4];
 const ICONS = { play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z" };
-/** True if the page or, without a theme of its own, the user's system requests dark colours. */
+/** Whether the theme of the page or, if it has none, the user's system requests dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
@@ -13,7 +13,7 @@ export function isDark(host) {
   return night ? true : day ? false : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-/** The cleared context of a canvas of given height [CSS px], at the resolution of the screen. */
+/** Fit a canvas to a height [CSS px] and to the screen's resolution; return its cleared context. */
 export function sized(canvas, height) {
   const dots = window.devicePixelRatio || 1, { clientWidth: width } = canvas;
   const across = Math.round(width * dots), down = Math.round(height * dots);
@@ -58,7 +58,7 @@ export class Player {
     [strip.trace] = strip.traces;
   }
 
-  /** Seconds of motion that the film shows before a time, and the inverse. */
+  /** Seconds of motion that the film shows before a time; `timeAt` is the inverse. */
   shown(t) {
     return this.parts.reduce((sum, [begin, end]) =>
       sum + Math.max(0, Math.min(t, end) - begin), 0);
@@ -82,7 +82,7 @@ export class Player {
     this.slider = find(".seek input");
     this.clock = find(".time");
     this.select = find("select");
-    const { speed, fastest = Infinity } = this.film; // faster, bodies would seem to roll backwards
+    const { speed, fastest = Infinity } = this.film; // beyond it bodies seem to roll backwards
     for (const rate of new Set([...RATES, 1 / speed].sort((one, other) => one - other)))
       if (rate === 1 || rate * speed <= fastest)
         this.select.add(new Option(`× ${+(rate * speed).toPrecision(3)}`, rate, rate === 1,
@@ -103,7 +103,7 @@ export class Player {
     this.marks();
   }
 
-  /** Mark every event at the slider; events at the same point share a mark. */
+  /** Mark every event on the slider; events at the same point share a mark. */
   marks() {
     const seek = this.slider.parentNode;
     seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
@@ -174,7 +174,8 @@ export class Player {
     this.toggle.setAttribute("aria-label", this.toggle.title);
   }
 
-  /** Run one loop of frames while the film plays in view; it pauses for a second at the end. */
+  /** Draw frames while the film plays and is in view. At the end it rests for a second, then starts
+ * again. */
   run() {
     if (this.running || !this.playing || this.seen === false) return;
     this.running = true;
@@ -192,7 +193,7 @@ export class Player {
     requestAnimationFrame(frame);
   }
 
-  /** The states now, with the centres in pixels: for scripts of the page. */
+  /** The current states, with the centres in pixels, for scripts in the page. */
   state() {
     const bodies = this.film.strips.map((strip, i) => {
       const at = strip.motion.at(this.now), { columns = 1 } = this.film;
@@ -202,7 +203,7 @@ export class Player {
     return { t: this.now, playing: this.playing, bodies };
   }
 
-  /** Request a picture; there is at most one per frame of the screen. */
+  /** Request a picture; at most one is drawn per frame of the screen. */
   draw() {
     this.slider.value = this.long > 0 ? this.shown(this.t) / this.long : 0;
     const text = this.t.toFixed(Math.max(3, this.film.decimals));
@@ -224,7 +225,7 @@ export class Player {
     ink.fillRect(0, 0, width, height);
     const t = this.now, part = this.parts.findLastIndex(([begin]) => begin <= t);
     const states = film.strips.map((strip) => strip.motion.at(t)), { columns = 1 } = film;
-    const across = width / columns; // of a strip: strips are stacked, or side by side
+    const across = width / columns; // width of a strip; strips are stacked or side by side
     this.views = this.viewsOf(states, width);
     let floor = 0;
     film.strips.forEach((strip, i) => {
@@ -249,7 +250,7 @@ export class Player {
     canvas.setAttribute("aria-label", this.label(states));
   }
 
-  /** The states in words, for users who cannot see the picture. */
+  /** Describe the states in words, for users who cannot see the picture. */
   label(states) {
     const near = (value, unit) => Math.round((1000 * value) / unit) * (unit / 1000);
     return states.map(({ theta, x }, i) => this.say("stage", { theta: near(theta, 1),
@@ -257,12 +258,13 @@ export class Player {
       name: this.film.strips[i].label }).trim()).join("; ");
   }
 
-  /** The text of a key in the page's language; values replace the names in braces. */
+  /** The text of a key in the page's language, with values instead of the names in braces. */
   say(key, values = {}) {
     return this.film.words[key].replace(/\{(\w+)\}/g, (_, name) => round(values[name]));
   }
 
-  /** The views of all strips: cameras stand still, follow the middle, or each follows its body. */
+  /** The views of all strips. A camera stands still, follows the middle of all bodies, follows its
+   * own body, or moves only when its body would come too close to an edge. */
   viewsOf(states, width) {
     const { strips, follows, shape } = this.film;
     const feet = strips.map(({ slope }, i) =>
@@ -284,7 +286,8 @@ export class Player {
     });
   }
 
-  /** The label of a motion and remarks on its state now, in rows if strips are side by side. */
+  /** The label of a motion and remarks on its current state; on separate lines if strips are side
+   * by side. */
   caption(strip, at) {
     const parts = [], [perMetre, unit] = strip.unit ?? [1, "m"];
     if (this.film.follows === "own") {

@@ -1,11 +1,11 @@
-// One strip of the picture: a body on its ruled ground in a given state. Needs track.js.
+// Draws one strip of the picture: a body in a given state, on ground with a ruler. Needs track.js.
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
-const SHOWN = 6000; // maximum number of points drawn of a trace: earlier ones are out of sight
-const ROW = 17; // height of a row of a caption [px]
+const SHOWN = 6000; // number of points drawn of a trace: earlier ones are out of sight
+const ROW = 17; // height of a line of a caption [px]
 const FADES = 1.2; // how long a blow or an event is visible [seconds of film]
 
-/** One strip of the picture: maps points of its ground to pixels. */
+/** Maps points of a strip, in its ground axes, to pixels (`at`) and back (`ground`). */
 export class View {
   constructor(strip, window, place, floor, width) {
     const [left, right, , top] = window;
@@ -36,7 +36,8 @@ export function paintStrip(ink, colours, strip, at, view, shown) {
   paintTexts(ink, colours.ink, shown);
 }
 
-/** Write the clock, and the caption beside it or, if strips are side by side, in rows below it. */
+/** Write the clock and the caption. The caption is beside the clock, or below it if strips are side
+ * by side. */
 function paintTexts(ink, colour, { caption, clock, beside, floor, width }) {
   text(ink, colour, clock, width - 12, floor + 20, "right");
   const room = width - 24 - (beside || !clock ? 0 : ink.measureText(clock).width + 12);
@@ -76,9 +77,9 @@ export function fill(ink, colour) {
   ink.fill();
 }
 
-export const point = { sign: "." }; // between the digits of a number
+export const point = { sign: "." }; // decimal point of the page's language
 
-/** The text of a number to a few digits; a string of digits keeps all of them. */
+/** The text of a number, rounded to a few digits; a number given as a string is not rounded. */
 export function round(value, digits = 3) {
   if (value === Infinity) return "∞";
   const written = typeof value === "number" ? `${+value.toPrecision(digits)}` : `${value}`;
@@ -104,7 +105,7 @@ export function disc(ink, colour, edge, [x, y], radius) {
   if (edge) stroke(ink, edge, 1.5);
 }
 
-/** Make the outline of a body the current path. */
+/** Set the current path to the outline of a body. */
 export function outline(ink, strip, at, view) {
   const [u, v] = view.at(at.x, at.z);
   ink.beginPath();
@@ -112,7 +113,7 @@ export function outline(ink, strip, at, view) {
     2 * Math.PI);
 }
 
-/** Draw the ground and its ticks; every fifth is longer and labelled with its position. */
+/** Draw the ground and its ticks; every fifth tick is longer and labelled with its position. */
 function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   const far = (2 * (width + tall)) / view.scale;
   const [x] = view.ground(width / 2, floor + tall);
@@ -150,7 +151,7 @@ function past({ trace }, at) {
   return [...trace.slice(Math.max(0, end - SHOWN), end), at];
 }
 
-/** Draw where the contact has slid. */
+/** Draw the parts of the ground on which the contact has slid. */
 function paintSkids(ink, colours, strip, at, view) {
   ink.beginPath();
   let slid = false;
@@ -190,7 +191,7 @@ function paintBody(ink, colours, strip, at, view) {
   disc(ink, colours.blue, null, view.at(...at.tip), 4);
 }
 
-/** Mark where body and ground touch; a triangle points in the direction of slip. */
+/** Mark the contact with a disc or, while it slides, a triangle in the direction of slip. */
 function paintContact(ink, colours, { a, b }, at, view) {
   if (at.mode === FLIGHT) return;
   const [height, lead] = support(at.theta, a, b), way = Math.sign(at.xDot - height * at.omega);
@@ -206,7 +207,8 @@ function paintContact(ink, colours, { a, b }, at, view) {
   stroke(ink, colours.paper, 0.8);
 }
 
-/** Draw the contact forces; a force equal to the weight is as long as the longer semi-axis. */
+/** Draw the contact forces; the arrow of a force equal to the weight has the length of the longer
+ * semi-axis. */
 function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (at.mode === FLIGHT) return;
   const place = at.x + support(at.theta, a, b)[1];
@@ -219,7 +221,7 @@ function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (Math.abs(at.F) > 0.02 * weight) text(ink, colours.plum, "F", along[0], along[1] - 8);
 }
 
-/** Draw the last blow where it struck the body, while it fades. */
+/** Draw the last blow at the place where it struck the body; the arrow fades with time. */
 function paintBlow(ink, colours, strip, at, view, lasting) {
   const [t, jx, jz, dx, dz] = strip.blows.filter(([then]) => then <= at.t).pop() ?? [];
   const size = Math.hypot(jx, jz), age = lasting * (1 - t / Math.max(at.t, 1e-300));
@@ -233,7 +235,7 @@ function paintBlow(ink, colours, strip, at, view, lasting) {
   ink.globalAlpha = 1;
 }
 
-/** Draw a tick on the ground for every past event, and the name of a recent one. */
+/** Draw a tick on the ground for every past event, and the name of the last one for a while. */
 function paintEvents(ink, colours, strip, at, view, { width, lasting, say }) {
   let named = null;
   for (const [t, kind, x] of strip.events) {

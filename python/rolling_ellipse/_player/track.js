@@ -1,17 +1,17 @@
-// A motion: samples with their rates, and cubics between them. Lengths are metres in ground axes,
-// x along the ground and z normal to it, times seconds.
+// A motion: samples with their rates, and cubics between them. Lengths are in metres, times in
+// seconds; x is measured along the ground and z normal to the ground.
 
 const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** The content of gzipped base64, such as the data of a page in JSON. */
+/** Decode and unzip base64 text, such as the data of a page; returns the content as a Response. */
 export function unzipped(text) {
   const unzip = new DecompressionStream("gzip");
   return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip));
 }
 
-/** The numbers of packed columns. */
+/** Unpack columns of numbers. */
 export function unpacked(columns) {
   return Object.fromEntries(Object.entries(columns).map(([name, { kind, low, step, data }]) =>
     [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
@@ -28,8 +28,8 @@ export function lastUntil(t, count, time) {
   return first;
 }
 
-/** One motion: its state at any time, by cubics between samples of position and rate, and parabolas
- * through samples of a force and its values midway. */
+/** One motion, which gives its state at any time. Positions are cubics between samples of position
+ * and rate; forces are parabolas through two samples and the value midway between them. */
 export class Track {
   constructor(columns, a) {
     Object.assign(this, columns, { a });
@@ -58,7 +58,7 @@ export class Track {
     };
   }
 
-  /** The states at some samples, and at even fractions of the intervals between them. */
+  /** The states at samples first ... end - 1, and at `parts` - 1 times between two samples. */
   states(parts, first = 0, end = this.t.length) {
     const found = [];
     for (let i = first; i < end; i++)
@@ -68,7 +68,7 @@ export class Track {
   }
 }
 
-/** Height of the centre above the ground, and how far the contact is ahead of it. */
+/** Height of the centre above the ground, and distance by which the contact is ahead of it. */
 export function support(theta, a, b) {
   const sine = Math.sin(theta), cosine = Math.cos(theta);
   const height = Math.hypot(a * sine, b * cosine);

@@ -62,7 +62,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     ``RESTS``           it stays in equilibrium
     ``ROCKS``           it rolls until it turns back
     ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, keeps rolling
-    ``EDGE``            undecided within rounding
+    ``EDGE``            undecided because of rounding
     ==================  ==========================================================================
 
     The blow obeys the collision law of `Scene.initial_state`. The outcome of the rolling motion
@@ -110,13 +110,13 @@ def required_friction(
 ) -> float | FloatArray:
     """Return the least coefficient of friction with which the body can roll forever.
 
-    It is the larger of two coefficients. The blow requires ``|Λx|/Λz`` of the sticking contact, or
-    ``|Gnt|/Gtt`` if that is larger; then the slip stops before the compression ends, and does not
-    start again (the collision law of `Scene.initial_state`). The rolling that follows requires the
-    largest ``|F|/N`` of the whole motion. On level ground this comes from `certify`. On a slope it
-    is finite for a circle, a body in equilibrium, and a body that rocks between two turning points;
-    it is the maximum over the angle, from a scan and golden section search. The friction of the
-    scene has no effect.
+    This is the larger of two coefficients. One is required by the blow: ``|Λx|/Λz`` of the sticking
+    contact, or ``|Gnt|/Gtt`` if that is larger, so that the slip stops before the compression ends
+    and does not start again (the collision law of `Scene.initial_state`). The other is required by
+    the rolling that follows: the largest ``|F|/N`` of the whole motion. On level ground this ratio
+    comes from `certify`. On a slope it is finite for a circle, a body in equilibrium, and a body
+    that rocks between two turning points; it is the maximum over the angle, from a scan and golden
+    section search. The friction of the scene has no effect.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def required_friction(
         `simulate_many`.
     to : {"roll", "rest"}
         "rest" gives the friction with which the body can lie still on its slope, in any position.
-        It is tan(slope), or infinite if that exceeds ``|a^2 - b^2|/(2 a b)``, the largest ratio of
-        the lead of the contact to the height of the centre.
+        It is tan(slope), or infinite if that exceeds ``|a^2 - b^2|/(2 a b)``, the largest ratio
+        ``|h'|/h`` of the horizontal and vertical distances between the contact and the centre.
     workers : int or executor
         As for `flow`, for the scenes of a mapping.
 

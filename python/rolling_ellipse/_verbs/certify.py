@@ -22,8 +22,8 @@ class Certificate(FieldsOnly, Listed):
     Attributes
     ----------
     validity : Validity
-        VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll,
-        or a scene with rolling resistance).
+        VALID, INVALID, EDGE (undecided because of rounding) or NO_PROOF (a start that does not
+        roll, or a scene with rolling resistance).
     smallest_normal_force : float or None
         Least normal force [N] over the whole motion, in both directions of time. On a slope it is
         -inf because the body turns ever faster downhill, unless the body is a circle, rests or

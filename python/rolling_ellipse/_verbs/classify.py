@@ -41,8 +41,8 @@ class Thresholds(FieldsOnly, Listed):
         along its path. There are one or two, the last of which ends at inf; a circle with friction
         has none. Between two ranges the body rolls forever: it is too fast to stop where it would
         slip from rest, and too slow to slip in motion. The ends are determined by a scan over the
-        angles; the proof of `certify` then excludes that rolling fails at an angle that the scan
-        missed.
+        angles; the proof of `certify` then confirms that rolling does not fail at an angle that the
+        scan missed.
     lift_off_speed : float
         The least speed at which a body with the given friction leaves the ground: it slips first,
         and then N reaches 0 before it passes the tip. The body also leaves the ground at all larger
@@ -52,8 +52,8 @@ class Thresholds(FieldsOnly, Listed):
         passes the tip; inf ends an unbounded range. There are none for infinite friction, nor for
         friction up to `painleve_friction`. Otherwise the ranges are located by a scan in steps of
         2 % up to 50 times the largest of the other speeds, which may miss narrower ranges. Their
-        ends are refined by bisection. They are accurate to only about 1e-5 where slides approach
-        the point at which c and B of the normal force N = c/B vanish together.
+        ends are refined by bisection. These ends are accurate to only about 1e-5 where slides
+        approach the point at which c and B of the normal force N = c/B vanish together.
     friction_to_roll_over : float
         Largest ``|F/N|`` of rolling at the roll-over speed (infinite if N vanishes before the tip).
     painleve_friction, painleve_angle : float
@@ -173,7 +173,7 @@ def classify(
                         that has started to roll slips before it leaves the ground
     ``JAMS``            a slip starts inside the Painleve region. This does not occur, because
                         rolling that ends can always continue as sliding.
-    ``EDGE``            undecided within rounding, for example on the separatrix
+    ``EDGE``            undecided because of rounding, for example on the separatrix
     ==================  ==========================================================================
 
     Hence the outcome of a body that starts beyond the angles at which it would slip is that it

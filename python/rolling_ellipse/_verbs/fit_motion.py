@@ -186,10 +186,10 @@ def fit_motion(
     The residuals r, r' of neighbouring frames are compared. If they are noise, the sum of r r'
     divided by the sum of (r^2 + r'^2)/2, times the square root of the number of pairs, is normally
     distributed. The scene does not fit the film if this number exceeds 3.5 in a track of eight
-    pairs or more, or if chi2 for given deviations is five standard deviations above its mean. Then
-    the errors are multiplied by sqrt((1 + c)/(1 - c)), where c is the largest of these ratios of
-    sums; this is only an estimate. Then also the conventions of other trackers are tried. A film
-    whose free fall disagrees with the scene is not fitted if other units fit.
+    pairs or more, or if chi2 for given deviations is five standard deviations above its mean. In
+    that case the errors are multiplied by sqrt((1 + c)/(1 - c)), where c is the largest of these
+    ratios of sums; this factor is only an estimate. In addition, the conventions of other trackers
+    are tried. A film whose free fall disagrees with the scene is not fitted if other units fit.
 
     References
     ----------
@@ -231,7 +231,7 @@ def fit_motion(
 
 
 def _fit(search: Search, best: Any, minima: list[Any], given: FloatArray) -> Fit:
-    """Return a minimum of chi2 with its errors and the verdict from its residuals."""
+    """Return the fit at a minimum of chi2, with errors and a verdict from the residuals."""
     unknowns, film = search.unknowns, search.film
     rivals = [search.solve(one.x, within=one.within) for one in minima]
     for _ in range(_ROUNDS):
@@ -272,7 +272,7 @@ def _answer(
     film: Film, unknowns: Unknowns, u: FloatArray, sigma: FloatArray,
     errors: FloatArray, covariance: FloatArray, sentences: list[str],
 ) -> Fit:  # fmt: skip
-    """Return the fit for values of the unknowns, with its motion."""
+    """Return the fit for values `u` of the unknowns, with the motion for these values."""
     motion = unknowns.motion(u, film.t)
     if motion is None:
         raise ValueError(f"t must be times [s] that the motion reaches, got {film.t[-1]:g}")

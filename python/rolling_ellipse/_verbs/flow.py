@@ -72,8 +72,8 @@ def flow(
         number of times, because many times of one motion are evaluated with Taylor series about
         points of the motion. In this case x has a rounding error of 2e-16 max(a, b), even where the
         body has returned to its start and x is small. Many motions at one time each are computed
-        side by side in the processor's vector registers (SSE2, AVX2 or AVX-512), with the same bits
-        as each alone.
+        side by side in the processor's vector registers (SSE2, AVX2 or AVX-512), with the same
+        bits as each motion alone.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def period(scene: Scene) -> float:
     Raises
     ------
     ValueError
-        If the body does not roll like that, or the scene has rolling resistance.
+        If the body does not move in this way, or the scene has rolling resistance.
 
     Examples
     --------

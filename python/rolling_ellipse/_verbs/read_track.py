@@ -113,7 +113,7 @@ def read_track(
 
 
 def table_in(name: str, path: Any, delimiter: Any = None, decimal: Any = None) -> dict[str, Any]:
-    """Return the columns of a table by their names; `name` describes the argument `path`."""
+    """Return the columns of a table by their names; errors use `name` for the argument `path`."""
     if hasattr(path, "keys"):
         return {str(key): path[key] for key in path}
     text = Path(readable(name, path)).read_text(encoding="utf-8-sig", errors="replace")

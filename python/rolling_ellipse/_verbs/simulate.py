@@ -58,9 +58,9 @@ def simulate(
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; `certify` states how long it is valid. "contact" is the
         complete motion, in which the body may roll, slide, fly, hit the ground and come to rest;
-        ``events`` separate its segments. No segment is integrated in steps: slides are power series
-        in time [9]_ that end at proved first roots, and so is rolling with resistance, which only
-        this model supports. "multipliers" is rolling in the report's five coordinates with four
+        ``events`` separate its segments. No segment is integrated in steps: slides, and rolling
+        with resistance (which only this model supports), are power series in time [9]_ that end at
+        proved first roots. "multipliers" is rolling in the report's five coordinates with four
         constraints and their Lagrange multipliers, for study; its methods are "dop853" (also its
         "auto"), "dopri5", "rk4", and "radau" with the stabilization "ggl". "auto" chooses "contact"
         if ``blows`` or ``stop`` are given. Otherwise it chooses "rolling" if a method is given or
@@ -110,7 +110,7 @@ def simulate(
         on the current state like the blow of a scene. A blow at t = 0 follows that of the scene.
     stop : EventKind, str, or iterable of them, optional
         Kinds of events at which the motion stops, such as "impact" or ("stick", "rest"), after all
-        events of that instant. With "decided" the motion stops when its future holds no further
+        events of that instant. With "decided" the motion stops once its outcome can no longer
         change: at REST, or in rolling or frictionless sliding that is proved to last forever, on
         level ground or in a well. This excludes a run down a slope and, with rolling resistance,
         any motion before rest. With a stop ``t`` may be infinite, samples end at the stop, and the

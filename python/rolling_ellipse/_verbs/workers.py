@@ -23,9 +23,9 @@ Columns = list[FloatArray]
 Task = tuple[Any, ...]  # a function and its arguments, without the number of threads
 _Key = TypeVar("_Key")
 
-_IN_FLIGHT = 128  # largest number of tasks submitted and not yet yielded
-_HELD = 96 * 2**20  # limit on bytes of results that wait for earlier ones, if one is not larger
-_ELEMENTS = 2**16  # elements per task: a multiple of the core's parts, so that all bits agree
+_IN_FLIGHT = 128  # largest number of submitted tasks whose results are not yet yielded
+_HELD = 96 * 2**20  # limit [bytes] on results that wait for earlier ones, except for a single one
+_ELEMENTS = 2**16  # elements per task: a multiple of the core's block size, so that bits agree
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def threads_of(workers: Any) -> int | None:
 def in_order(
     executor: Any, tasks: Iterable[tuple[_Key, Task]], size: Callable[[], int] = lambda: 0
 ) -> Iterator[tuple[_Key, Any]]:
-    """Yield the key and the result of each task in order; `Lost` if its worker died or is missing.
+    """Yield the key and the result of each task in order; the result of a failed task is `Lost`.
 
     Tasks are submitted as results are requested, so that pending results of `size()` bytes each
     stay within `_HELD` bytes. An interrupt cancels tasks that have not started; finished results

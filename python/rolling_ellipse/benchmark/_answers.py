@@ -3,9 +3,9 @@
 The simulator's output must agree with the answer in its values at the end, or at all times, to
 within 0.01 of their scales (0.01 L or 0.01 rad); in the number of half swings (`_events`); and in
 the kinds and order of events. The time of an event may be off by 2 % of sqrt(L/g) or, if that is
-larger, by 0.1 % of sqrt(L/g) times the largest condition number up to it, but by no more than 10 %.
-The states must match the motion as closely as if the inputs were off by at most 10 %, in the
-package's conventions (`_mistakes`).
+larger, by 0.1 % of sqrt(L/g) times the largest condition number up to it, but by no more than 10 %
+of sqrt(L/g). The states must follow the package's conventions (`_mistakes`), and match the motion
+as closely as if the inputs were off by at most 10 %.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from ._results import Rows
 
 _CLOSE = 0.01  # largest error of a value of the answer, relative to its scale
 _SHARE, _LARGEST_SHARE = 0.02, 0.1  # largest errors of the time of an event, as shares of sqrt(L/g)
-_PER_CONDITION = 1e-3  # allowed share for a sensitive event, per unit of its condition number
+_PER_CONDITION = 1e-3  # allowed share for a sensitive event, per unit of the condition number
 _NEAR = 0.1  # largest error over condition number for states of the right motion
-_APART = 3.0  # minimum ratio of the distance from the second nearest law to that from the nearest
+_APART = 3.0  # minimum ratio of the distances from the second nearest and the nearest law
 _Event = tuple[str, float]
 
 
@@ -45,10 +45,10 @@ class Answer(NamedTuple):
 
 
 def answered(one: Problem, mine: Rows, rows: Any, places: Any) -> Answer:
-    """Return the answer that usable rows give.
+    """Return whether the usable rows answer the question, and why or why not.
 
-    `rows` are indices of the compared rows of the problem, `places` those of the rows of the result
-    at the same times.
+    `rows` are the indices of the compared rows in the problem, and `places` are the indices of the
+    result's rows at the same times.
     """
     states, law, wrong = _nearest_law(one, rows, mine.states[places])
     events: dict[str, dict[str, Any]] = {}
@@ -89,7 +89,7 @@ def _values(one: Problem, mine: Rows, which: str) -> list[str]:
 def _nearest_law(
     one: Problem, rows: Any, states: FloatArray
 ) -> tuple[FloatArray, list[str], list[str]]:
-    """Return the states by the nearest law, a remark that names it, and why it may not count."""
+    """Return the states of the nearest impact law, a remark on it, and why no law is followed."""
     if not one.laws or not rows.size:
         return one.states[rows], [], []
     motions = {"stronge": one.states, **one.laws}
@@ -108,7 +108,8 @@ def _nearest_law(
 def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
     """Compare given events with the known ones, or events detected in both motions by one rule.
 
-    The error of the rule cancels. For bounces that die out, the first and the end are compared.
+    The same rule finds events in both motions, so that its error cancels. For bounces that die out,
+    only the first ones and the time at which they end are compared.
     """
     if mine.events is None:
         exact = states_of(one.trajectory.sol(mine.t))
@@ -122,7 +123,7 @@ def _events(one: Problem, mine: Rows) -> tuple[list[str], dict[str, Any]]:
 
 
 def _settling(one: Problem, bounces: Sequence[_Event]) -> list[str]:
-    """Return what is wrong with bounces and their end, which may be listed as STICK."""
+    """Return what is wrong with bounces that die out; their end may be listed as STICK."""
     others = [kind for kind, _ in bounces if kind not in ("IMPACT", "STICK")]
     sticks, end = [t for kind, t in bounces if kind == "STICK"], float(one.answer["end"])
     if others or len(sticks) > 1:
@@ -136,7 +137,8 @@ def _differences(
 ) -> tuple[list[str], dict[str, Any]]:
     """Return what is wrong with events, and counts and errors of times by kind.
 
-    If the problem has no event, the rule may detect one in both motions: its time is not compared.
+    If the problem has no event, the rule of `_events` may still detect one in both motions; its
+    time is then not compared.
     """
     kinds, wanted = Counter(kind for kind, _ in mine), Counter(kind for kind, _ in known)
     off: dict[str, float] = {}
@@ -144,7 +146,7 @@ def _differences(
     for k, ((kind, t), (other, then)) in enumerate(zip(mine, known, strict=False), 1):
         if kind == other:
             off[kind] = max(off.get(kind, 0.0), abs(t - then))
-            until = one.t_end if kind == "REST" else then  # REST is detected early
+            until = one.t_end if kind == "REST" else then  # the rule finds REST early
             if one.events and not abs(t - then) <= _allowed(one, until):
                 wrong.append(f"{kind} {k} at {t:.6g} s, right {then:.6g} s")
     counts = {"missed": dict(wanted - kinds), "invented": dict(kinds - wanted)}

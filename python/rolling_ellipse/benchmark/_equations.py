@@ -18,9 +18,10 @@ if TYPE_CHECKING:
     from ._problem import Problem
 
 ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
-_QUIET = 1e-3  # event-free time after SLIP and LIFT_OFF, in units of sqrt(L/g)
+_QUIET = 1e-3  # time without events after SLIP and LIFT_OFF, in units of sqrt(L/g)
 _LEAST_REBOUND = 1e-7  # in units of sqrt(g L); slower rebounds are lower than an ulp of z
-#: Index and rows: 0-2 are f2, f3, f4; 3-6 f1 and the rates of f2, f3, f4; 7-10 the rates of 3-6.
+#: Index of each form, and its constraints: 0-2 are f2, f3, f4; 3-6 are f1 and the rates of f2, f3,
+#: f4; 7-10 are the rates of 3-6.
 FORMS = {
     "index3": (3, (3, 0, 1, 2)), "index2": (2, (3, 4, 5, 6)), "index1": (1, (7, 8, 9, 10)),
     "ggl": (2, (3, 4, 5, 6, 0, 1, 2)),
@@ -81,7 +82,7 @@ class Dae(FieldsOnly):
 
     @property
     def y0(self) -> FloatArray:
-        """Consistent start, shape (n,)."""
+        """Consistent y at the start, shape (n,)."""
         return self.exact(0.0)
 
     @property
@@ -129,7 +130,7 @@ class Dae(FieldsOnly):
         """
         if np.ndim(y) == 1:
             return self.residual(t, np.array([y]), np.array([yp]))[0]
-        # No operation below depends on the memory layout or the number of states
+        # Results must not depend on the memory layout or on the number of states
         y, yp = (np.array(np.transpose(one), order="C") for one in (y, yp))
         scene = self.problem.scene
         a, b, c2 = scene.a, scene.b, (scene.a - scene.b) * (scene.a + scene.b)
@@ -137,10 +138,10 @@ class Dae(FieldsOnly):
         sin, cos, turn = np.sin(psi - theta), np.cos(psi - theta), psi_t - theta_t
         s = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
         r_c, u = a * b / np.sqrt(s), c2 * np.sin(2 * psi) / s  # r_c: radius of the ellipse at psi
-        r_1, r_2 = r_c * u / 2, r_c * (0.75 * u**2 + c2 * np.cos(2 * psi) / s)  # derivatives by psi
+        r_1, r_2 = r_c * u / 2, r_c * (0.75 * u**2 + c2 * np.cos(2 * psi) / s)  # psi derivatives
         p, q = a * a * np.sin(theta), b * b * np.cos(theta)  # tan psi_C = p/q (eq 5)
         psi_c = theta + np.arctan(c2 * p * q / ((b * p) ** 2 + (a * q) ** 2))
-        psi_1 = (a * b) ** 2 / (p * p + q * q)  # derivatives by theta
+        psi_1 = (a * b) ** 2 / (p * p + q * q)  # theta derivatives
         psi_2 = -2 * p * q * c2 * (a * a + b * b) / (p * p + q * q) ** 2
         g = np.zeros_like(cos, shape=(4, 5, *r.shape))
         g[0, 0] = g[1, 1] = g[2, 4] = g[3, 3] = 1
@@ -308,7 +309,7 @@ class Ode:
         return np.array([event.t for event in self.problem.events])
 
     def _touching(self, t: float, y: FloatArray, slip: float, kind: str) -> Ode:
-        """Return the arc of a body on the ground; a slip starts opposite to the friction needed."""
+        """Return the arc of a body on the ground; a slip starts against the friction needed."""
         quiet = self._pause if kind == "SLIP" else 0.0
         here = replace(self, mode=ROLLING, t0=t, y0=y, kind=kind, side=0, quiet=quiet)
         if slip == 0 and kind != "SLIP" and here._grip(y) > 0:
@@ -321,7 +322,7 @@ class Ode:
 
     @property
     def _pause(self) -> float:
-        """Event-free time after SLIP and LIFT_OFF [s]."""
+        """The time without events after SLIP and LIFT_OFF [s]."""
         return _QUIET / float(self.problem.scales[5])
 
     @property
@@ -338,7 +339,7 @@ class Ode:
         return h, (a * a - b * b) * sin * cos / h, (a * b) ** 2 / (h * h * h)
 
     def _weight(self, y: Any) -> Any:
-        """Return the acceleration of the contact into the ground without contact forces."""
+        """Return the acceleration of the contact into the ground if no contact force acted."""
         h, _, radius = self._geometry(y)
         return self._gravity[1] + (radius - h) * y[5] * y[5]
 

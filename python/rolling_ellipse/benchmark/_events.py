@@ -7,15 +7,15 @@ sqrt(g L)/10 between two rows while the gap changes from closing to opening. Run
 are shorter than sqrt(L/g)/10 belong to the run before, as do rolling runs up to twice as long
 between opposite slips.
 
-If a run flies, an IMPACT ends it, when the free flight from its last row touches the ground. All
-other events are where the gap or the slip passes its limit, by linear interpolation between two
-rows: LIFT_OFF if the second run flies, STICK if it rolls, SLIP if the first run rolls, and REVERSE,
-at zero slip, if both slip.
+A run in flight ends with an IMPACT, when the free flight from its last row reaches the ground. All
+other events are located where the gap or the slip passes its limit, by linear interpolation between
+two rows: LIFT_OFF if the second run flies, STICK if it rolls, SLIP if the first run rolls, and
+REVERSE, at zero slip, if both slip.
 
 With rolling resistance the last event is REST if no velocity exceeds its limit in the last
 sqrt(L/g)/10 or longer; the limits are sqrt(g L)/500, and sqrt(g/L)/500 for the rotation. REST is
-where the last velocity passes its limit. A half swing ends where the rotation reverses, with speeds
-above the limit on both sides.
+located where the last velocity falls below its limit. A half swing ends where the rotation
+reverses, with speeds above the limit on both sides.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Mistakes of convention and of output that a simulator's states reveal, in words.
+"""Recognition of mistakes of convention and of output in the states of a simulator.
 
 A mistake is reported if correcting it leaves at most a twentieth of the error. Errors are relative
 to scale and condition number, so that numerical errors are small compared with mistakes.
@@ -18,8 +18,8 @@ from ._problem import STATE, Problem
 from ._results import Rows
 
 _LEFT = 0.05  # largest share of an error that may remain once a mistake is corrected
-_LEAST = 0.02  # smallest error of a mistaken variable
-_LEAST_SHIFT = 1e-3  # smallest error of rows shifted in time, perhaps by only one row
+_LEAST = 0.02  # smallest error of a variable for which a mistake is sought
+_LEAST_SHIFT = 1e-3  # smallest error for which a shift in time is sought: one row may be little
 _FEW_OF_A_TURN = 0.5  # largest error of a wrapped angle once it is unwrapped [rad]
 _SHIFTS = {1: "one", 2: "two", 3: "three"}
 _DEGREE = math.pi / 180
@@ -40,10 +40,10 @@ class _Known(NamedTuple):
 
 
 def mistakes(one: Problem, mine: Rows, rows: Any, places: Any) -> list[str]:
-    """Return the mistakes, relative to the nearest motion of a law of restitution that reveals any.
+    """Return the mistakes, found by comparison with the nearest restitution law that reveals any.
 
-    `places` are the indices of the compared times in the rows of the result, `rows` are those in
-    the rows of the problem.
+    `places` are the indices of the result's rows at the compared times, and `rows` are the indices
+    of the problem's rows at these times.
     """
     if len(mine.t) < 2 or not rows.size:
         return []
@@ -82,20 +82,20 @@ def _named(one: Problem, mine: Rows, known: _Known) -> Iterator[str]:
 
 
 def _other_times(mine: Rows, known: _Known) -> str:
-    """Return a remark if rows hold the states of their neighbours, or run backwards in time."""
+    """Return a remark if rows have the states of neighbouring rows, or run backwards in time."""
     for by in (sign * shift for shift in _SHIFTS for sign in (1, -1)):
         if _fits_in(known.places + by, mine.states, mine, known):
             towards = "later" if by > 0 else "earlier"
             return f"rows look shifted by {_SHIFTS[abs(by)]}, to {towards} times"
     from_the_end = len(mine.t) - 1 - known.places
-    turned = mine.states * [1, 1, 1, -1, -1, -1]  # velocities change sign with time
+    turned = mine.states * [1, 1, 1, -1, -1, -1]  # velocities change sign if time runs backwards
     both = (mine.states, turned)
     is_reversed = any(_fits_in(from_the_end, states, mine, known) for states in both)
     return "rows look reversed in time" if is_reversed else ""
 
 
 def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool:
-    """Return whether the states at other indices, as far as these exist, are much closer."""
+    """Return whether the states at other indices, where these exist, are much closer to `known`."""
     there = (places >= 0) & (places < len(states))
     right, units = known.states[there], known.units[there]
     now = _largest((mine.states[known.places[there]] - right) / units)
@@ -106,7 +106,8 @@ def _fits_in(places: Any, states: FloatArray, mine: Rows, known: _Known) -> bool
 def _unlike(k: int, values: FloatArray, known: _Known, height: FloatArray) -> str:
     """Return what the values of a variable look like, or "" if the mistake is unknown.
 
-    Zeros are the same in any unit. `height` is that of the centre of a body on the ground.
+    The error left must also be small relative to the right values, since zeros fit any unit.
+    `height` is the height of the centre of a body on the ground.
     """
     name, right, units = STATE[k], known.states[:, k], known.units[:, k]
     error, size = _largest((values - right) / units), _largest(right / units)

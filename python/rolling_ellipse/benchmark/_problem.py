@@ -45,7 +45,7 @@ class KnownEvent:
     t, condition : float
         Time [s], and its condition number.
     before, after : ndarray, shape (6,)
-        States.
+        States just before and just after the event.
     normal_force, friction_force : ndarray, shape (2,)
         Forces of the ground on the body before and after [N].
 
@@ -92,8 +92,9 @@ class Problem(FieldsOnly):
     scales : ndarray, shape (6,)
         Units of errors: L, L, 1, sqrt(g L), sqrt(g L), sqrt(g/L) with L = max(a, b).
     times, condition, normal_force, friction_force : ndarray, shape (n,)
-        Tabulated times [s]; condition numbers there (change of the state, in its scales, per
-        relative change of all inputs except mass and inertia), and the forces on the body [N].
+        Tabulated times [s], the condition numbers at these times (change of the state, in its
+        scales, per relative change of all inputs except mass and inertia), and the forces on the
+        body [N].
     states : ndarray, shape (n, 6)
         States at these times.
     events : tuple of KnownEvent
@@ -258,7 +259,7 @@ class Gradient:
         Raises
         ------
         ValueError
-            If it has another shape.
+            If `value` has another shape.
 
         Examples
         --------

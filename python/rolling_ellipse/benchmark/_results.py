@@ -1,4 +1,4 @@
-"""Results of a simulator, and those of their rows that can be scored."""
+"""Results of a simulator, and the rows of a result that can be scored."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Result:
     Attributes
     ----------
     states : array_like, shape (n, 6)
-        x, z, theta, x_dot, z_dot, omega; theta is not wrapped. The problem is failed if a number is
-        not finite.
+        x, z, theta, x_dot, z_dot, omega; theta is not wrapped. If a number is not finite, the
+        answer is "failed".
     t : array_like, shape (n,), optional
         Increasing times [s]; default: the requested times. Only rows from 0 to the end count.
     events : iterable of (kind, t), optional

@@ -132,7 +132,7 @@ class Scores(tuple[Score, ...]):
 
     @property
     def wrong(self) -> list[str]:
-        """Ids of problems whose answer at their last setting is wrong or failed."""
+        """Ids of problems whose answer at the last setting is "wrong" or "failed"."""
         last = {score.problem: score for score in self}
         return [name for name, score in last.items() if score.answer in (WRONG, FAILED)]
 
@@ -140,7 +140,7 @@ class Scores(tuple[Score, ...]):
         """Return the fitted order of the error of a problem, and whether smaller settings help.
 
         The order is the slope of log error over log setting. The second value is "yes", "plateau at
-        <error>" or "worse". For fewer than two settings with an error, they are NaN and "".
+        <error>" or "worse". If fewer than two settings have an error, the result is (NaN, "").
 
         Raises
         ------
@@ -290,7 +290,7 @@ def scored(one: Problem, setting: float | None, mine: Rows, tolerance: float) ->
 
 
 def _losses(one: Problem, states: FloatArray, exact: Trajectory) -> dict[str, float]:
-    """Return energy gained and lost, penetration, hop and slip of rows against exact samples."""
+    """Return energy gained and lost, penetration, hop and slip relative to exact samples."""
     scene, length = one.scene, float(one.scales[0])
     mine = SimpleNamespace(**dict(zip(STATE, states.T, strict=True)))
     unit = scene.mass * scene.gravity * length

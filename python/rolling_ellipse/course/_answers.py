@@ -25,13 +25,13 @@ Formula = Callable[[Scene, dict[str, Any], str], Any]
 def answer(
     of: Task, changes: dict[str, float] | None = None, formula: Formula | None = None
 ) -> float:
-    """Return the answer to a task, optionally with changed data or by another formula."""
+    """Return the answer to a task, optionally with changed data or another formula."""
     data, (kind, _, name) = of.data | (changes or {}), of.source.partition(".")
     return float((formula or _FORMULAS[kind])(scene_of(data), data | {"seed": of.seed}, name))
 
 
 def runs(s: Scene, d: dict[str, Any], name: str, rates: Callable[[float, Any], Any]) -> float:
-    """Return theta by the classical Runge-Kutta method, or the order that halved steps show."""
+    """Return theta at T by the classical Runge-Kutta method, or the order seen by halving steps."""
 
     def end(parts: int) -> float:
         y, step = np.array([s.theta, s.omega]), d["step"] / parts
@@ -86,9 +86,9 @@ def _error(seed: int | None, measured: str | None, a: float, b: float, k2: float
 def fitted(seed: int | None, doubled: bool = False) -> tuple[dict[str, float], dict[str, float]]:
     """Return the best fit to the film, with chi^2 per degree of freedom, and standard errors.
 
-    If k^2 is twice too large (`doubled`), the fit starts from half the friction, for which the body
-    slides throughout the impact. With more friction the contact may stick, and the fit may end in a
-    worse minimum.
+    If k^2 is twice too large (`doubled`), the fit starts from the right fit with half its friction,
+    for which the body slides throughout the impact. With more friction the contact may stick, and
+    the fit may end in a worse minimum.
     """
     from scipy.optimize import least_squares
 
@@ -107,7 +107,7 @@ def fitted(seed: int | None, doubled: bool = False) -> tuple[dict[str, float], d
     errors = np.sqrt(np.linalg.inv(best.jac.T @ best.jac).diagonal())
     chi2 = 2 * best.cost / (best.fun.size - len(names))
     known, off = (dict(zip(names, row.tolist(), strict=True)) for row in (best.x, errors))
-    return known | {"chi2": chi2}, off | {"chi2": chi2 / 400}  # right within half a percent
+    return known | {"chi2": chi2}, off | {"chi2": chi2 / 400}  # chi2 is right to within 0.5 %
 
 
 _FORMULAS: dict[str, Formula] = {

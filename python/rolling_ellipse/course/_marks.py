@@ -17,8 +17,8 @@ from ._answers import answer, fitted
 from ._mistakes import usual
 from ._tasks import DATA, FILE, NUMBERS, checked, numbered, sheet_of
 
-_ROUNDING = 1e-4  # relative error of the data; rounding to four digits causes at most 5e-4
-_MOST = 5e-3  # relative: largest tolerance, and largest excess that counts as nearly right
+_ROUNDING = 1e-4  # assumed relative error of the data; rounding to four digits causes at most 5e-4
+_MOST = 5e-3  # largest relative tolerance, and relative excess over it that is nearly right
 _NOTHING = 1e-9  # magnitude assumed for an answer of 0
 _STEP = 1e-6  # relative step of the finite differences for the condition
 _BY_HAND = 3  # number of tolerances within which an answer from the film is a good estimate
@@ -58,7 +58,7 @@ class Mark:
 
 
 class Key(NamedTuple):
-    """The marks of all numbers: below the first end, between consecutive ends, above the last."""
+    """The marks of all possible answers: below the first end, between ends, and above the last."""
 
     ends: list[float]
     marks: list[Mark]
@@ -101,7 +101,7 @@ def mark(task: str, answer: float, *, seed: int | None = None) -> Mark:
     'sign and inertia'
     """
     if not (isinstance(task, str) and task in NUMBERS):
-        from difflib import get_close_matches  # only on a mistake: it takes a millisecond
+        from difflib import get_close_matches  # only for an error: the import takes a millisecond
 
         near = get_close_matches(shown(task).strip("'"), NUMBERS, 3, 0.5)
         hint = f"; near it: {', '.join(near)}" if near else ""
@@ -157,8 +157,8 @@ def _known(
 ) -> tuple[float, list[tuple[tuple[str, ...], float]]]:
     """Return the relative tolerance without rounding, and answers with their mistakes.
 
-    The right answer comes first, then those that follow from mistakes and from pairs of mistakes,
-    and those to other tasks.
+    The right answer comes first. The answers that follow from single mistakes and from pairs of
+    mistakes come next, and then the answers to other tasks.
     """
     of = numbered(seed)[task]
     right = answer(of)
@@ -187,7 +187,10 @@ def _known(
 
 
 def _allowed(value: float, share: float) -> float:
-    """Return the tolerance of an answer: half a unit of its fourth digit, plus a share of it."""
+    """Return the tolerance of an answer: half a unit of its fourth digit plus `share` of its size.
+
+    The tolerance is at most 0.5 % of the answer, or `share` of it if that is more.
+    """
     size = abs(value) or _NOTHING
     digit = 10.0 ** (math.floor(math.log10(size)) - 3)
     return min(digit / 2 + share * size, max(share, _MOST) * size)

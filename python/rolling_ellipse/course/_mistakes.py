@@ -77,7 +77,7 @@ def _torque(s: Scene, d: dict[str, Any], name: str) -> float:
     if name == "friction_to_roll_over":
         return float(_friction_by_torque(s, low))
     high = 3 * low
-    for _ in range(5):  # the largest speed at which friction holds, on finer and finer grids
+    for _ in range(5):  # find the largest speed at which friction holds
         speeds, spacing = np.linspace(low, high, 81, retstep=True)
         low = max(speeds[_friction_by_torque(s, speeds) <= s.friction], default=math.nan)
         high = low + spacing

@@ -24,7 +24,7 @@ _ASIDE = re.compile(  # parts with a syntax of their own
     r"\$\$(?P<display>.+?)\$\$|\$(?P<inline>.+?)\$",
     re.DOTALL | re.MULTILINE,
 )
-_MARKUP = (  # Markdown and its HTML; links would lead to other pages and become plain text
+_MARKUP = (  # Markdown and its HTML; links, which would lead to other pages, become text
     (r"\*\*(.+?)\*\*", r"<strong>\1</strong>"), (r"\*(.+?)\*", r"<em>\1</em>"),
     (r"\[([^\]]+)\]\([^)]*\)", r"\1"), (r"\\$", "<br>"), (r"^# (.*?)$", r"<h1>\1</h1>"),
     (r"^## (.*?)$", r"<h2>\1</h2>"), (r"^\|( --- \|)+\n|^\|(---\|)+\n", ""), (r" \| ", "<td>"),
@@ -51,7 +51,7 @@ def page(markdown: str, seed: int | None, pictures: dict[str, bytes]) -> str:
 
 
 def _marks(number: str, seed: int | None) -> dict[str, Any]:
-    """Return the numbers at which the mark changes, and the marks between, each stored once."""
+    """Return the numbers at which the mark changes, and the marks between them, each once."""
     ends, marks = key(number, seed)
     distinct = list(dict.fromkeys(marks))
     shown = [[mark.points, mark.sentence, mark.mistake] for mark in distinct]
@@ -104,7 +104,7 @@ def formula(tex: str) -> str:
     outline = "".join(
         "MLQC"[code - 1] + " ".join(f"{v:.2f}" for v in points)
         for points, code in TextPath((0, 0), spelled, prop=font).iter_segments(simplify=False)
-        if code < 5  # the code that closes a polygon
+        if code < 5  # CLOSEPOLY has a larger code
     )
     style = f"height:{height / _SIZE:.3f}em;vertical-align:{-depth / _SIZE:.3f}em"
     box = f"0 {depth - height:.2f} {width:.2f} {height:.2f}"

@@ -29,7 +29,7 @@ _KEPT = ("gravity", "slope", "T", "step")  # the same for all seeds
 _SPREAD = 0.06  # maximum relative difference of numbers from the printed ones
 _MOST = 2**53  # maximum seed: larger ones would not be exact in JSON and in spreadsheets
 _EGG: dict[str, Any] = {"a": 0.035, "b": 0.025}  # the body of the film and of the impacts
-_COUNT, _NOISE = 24, (0.05, 0.05, 1.5)  # impacts; noise of their velocities [m/s, m/s, rad/s]
+_COUNT, _NOISE = 24, (0.05, 0.05, 1.5)  # impacts per seed; velocity noise [m/s, m/s, rad/s]
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def scene_of(data: dict[str, float]) -> Scene:
 def _draws(seed: int, sheet: str) -> Iterator[Random]:
     """Yield random generators for the numbers of a sheet, one for each attempt.
 
-    Python guarantees the same `random()` for the same text in all versions.
+    For the same text, `random()` returns the same numbers in all versions of Python.
     """
     return (Random(f"{seed} {sheet} {attempt}") for attempt in count())
 
@@ -126,11 +126,11 @@ def numbered(seed: int | None) -> dict[str, Task]:
 
 
 def _drawn(seed: int, sheet: str) -> list[Task]:
-    """Return the tasks of a sheet with numbers for which the slip of task 7.4 ends by sticking."""
+    """Return the tasks of a sheet for a seed; in task 7.4 the contact sticks after the impact."""
     tasks = [
         replace(task, seed=seed) for task in _PRINTED.values() if sheet_of(task.number) == sheet
     ]
-    if sheet in ("8", "10"):  # which have other tables
+    if sheet in ("8", "10"):  # the numbers of these sheets are in tables
         return tasks
     values = sorted({value for task in tasks for value in task.data.values()})
     for rng in _draws(seed, sheet):
@@ -188,7 +188,7 @@ def filmed(seed: int | None) -> tuple[Scene, dict[str, list[float]]]:
 
 
 def measured_impacts(seed: int | None = None) -> tuple[FloatArray, FloatArray]:
-    """Return the states of sheet 8 before, (4, n), and after its impacts, (3, n).
+    """Return states before impacts, shape (4, n), and velocities after them, (3, n), for sheet 8.
 
     The arrays have the form that `impacts.fit` expects. The impacts are synthetic; without a seed,
     the environment variable ROLLING_ELLIPSE_IMPACTS may name a CSV file of measured impacts.

@@ -2,9 +2,9 @@
 
 Arrays have the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, m, rad, rad,
 m], in the order of its section 2. Its constraint matrix, with columns (x, r, psi, theta, z), and
-its state space, (x, z, r, theta, psi), are reordered accordingly. Functions for printed equations
-are named by their numbers, those for correct equations by words. Quantities are in SI units, and
-theta is positive clockwise.
+its state space, (x, z, r, theta, psi), are reordered accordingly. Each function
+evaluates either what the report prints or the correct equation, as its docstring states. Quantities
+are in SI units, and theta is positive clockwise.
 
 Common arguments are ``q``, ``q_dot``, ``q_ddot``, array_like of shape (..., 5) whose leading axes
 broadcast; the semi-axes ``a``, ``b`` [m]; ``mass`` [kg]; and ``gravity`` [m/s^2]. All functions

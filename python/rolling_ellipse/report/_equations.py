@@ -1,4 +1,4 @@
-"""The report's equations as printed, named by number, and correct equations, named by words.
+"""The report's equations as printed, and the correct equations.
 
 Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. The
 difference between a printed residual and the correct one is the effect of the misprint.
@@ -135,7 +135,7 @@ def equations_of_motion(
     ddot = coordinates("q_ddot", q_ddot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
-    forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces, + in eqs 36, 37
+    forces = np.array([-1, -1, -1, 1, 1])  # sign of A^T lambda: - in eqs 33 to 35, + in eqs 36, 37
     return masses(body) * ddot + weight + forces * pull(matrix, _multipliers(multipliers))
 
 
@@ -149,7 +149,7 @@ def _multipliers(values: Any) -> FloatArray:
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return f1 [m/s] and the rates of f2, f3 and f4 as eq 38 prints them, (..., 4).
 
-    The last two are printed correctly.
+    The rates of f3 and f4 are printed correctly.
     """
     _, _, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
@@ -185,7 +185,7 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def lambda4_numerator(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the numerator of lambda4 in eq 39; by eqs 32 and 35 its divisor is 4 a^2."""
+    """Return the numerator of lambda4 in eq 39; by eqs 32 and 35 its divisor should be 4 a^2."""
     body, (theta, _, r, sine, cosine), (x, z, spin, _, _) = _at(q, q_ddot, a, b, mass, gravity)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
@@ -273,8 +273,8 @@ def eq_41(
 ) -> FloatArray:
     """Return the residual of eq 41, with F1 of `eq_42` or, if `complete`, 2 (...)^(3/2) F.
 
-    If complete, it is eq 36 times -1 with the multipliers inserted. It is infinite where eq 39
-    divides by zero.
+    With `complete` the residual is that of eq 36 times -1, with the multipliers inserted. The
+    residual is infinite where eq 39 divides by zero.
     """
     body, place, ddot = _at(q, q_ddot, a, b, mass, gravity)
     psi, arguments = place[1], {"a": a, "b": b, "mass": mass, "gravity": gravity}
@@ -322,7 +322,7 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 
 
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
-    """Return impulse and distance of a blow as floats; raise ValueError if out of range."""
+    """Return impulse and distance of a blow as floats; raise ValueError for values out of range."""
     blow = number("impulse", impulse), number("d", d)
     let_the_core_refuse("jz", np.asarray(blow[0]), "impulse")
     let_the_core_refuse("dx", np.asarray(blow[1]), "d")
@@ -332,7 +332,7 @@ def _blow(impulse: Any, d: Any) -> tuple[float, float]:
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return r [m] as appendix B prints it in r_x; `geometry.contact_distance` is correct."""
     body = Scene(a, b)
-    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 has psi here
+    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 uses psi instead
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
     return body.a * body.b / np.hypot(across, along)
 

@@ -1,4 +1,4 @@
-"""The errata of the report, each demonstrated by two numbers on an exact motion."""
+"""The errata of the report, each demonstrated by a printed and a correct number."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Erratum:
     quantity : str
         The quantity that is compared, with its unit.
     evaluate : callable
-        Returns a Comparison: the printed and the correct value of the quantity, on an exact motion.
+        Returns a Comparison of the printed and the correct value, in most cases on an exact motion.
     """
 
     where: str
@@ -67,7 +67,7 @@ class Erratum:
 def _rolling(theta: float, **other: float) -> dict[str, Any]:
     """Return the arguments of all equations at the angle theta of a rolling motion."""
     body = _BODY | other
-    motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # passes all quadrants
+    motion = simulate(Scene(**body, theta=0.2, omega=3.2), 3.0)  # passes through all quadrants
     passing = motion.at(motion.when(theta=theta)[0])
     at = simulate(Scene(**body, theta=theta, omega=passing.omega, x=passing.x), 0.0)
     columns = at.x_ddot, at.z_ddot, at.omega_dot, at.psi_ddot, at.r_ddot
@@ -109,7 +109,7 @@ def _moment(sign: int, q: Any, q_ddot: Any, a: Any, b: Any, mass: Any, gravity: 
 
 
 def _pull(equation: Callable[..., Any], **state: Any) -> Any:
-    """Return lambda2 cos(psi - theta) [N] with the multipliers of an equation."""
+    """Return lambda2 cos(psi - theta) [N] with the multipliers that `equation` returns."""
     q = state["q"]
     return equation(**state)[1] * np.cos(q[3] - q[2])
 
@@ -134,7 +134,10 @@ def _right_35(**state: Any) -> Any:
 
 
 def _eq_37(**state: Any) -> Any:
-    """Return eq 37 with the multipliers of eq 39, but the divisor 4 a^2 and all terms of F."""
+    """Return the residual of eq 37 with the multipliers of eq 39.
+
+    In these multipliers lambda4 has the divisor 4 a^2, and F in lambda3 has all its terms.
+    """
     q, a, b = (state[name] for name in ("q", "a", "b"))
     first, second, _, _ = equations.eq_39(**state)
     third = equations.complete_f(**state) / equations.divisor(q[3], a, b)
@@ -168,7 +171,7 @@ def _no_part(q: Any) -> float:
 
 
 def _even_turning() -> Comparison:
-    """Compare f2 and f3 with their rates from the matrix as printed, for theta = t."""
+    """Compare the largest f2 or f3 with the largest rate from the printed matrix, for theta = t."""
     q, q_dot = kinematics(np.linspace(0, 10, 1001), 1.0, **_AXES)
     held = np.stack([equations.f2(q), equations.f3(q, **_AXES)])
     rates = np.einsum("nij,nj->ni", constraint_matrix(q, printed=MATRIX, **_AXES), q_dot)
@@ -176,7 +179,7 @@ def _even_turning() -> Comparison:
 
 
 def _back_substitution() -> Comparison:
-    """Compare the residuals of the code's equations with the gap after 0.25 s of their motion."""
+    """Compare two results of the report's code after 0.25 s: its largest residual, and the gap."""
     q, _ = kinematics(0.2, 2.0, **_AXES)
     how: dict[str, Any] = {"equations": "printed", "rtol": 1e-12, "atol": 1e-14}
     motion: Any = follow(q, consistent_rates(q, 2.0, **_AXES), [0.25], **_BODY, **how)

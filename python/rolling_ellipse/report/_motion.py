@@ -1,4 +1,6 @@
-"""Integration of the report's equations with any rows as printed (index 1, no stabilisation).
+"""Integration of the report's equations with selected rows as printed, in index-1 form.
+
+The equations are not stabilised:
 
 M q_ddot = Q + A^T lambda,   A q_ddot = -A_dot q_dot          (report eqs 27 to 31 and 32)
 
@@ -23,8 +25,8 @@ from ._rows import Names, Pair, along, masses, pull, rows
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
-_STEP = 1e-30  # complex step, without truncation error in doubles and without cancellation
-_TINY = 1e-300  # smallest tolerance, for a component that is zero if atol = 0
+_STEP = 1e-30  # complex step: no cancellation, and a truncation error below rounding
+_TINY = 1e-300  # added to tolerances, which would be 0 for a zero component if atol = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +38,7 @@ class Start:
     q, q_dot : ndarray, shape (5,)
         x, z, theta, psi, r [m, m, rad, rad, m] and their rates.
     q_change, q_dot_change : ndarray, shape (5,)
-        Difference from the given state; 0 unless it was projected.
+        Change of the given state by the projection; 0 if the state was not projected.
     violations : tuple of str
         Constraints that the given state violates, with their residuals.
     """
@@ -140,7 +142,7 @@ def accelerations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names)
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # the system of some sample is singular: solve each of them separately
+        if q.ndim > 1:  # the system is singular at some sample: solve the samples one by one
             solved = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
             return np.stack([each[0] for each in solved]), np.stack([each[1] for each in solved])
         solution = np.full_like(right, np.nan)
@@ -179,7 +181,7 @@ def follow(
 def _integrated(
     slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, how: Settings
 ) -> tuple[FloatArray, str]:
-    """Return the solution of y' = slope(y) at the times reached, and why it ended early.
+    """Return the solution of y' = slope(y) at the times reached, and why it ended early, or "".
 
     The step size is fixed if `how` has a `step`; otherwise it is controlled by the local error (HNW
     II.4). The coefficients are those of the core.
@@ -200,7 +202,7 @@ def _integrated(
         if len(samples) == t.size:
             break
         left = end - now
-        h = left if h > left - 10 * math.ulp(end) else h  # avoids a last step at rounding level
+        h = left if h > left - 10 * math.ulp(end) else h  # avoids a tiny last step
         if not h >= 10 * math.ulp(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
         for i in range(1, stages + 1):

@@ -32,7 +32,7 @@ def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
 
 
 def polar_cube(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
-    """Return (a b/r)^3 [m^3] as in `polar`, since powers 3/2 of scalars and arrays may differ."""
+    """Return (a b/r)^3 [m^3] without a power 3/2, which may differ between scalars and arrays."""
     square = polar(psi, a, b)
     return square * np.sqrt(square)
 

@@ -147,10 +147,10 @@ def simulate(
         return follow(start, times, body, names, settings)
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
-    off = bool(start.violations) and consistent == "as_given"  # otherwise it is the scene's start
+    off = bool(start.violations) and consistent == "as_given"  # otherwise the scene's own start
     given = (start.q, start.q_dot) if off else None
     trajectory = Trajectory.computed(scene, settings, times, given)
-    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the first warning covers this
+    if not (off and trajectory.status is Status.VALIDITY_LOST):  # the user was already warned
         report_status(trajectory, raise_on_failure=True, stacklevel=3)
     return trajectory
 
@@ -183,8 +183,8 @@ def _vector(name: str, value: Any) -> FloatArray:
 def _violations(q: FloatArray, q_dot: FloatArray, body: Scene, printed: Names) -> tuple[str, ...]:
     """Return which of f2, f3, f4, f1 and the rates of f2 to f4 are violated: name, residual, unit.
 
-    A residual may have the size that results from errors of 16 ulp in each coordinate, which covers
-    `kinematics`, plus 16 ulp of its terms for the evaluation.
+    A residual is accepted up to the size that errors of 16 ulp in each coordinate can cause, plus
+    16 ulp of its terms. The errors of `kinematics` are smaller than that.
     """
     state = np.concatenate([q, q_dot])
     off = _ULPS * np.spacing(np.abs(state))

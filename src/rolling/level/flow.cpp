@@ -19,8 +19,8 @@ EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     return {kinetic + h, kinetic - under_tip(at, h), kinetic + over_flat(at, h)};
 }
 
-// Whether the last two terms of a series at 1 are at most half an ulp of its sum; the omitted terms
-// are a tenth of that.
+// Whether the last two terms of a series, evaluated at 1, are at most half an ulp of the largest of
+// its first three terms. The omitted terms are about a tenth of that.
 bool is_complete(const Series& series) {
     constexpr double half_ulp = 1e-16;
     const double size = std::max({std::abs(series[0]), std::abs(series[1]), std::abs(series[2])});
@@ -30,8 +30,8 @@ bool is_complete(const Series& series) {
 }
 
 // The state after a short move, from a single power series, which keeps small changes accurate.
-// Empty if the move is too long for one series, and if none is needed: for a body at rest, a
-// circle, or t = 0.
+// Empty if the move is too long for one series, and in the cases that need none: a body at rest, a
+// circle and t = 0.
 std::optional<FlowSample> short_move(const RollingStart& from, double x, double t) {
     const auto [unit, short_axis, c2, sin, cos] = from.view;
     if (from.rests || c2 == 0 || t == 0 || !may_be_short(from, t)) return std::nullopt;
@@ -73,8 +73,8 @@ RollingFlow flow_of(const RollingStart& from, double x) {
 void set_quarter(RollingFlow& flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     set_quarter(flow.phase);
-    // In a map with a tail, the steps end 1e-9 of the path before the tip, so the path of the
-    // quarter is recomputed.
+    // In a map with a tail, the steps end short of the tip, by 1e-9 of the path of the quarter.
+    // This path is therefore recomputed.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path = path_from_flat(flow.from.view.lying(), 1.0, 0.0);
     }
@@ -85,8 +85,8 @@ void set_quarter(RollingFlow& flow) {
 RollingStart rolling_start(const Body& body, double theta, double omega) {
     omega = zero_if_negligible(omega);
     FlatView view = flat_view(body.axes(), theta);
-    // On the tip, the sign of phi is chosen so that the body moves down; both signs give the same
-    // bits.
+    // On the tip, the sign of phi is chosen so that the body moves down. Motions to the two sides
+    // are then exact mirror images.
     if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
     const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
     return {body, theta, omega, view, energy_height(view, body, omega), rests};

@@ -1,27 +1,27 @@
-// Exact rolling on level ground: its start and the state at any time. There are no steps: a state
-// costs the same however far it is from the start.
+// Exact rolling on level ground: the start of a motion and its state at any time. No time steps are
+// taken, so a state costs the same however far it is from the start.
 //
-// A motion is described by its phase. The types below store the integrand of the time, the
+// A motion is described by its phase. The templates below store the integrand of the time, the
 // coordinate of integration and the integrals, for one body (T = double) or for one body in each
 // lane of a Pack.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
-// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
-// of physics (27) becomes physics (29),
+// the energy height H = E/(m g) and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral of
+// physics (27) becomes physics (29),
 //     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
 //     sin phi   = amplitude sin phase,
-// so that rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) share it:
+// for rotation (phase = phi) as well as libration (phase = u, with sin phi = sin phi_max sin u):
 //     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
-// There is no cancellation, except in H - L itself.
+// No term loses digits to cancellation, except H - L itself.
 //
 // In the coordinate y no integrand has a peak, physics (61): neither at the flat position of a thin
-// body nor at the tip of a motion near the separatrix.
+// body nor at the tip in a motion near the separatrix.
 //     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
-// sc = sn/cn of Jacobi with the complementary modulus k'. The flat position is at y = 0, the tip or
-// turning point at y = Y, and everything is symmetric about both. The integrand of the time is
-// singular where tan phase is imaginary, between g and 1/kappa: on the line Im y = pi/2 (DLMF
-// 22.4). Near either end y is the v of physics (31).
+// where sc = sn/cn is a Jacobi elliptic function with the complementary modulus k'. The flat
+// position is at y = 0, the tip or turning point at y = Y, and everything is symmetric about both.
+// The integrand of the time is singular where tan phase is imaginary, between g and 1/kappa: on the
+// line Im y = pi/2 (DLMF 22.4). Near either end, y is the coordinate v of physics (31).
 #pragma once
 
 #include <cmath>
@@ -32,8 +32,9 @@
 
 namespace rolling_ellipse {
 
-// The energy as a height H = E/(m g) [m], and its heights above the tip (H - L, negative in
-// libration) and above the flat position (H - S), in forms without cancellation: physics (26).
+// The energy as a height H = E/(m g) [m], and its excess over the height of the centre on the tip
+// (H - L, negative in libration) and in the flat position (H - S), computed without cancellation:
+// physics (26).
 struct EnergyHeight {
     double total;
     double over_tip;
@@ -51,7 +52,7 @@ struct RollingStart {
 
 RollingStart rolling_start(const Body& body, double theta, double omega);
 
-// The constants of the integrand of the time, physics (29).
+// The constants of the integrand in physics (29).
 template <class T>
 struct PhaseIntegrand {
     T short_axis;     // S
@@ -71,8 +72,8 @@ struct PhaseMap {
     T quarter;  // Y, the tip or turning point; infinite on the separatrix
     T step;     // step of the trapezoidal rule for a quarter
     T steps;    // steps in a quarter, or from the flat position to the tail
-    // Whether the quarter extends beyond its steps, which then end within rounding of the tip. A
-    // body with a tail is computed alone, not side by side with others.
+    // Whether the quarter extends beyond its last step. In this tail, dt/dy is constant to within
+    // rounding. A body with a tail is computed alone, not side by side with others.
     Mask<T> has_tail;
     T grade;  // g of physics (61)
     T kappa;
@@ -84,8 +85,8 @@ struct PhaseMap {
     T b[3];
 };
 
-// A point in the coordinate y = quarters Y + offset; `quarters` is the nearest whole number unless
-// a function says otherwise.
+// The point y = quarters Y + offset. `quarters` is the whole number nearest to y/Y, unless a
+// function states otherwise.
 template <class T>
 struct PhasePlace {
     T quarters;
@@ -128,10 +129,10 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // time in which the phase advances by pi
     T quarter_path;            // path of the centre in a quarter of a rotation
-    // The following members give a first guess of the point at a given time:
+    // The following members give an initial guess of the point at a given time.
     static constexpr int most_steps = 160;  // largest number of steps in a map
     T slope[most_steps + 3];                // dt/dy at the steps, and one step beyond both ends
-    T time[most_steps + 2];                 // time from flat to the steps, from cubics for dt/dy
+    T time[most_steps + 2];  // time from the flat position to each step, from cubics for dt/dy
 };
 
 // The constants of the power series in time (rolling/level/motion.hpp). The unit of length is the
@@ -153,7 +154,7 @@ struct PhaseMotion {
     Mask<T> on_way_back;        // whether a libration starts with a phase beyond +-pi/2
     PhasePoint<T> start_phase;  // initial phase, minus half a turn on the way back
     PhasePlace<T> start_place;
-    T start_slope;  // dt/dy at the start; 0 without a phase
+    T start_slope;  // dt/dy at the start; 0 for a circle and at rest
 };
 
 // The state of a motion: angle [rad], angular velocity [rad/s], position of the centre [m].
@@ -176,8 +177,8 @@ struct RollingFlow : PhaseMotion<double> {
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
-// Whether one power series about the start may cover a move, judged by the time scales of rocking
-// about the flat position and of the rotation.
+// Whether one power series about the start may suffice for a move of duration t, judged by the
+// rates of rotation and of rocking about the flat position.
 inline bool may_be_short(const RollingStart& from, double t) {
     const double rate = std::sqrt(from.body.gravity / from.view.short_axis);
     return std::abs(t) * (std::abs(from.omega) + rate) < 0.05;

@@ -1,6 +1,6 @@
-// Exact rolling of many bodies at one time each, and of one body at many times with a table. Also
-// the inner loops of both: the same code is compiled for several vector levels (lanes_*.cpp) and
-// gives the same bits at each (numerics/lanes.hpp).
+// Exact rolling of many bodies at one time each, and of one body at many times with a table. The
+// inner loops of both are compiled from the same code for several vector levels (lanes_*.cpp) and
+// give the same bits at each level (numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path and padding: a row fills a register
 
-// Power series in time for the angle, the angular velocity and the path, about a point. The last
-// row is zero, since rows are read in pairs.
+// Power series in time for the angle, the angular velocity and the path, about a point. An extra
+// row of zeros follows, since rows are read in pairs.
 struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
@@ -28,10 +28,10 @@ struct TablePlace {
     double y;         // the coordinate of rolling/level/flow.hpp
     double sin, cos;  // sine and cosine of the angle from the flat position
     double quarters;  // 0 if the flat position is nearer, 1 if the tip is
-    double angle;     // angle from the flat position or tip that `quarters` names
+    double angle;     // angle from this flat position or tip
     double omega;
     double time, path;  // time and path from the previous point
-    double radius;      // half the interval of the series, in units of its variable
+    double radius;      // half-width of the interval of the series, in its variable
     double holds;       // 1 if the series has full double precision within its radius, else 0
 };
 
@@ -47,7 +47,7 @@ struct FlowPiece {
 // A motion in the form that the kernel reads.
 struct FlowReader {
     const FlowPiece* pieces;
-    const double* ends;  // ends of the pieces, then infinities: 2 half - 1 numbers
+    const double* ends;  // 2 half - 1 numbers: the ends of the pieces, then infinities
     int half;
     double last_end;
     double per_unit;  // the variable of a series is per_unit times the time [1/s]
@@ -62,7 +62,7 @@ struct FlowReader {
     double quarters_per_half_turn;
     // Quarter turns from the flat position to the flat position or tip nearest the start.
     double quarters;
-    DoubleDouble angle;  // initial theta minus its angle from `quarters`
+    DoubleDouble angle;  // initial theta minus the initial angle from the position `quarters`
     double path;         // path from the position `quarters` to the start
     double quarter_path;
     double theta;
@@ -89,13 +89,13 @@ inline void store(const FlowSample& sample, const FlowColumns& columns, std::siz
 
 struct Kernel {
     const char* name;  // name of the vector level
-    // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays have room for
+    // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays are padded to
     // a whole number of packs.
     void (*rates)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                   double quarters, const double* offsets, int count, PhaseRates<double>& found);
     // The states of bodies, each at its own time: starts[p], times[p] and samples[p] for every p in
-    // `places`. `is_open` marks a body that must still be sampled alone. Null in the kernel that
-    // computes bodies one by one.
+    // `places`. `is_open` marks a body that must still be sampled alone. The pointer is null in the
+    // kernel that computes bodies one by one.
     void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
                    int count, FlowSample* samples, bool* is_open);
     // Computes the motion at each point from its coordinate y.
@@ -108,7 +108,7 @@ struct Kernel {
     // Index of the first time that is NaN or beyond +-`most`; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
     // Samples a motion at many times. theta is NaN at times beyond the last piece; returns whether
-    // there are any.
+    // there are such times.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
                  const FlowColumns& out);
 };
@@ -129,8 +129,8 @@ const Kernel& kernel();
 void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples);
 
-// The table of a rotation or a libration, for any time. It cannot be copied, since the reader that
-// is passed to a kernel points to the pieces and their ends.
+// The table of series of a rotation or a libration. It cannot be copied, since the reader that is
+// passed to a kernel points to the pieces and their ends.
 struct FlowTable {
     FlowTable() = default;
     FlowTable(FlowTable&&) = default;
@@ -141,12 +141,12 @@ struct FlowTable {
     FlowReader reader;
 };
 
-// The table of a motion; empty if no series is accurate enough.
+// The table of a motion; empty if no spacing of the points makes all series accurate.
 std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
-// Samples a motion, to which the sampler keeps a reference. `expected` is the number of times to be
-// sampled; no table is made if it is small, for rest, or for uniform rotation. The bits of a sample
-// do not depend on the other times.
+// Samples a motion, to which the sampler keeps a reference. `expected` is the expected number of
+// times. No table is built if this number is small, or for a body at rest or in uniform rotation.
+// The bits of a sample do not depend on the other times.
 class FlowSampler {
   public:
     FlowSampler(const RollingFlow& flow, std::size_t expected);

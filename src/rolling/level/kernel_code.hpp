@@ -47,8 +47,8 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
     }
 }
 
-// One number of each of several points, side by side; lanes beyond either end repeat the first or
-// last point.
+// The same member of several points, one point in each lane; lanes beyond either end repeat the
+// first or last point.
 inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
     Pack found{};
     for (int lane = 0; lane < lanes; ++lane) {
@@ -60,7 +60,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Between neighbouring points, eight nodes are exact to within rounding.
+    // Eight nodes integrate between neighbouring points to within rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {
@@ -97,9 +97,9 @@ void states(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map
     }
 }
 
-// Whether the last two terms of a series, one of which may be small by chance, amount to only a few
-// rounding errors of the number to which the series is added. The omitted terms are a twentieth of
-// that.
+// Whether a series is accurate: the last term may be at most 1e-15, and the term before it 2e-14,
+// of the number to which the series is added or of the leading terms. Both are tested, since one of
+// them may be small by chance. The omitted terms are about a twentieth of the last term.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -152,8 +152,8 @@ struct alignas(64) Block {
     double quarters[block];
 };
 
-// Subtracts n half turns from t + start without rounding. At late times, even the low part of n T
-// exceeds the length of a piece.
+// Subtracts n half turns, each of duration T, from t + start_time in double-double arithmetic: at
+// late times, even the low part of n T is longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& block) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
@@ -189,7 +189,7 @@ inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     return {column(0), column(1), column(2)};
 }
 
-// Evaluates a series at one time, with its columns and its even and odd rows side by side.
+// Evaluates a series at one time, with its columns and its even and odd rows in separate lanes.
 inline void alone(const TableSeries& series, double z, Block& block, int i) {
     constexpr int parts = 2 * series_columns / lanes;
     const double z2 = z * z;

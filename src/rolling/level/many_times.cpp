@@ -1,9 +1,9 @@
 // Exact rolling at many times, by Taylor series in time about points of the exact solution.
 //
-// The series cover the quarter turn (or swing) that starts at the flat position; the motion at all
-// other times is a mirror image of this one. A further series about t = 0 makes small moves
-// accurate. The coefficients follow from the equation of motion by the rules for products,
-// quotients and roots of series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
+// The series cover the quarter turn (or quarter swing) that starts at the flat position; the motion
+// at all other times is a copy or mirror image of this one. A further series about t = 0 keeps
+// small changes accurate. The coefficients follow from the equation of motion by the rules for
+// products, quotients and roots of series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,10 +39,10 @@ class TableMaker {
         body_ = series_constants(flow.from, flow.phase.integrand, unit_);
     }
 
-    // The table of the motion; empty if no series is accurate enough.
+    // The table of the motion; empty if no spacing of the points makes all series accurate.
     std::optional<FlowTable> make() {
-        // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
-        // At this order, the first spacing suffices for nearly all motions.
+        // Spacings in the coordinate y, in which all singularities are at a distance of pi/2 from
+        // the real axis. At this order, the first spacing suffices for nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -81,8 +81,8 @@ class TableMaker {
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // Computes the motion at all points and the series about them; false if neighbouring series do
-    // not meet halfway.
+    // Computes the motion at all points and the series about them; returns false if a series is not
+    // accurate up to the middle of the interval to the next or previous point.
     bool expand() {
         const int n = static_cast<int>(count());
         kernel_.states(flow_.phase.integrand, flow_.phase.map, flow_.amplitude, places_.data(), n);
@@ -95,7 +95,8 @@ class TableMaker {
                            [](const TablePlace& place) { return place.holds > 0; });
     }
 
-    // Sets the times of the pieces, measured from the nearer end of the quarter.
+    // Sets the times of the pieces since the flat position, summed from the nearer end of the
+    // quarter.
     void add_times() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
@@ -171,7 +172,7 @@ class TableMaker {
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
         reader.pieces = pieces.data();
-        // The ends beyond the last piece are infinite, so that this piece is used for all later
+        // The ends beyond the last piece are infinite, so that the last piece is used for all later
         // times.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
@@ -212,9 +213,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // Below this number of times no table is made, since a table costs as much as ten single
-    // samples. A root search, which repeatedly samples a few times, therefore always gets the same
-    // bits.
+    // No table is built for fewer times. A table costs only as much as ten single samples, but a
+    // root search, which samples a few times in each of many calls, must always get the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

@@ -1,6 +1,6 @@
-// An exact rolling motion, computed from its phase since the start, or from power series in time
-// about one of its points. The bits are the same for one body or point (T = double) as for several
-// side by side.
+// An exact rolling motion, computed from the change of its phase since the start, or from power
+// series in time about one of its points. The bits are the same for one body or point (T = double)
+// as for several side by side.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct PhaseStart {
     T sin, cos;  // sine and cosine of the angle from the flat position
     T gyration2, gravity;
     T theta, omega;
-    T total, over_tip, over_flat;  // H and its distances from tip and flat position
+    T total, over_tip, over_flat;  // H, H - L and H - S
 };
 
 inline PhaseStart<double> phase_start(const RollingStart& from) {
@@ -30,7 +30,7 @@ inline PhaseStart<double> phase_start(const RollingStart& from) {
             from.omega,     height.total,        height.over_tip,   height.over_flat};
 }
 
-// Sets the start of one body in a lane.
+// Stores the start of one body in a lane.
 inline void set_lane(PhaseStart<Pack>& start, int lane, const PhaseStart<double>& from) {
     constexpr int count = sizeof from / sizeof(double);
     static_assert(sizeof start == count * sizeof(Pack));
@@ -103,10 +103,11 @@ void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
 }
 
 // Whether a move is so short that it does not need the time of a quarter. Since dt/dy falls no
-// faster than e^(-2y), such a move is shorter than 0.81 in y, and half a quarter is 0.87 or more.
+// faster than e^(-2y), such a move covers less than 0.81 in y, whereas half a quarter is at least
+// 0.87.
 template <class T>
 inline Mask<T> is_short(const PhaseMotion<T>& motion, T t) {
-    constexpr double at_first_speed = 0.4;  // distance of the move in y if dt/dy did not change
+    constexpr double at_first_speed = 0.4;  // distance in y if dt/dy stayed constant
     return abs(t) < at_first_speed * motion.start_slope;
 }
 
@@ -138,14 +139,14 @@ inline T heading_of(const PhaseMotion<T>& motion) {
     return motion.phase.integrand.rotates ? motion.direction : libration;
 }
 
-// The state at a time; x is the path from the start. The quarter of the phase must be set unless
-// the move is short.
+// The state at a time t, with x as the path from the start. Unless the move is short, `set_quarter`
+// must have been called.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.integrand.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
-    // Whole turns (in a libration, whole swings) are subtracted from the time.
+    // Whole half turns (in a libration, whole swings) are subtracted from the time.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
     const auto near = is_short(motion, t);
     const T turns = near ? T{} : nearest<T>(t / turn.high);
@@ -169,7 +170,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
     const auto is_endless = rotates & negated(near) & (phase.half_turn.high == infinity);
-    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body, which creeps to the tip
+    if (any(is_endless &
+            (now.sin_phi > now.cos_phi))) {  // one body, which approaches the tip for ever
         const PhasePoint<T>& first = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(first.sin, first.cos);
         turned = two_sum(filled<T>(half_pi_exact.high), -rest);
@@ -178,8 +180,9 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
-    // In a libration, a point beyond a turning point mirrors one before it. The path is integrated
-    // between these two points only, since the way to the turning point and back cancels.
+    // In a libration, a point beyond a turning point is the mirror image of a point before it. The
+    // path is integrated only from the start to that earlier point, since the way from there to the
+    // turning point and back cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {
@@ -215,8 +218,8 @@ inline SeriesConstants series_constants(const RollingStart& from,
 }
 
 // The series about the point with the given angular velocity and sine and cosine of the angle from
-// the flat position. It follows physics (18) with D h^2 = d0 + d1 q, u = h^2, q = sin^2, p = sin
-// cos of the angle:
+// the flat position. It follows from physics (18). With this angle phi, u = h^2, q = sin^2 phi, p =
+// sin phi cos phi and D h^2 = d0 + d1 q:
 //     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
 template <int order, class T>
 inline MotionSeries<T, order> motion_series(const SeriesConstants& body, T sin, T cos, T omega) {

@@ -2,7 +2,8 @@
 // y. In terms of theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
 //     sc = C sinh(y) B(c)/A(c),   sc(Y - y) = 1/(k' sc(y)),
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
-// whose second factor cancels the root in the integrand. The path of the centre grows by h dphi.
+// where the factor cos^2 + kappa^2 sin^2 cancels the root in the integrand. The path of the centre
+// increases by h dphi.
 #pragma once
 
 #include "numerics/lanes.hpp"
@@ -11,10 +12,10 @@
 namespace rolling_ellipse {
 namespace {
 
-// At this offset the tip is reached to within rounding, and sinh^2 does not yet overflow.
+// At this offset, the body is on the tip to within rounding, and sinh^2 does not overflow yet.
 constexpr double largest_offset = 300.0;
 
-// Upper bound on kappa for a quarter with a tail; the largest such kappa is slightly smaller.
+// A quarter has a tail only if kappa is below this bound; the sharp bound is 4.1e-9.
 constexpr double largest_tail_kappa = 5e-9;
 
 // Sets A and B as polynomials in c; the omitted terms are below rounding for q <= 1/32.
@@ -56,7 +57,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_at_tail * largest_grade;
-    // When rounded up to whole steps, this length gives a nome slightly below that of k'.
+    // Rounding this length up to whole steps makes the nome slightly smaller than that of k'.
     const T length = any(map.has_tail) ? before_tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
@@ -78,8 +79,8 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     const T cos = abs(phase.cos);
     const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
     const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
-    // Newton's method for x = sinh y with sc(y) = ratio, starting at the root for B = 1, A = A_0 -
-    // 2 q c.
+    // Newton's method for x = sinh y with sc(y) = ratio, starting from the root for B = 1, A = A_0
+    // - 2 q c.
     const T complement = map.kappa * map.grade;
     const T q2 = -map.a[1];
     T x = 2 * ratio * (1 - q2) /
@@ -114,7 +115,8 @@ PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     return {sign * (at_tip ? cos : sin), sign * (at_tip ? -sin : cos)};
 }
 
-// The point at a distance in y from another point, measured from the nearest quarter.
+// The point at a given distance in y from another point, expressed as an offset from the nearest
+// quarter.
 template <class T>
 PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distance) {
     const T offset = from.offset + distance;
@@ -124,10 +126,10 @@ PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distanc
             is_beyond ? from.offset - quarters * map.quarter + distance : offset};
 }
 
-// The rates at y = quarters Y + offset, |quarters| <= 1. The constants, of type C, belong to one
-// motion for all points, or to a separate motion for each point. The phase is expressed by sin^2/q
-// and cos^2/q, and h^2 = N/q, so that all factors share one quotient. Terms without the offset are
-// computed once for all points of a loop.
+// The rates at y = quarters Y + offset, |quarters| <= 1. The constants, of type C, are those of one
+// motion for all points, or those of a separate motion for each point. Since sin^2 phase = sin2/q,
+// cos^2 phase = cos2/q and h^2 = n/q, a single division suffices. Terms that do not depend on the
+// offset are computed once for all points of a loop.
 template <class C, class T>
 inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
                                        C quarters, T offset) {
@@ -192,8 +194,8 @@ inline void phase_rates(const PhaseIntegrand<Pack>& integrand, const PhaseMap<Pa
     }
 }
 
-// The rates of one body at points side by side; the arrays have room for a Pack after the last
-// point.
+// The rates of one body at several points, side by side; the arrays have room for a Pack after the
+// last point.
 inline void phase_rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
                         double quarters, double* offsets, int count, PhaseRates<double>& found) {
     for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];

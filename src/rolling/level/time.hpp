@@ -55,7 +55,7 @@ struct NodePairs {
 };
 
 // The smallest rules with full double precision for panels of this length, or the largest rule if
-// none has it.
+// no rule is precise enough.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -115,16 +115,16 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
             {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
 }
 
-// Integrates from one offset to another. A motion with a tail is computed alone, not side by side
-// with others.
+// Integrates from one offset to another. None of the motions has a tail, since a motion with a tail
+// is computed alone.
 inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin,
                                        Pack end) {
     return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// Integrates from one offset to another. Around a tip that is distant in y, only the elapsed time
-// changes, at a constant rate: near the separatrix the body stays on the tip for minutes, and on
-// the separatrix for ever.
+// Integrates from one offset to another. Near the separatrix, the tip is far away in y, and the
+// body is on the tip to within rounding over a long interval of y. There only the time changes, at
+// a constant rate.
 inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
                                          double begin, double end) {
     constexpr double long_interval = 12.0;
@@ -287,7 +287,7 @@ inline T short_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T 
     return first * (1 + missing * (1 - bend * missing));
 }
 
-// The point after a time of at most a full swing, and the angle and path up to it.
+// The point after a time of at most a full swing, and the angle and path up to this point.
 template <class T>
 struct PhaseMove {
     PhasePlace<T> to;
@@ -302,7 +302,8 @@ PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T guess,
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
     constexpr int most_steps = 60;
-    // The ends of intervals are rounded to doubles, so that the integral ends exactly at the point.
+    // Rounds a distance so that from.offset + distance is a double, and the integral ends exactly
+    // at the point.
     const auto to_double = [&](T distance) { return (from.offset + distance) - from.offset; };
     T distance = to_double(guess);
     auto [sum, slope] = integral_between(phase, from.quarters, from.offset, from.offset + distance);

@@ -7,12 +7,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// The sum with which the motion starts; null if it starts with a series.
+// The `Sum` with which the motion starts; null if it starts with a series.
 const Sum* first_sum(const SlopeFlow& flow) {
     return std::get_if<Sum>(&flow.stretches.front().law);
 }
 
-// The swing of a body that rocks; null if the motion is followed by series, or is not known yet.
+// The `Swing` of a body that rocks; null if the motion is followed by series, or is not known yet.
 const Swing* swing_of(const SlopeFlow& flow) {
     return flow.stretches.empty() ? nullptr : std::get_if<Swing>(&flow.stretches.back().law);
 }
@@ -28,7 +28,7 @@ constexpr double near_in_swing = 0.2;  // [rad]; series are faster up to here
 
 // --------------------------------------------------------------------------------- points
 
-// Computes points of a motion, each from the stretch to which it belongs.
+// Computes points of a motion, each from the stretch that contains its time.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
@@ -142,9 +142,10 @@ class SlopeReader {
 
 // --------------------------------------------------------------------------------- growth
 
-// Appends the stretches after a turning point; the turning point itself belongs to the series.
-// After the first turning point the motion is mirrored, and after the second it repeats. Near the
-// rim of a well, further series in place of the mirror image would miss the reversed start.
+// Appends the stretch that follows a turning point; the turning point itself belongs to the series.
+// After the first turning point the motion is mirrored, and after the second it repeats. Further
+// series in place of the mirror image would not lead accurately back to the start near the rim of a
+// well.
 void append_turning(SlopeFlow& flow, DoubleDouble turning) {
     const double begin = turning.low < 0 ? turning.high : std::nextafter(turning.high, infinity);
     if (flow.turning) {
@@ -214,7 +215,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
     }
     flow.rests =
-        omega == 0 && (is_circle ? !(flow.acceleration > 0)  // it may underflow to 0
+        omega == 0 && (is_circle ? !(flow.acceleration > 0)  // the acceleration may underflow to 0
                                  : is_equilibrium(geometry(body.axes(), theta), std::tan(slope)));
     if (flow.rests) flow.acceleration = 0.0;
     if (omega == 0) flow.turning = flow.start.time;

@@ -14,7 +14,7 @@
 
 namespace rolling_ellipse {
 
-// A body at rest, or a circle, which accelerates evenly: the forces are constant.
+// A body at rest, or a circle, whose acceleration is constant.
 struct Even {};
 
 // Many half turns at once: uphill to `end`, near the top of the climb, or downhill forever, in
@@ -24,8 +24,8 @@ struct Sum {
     SlopePlace end;
 };
 
-// The motion before the first turning point, run in reverse until it is back at the start of the
-// series.
+// The motion before the first turning point, run in reverse until the body is back at the start of
+// the series.
 struct Mirror {
     DoubleDouble turning;
     SlopePlace end;
@@ -42,7 +42,7 @@ struct Repeat {
 // A stretch of the motion. A time belongs to the last stretch that starts at or before it.
 struct SlopeStretch {
     double begin;
-    double end;  // end of the law's validity
+    double end;  // time up to which the law holds
     std::variant<Even, SlopePiece, Sum, Swing, Mirror, Repeat> law;
 
     template <class Law>
@@ -62,13 +62,13 @@ struct SlopeFlow {
     Datum datum;  // the start as a datum
     std::vector<SlopeStretch> stretches;
     std::optional<DoubleDouble> turning;  // time of the first turning point, once known
-    bool by_series = false;               // whether the motion is not treated as a swing
+    bool by_series = false;               // whether not to treat the motion as a swing
 };
 
 // The flow of a body that rolls on a nonzero slope.
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
 
-// The start of a flow, copied so that its swings are followed by series.
+// A new flow from the same start, whose swings are followed by series.
 SlopeFlow by_series(const SlopeFlow& flow);
 
 // Extends the stretches until the motion is known up to a time [s].
@@ -78,14 +78,14 @@ void prepare(SlopeFlow& flow, double t);
 // if the body is still near its start at the time `until`, which is in units of the body.
 bool grow(SlopeFlow& flow, double until = infinity);
 
-// The state at a time in [0, longest_time] up to which the flow is prepared; or at n such times,
-// fastest if they are ascending.
+// The state at a time in [0, longest_time], or at n such times, up to which the flow must have been
+// prepared. Ascending times are fastest.
 FlowSample sample(const SlopeFlow& flow, double t);
 void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
-// Time of 1e15 half turns or swings [s]. Infinite if the motion was not prepared for that many, or
-// if the time t is far below it, which is quicker to determine.
+// Time of 1e15 half turns or swings [s]. Returns infinity if the motion has not been prepared that
+// far or, to save work, if the time t is far below the limit.
 double longest_time(const SlopeFlow& prepared, double t = infinity);
 
 // Time between two turning points of a body that rocks, in units of the body; empty for other

@@ -39,7 +39,7 @@ struct SlopeBody {
     GroundGravity gravity;  // along > 0: the slope falls towards growing angles
     std::optional<Equilibria> equilibria;
     double pull;          // gravity times c2, the factor of physics (62)
-    double slowest;       // rate at which gravity moves a body that starts at rest
+    double slowest;       // scale of the angular velocity of a body that starts at rest
     double quarter_path;  // path of the centre in a quarter turn, set by measure_quarter
     double gain;          // gain of W = D omega^2/2 in half a turn downhill, physics (58)
 
@@ -56,7 +56,7 @@ void measure_quarter(SlopeBody& body);
 struct SlopePlace {
     DoubleDouble time;
     double quarters;
-    DoubleDouble angle;  // angle beyond the quarters
+    DoubleDouble angle;  // angle from that flat position or tip
     double omega;
     DoubleDouble path;  // path of the centre from the start
 };
@@ -70,7 +70,7 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // the difference of two heights would be mere rounding error.
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 
-// A point from which physics (58) gives the energy W = D omega^2/2 at other points.
+// A reference point, from which physics (58) gives the energy W = D omega^2/2 at other points.
 struct Datum {
     double energy;  // W at this point
     Geometry at;

@@ -93,8 +93,8 @@ template <class PositionsAt>
 }
 
 // The polynomial through values at the nodes. Its Legendre coefficients fall by a factor of 5.4 per
-// degree, while the power coefficients of P_k grow by only 2.4, so that there is hardly any
-// cancellation between the powers.
+// degree, while the power coefficients of P_k grow by a factor of only 2.4, so that there is hardly
+// any cancellation between the powers.
 ROLLING_ELLIPSE_WIDE inline PartPolynomial polynomial_through(const PartArray& values) {
     const PartRule& rule = part_rule();
     const PartArray powers = product(rule.powers, product(rule.legendre, values));
@@ -128,7 +128,7 @@ inline PartReading reading_of(const RunPart& part, double half_turns, double las
 
 // The positions in a part, -1 ... 1, at times since its start, by Newton's method.
 [[gnu::always_inline]] inline Pack places_in_part(const PartReading& of, Pack times) {
-    constexpr int most_steps = 8;       // four suffice from the worst guess, 0.2 away
+    constexpr int most_steps = 8;       // four suffice even for a guess 0.2 away
     constexpr double converged = 1e-8;  // the next step would be about its square
     const Pack guess = value(of.about_place, times / of.lasts);
     Pack x = max(min(guess, pack(1.0)), pack(-1.0));

@@ -36,7 +36,7 @@ constexpr std::size_t usual_panels = 12;
 }
 
 // Widest part of a panel in v. Singularities are at least pi/2 away, so that the terms of the
-// polynomial of a part fall by a factor of 5.4.
+// polynomial of a part fall by a factor of 5.4 per degree.
 constexpr double widest_part = 1.2;
 
 // Centre of two panels: a flat position, the point near a tip where W is least, or the middle of a
@@ -48,8 +48,8 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Appends that part of the panel from low to high which lies in the half turn from the start of the
-// run. The ends of the half turn are accurate even near a tip.
+// Appends the panel from low to high, cut to the half turn that begins where the run starts. The
+// ends of the half turn are accurate even near a tip.
 void add_panel(SlopeRun& run, const Centre& centre, double low, double high) {
     const double quarters = run.from.quarters - run.turns;
     const double angle = run.heading * double(run.from.angle);
@@ -81,9 +81,9 @@ double over_tip(const SlopeBody& body, double energy, const Geometry& at) {
     return energy - body.gravity.into * (body.c2 * square(at.cos) / (at.h + body.long_axis));
 }
 
-// The datum of a run: the point where it starts or, if W at the nearest tip would be a small
-// difference when computed from that point, the tip. W at the tip is then computed from the start
-// of the motion, which is accurate even if the start is near another tip.
+// The datum of a run: the point where it starts, or the nearest tip if W at the tip would be a
+// small difference when computed from that point. W at the tip is then computed from the start of
+// the motion, which is accurate even if the start is near another tip.
 Datum datum_of(const SlopeRun& run, const Datum& start) {
     constexpr double small = 0.0625;  // fraction of W that is left at the tip
     const SlopeBody& body = run.body;
@@ -138,7 +138,7 @@ ROLLING_ELLIPSE_WIDE void add_part(SlopeRun& run) {
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, const SlopePlace& from) {
     double least = over_tip(body, energy, at);
-    if (least < -body.gain) return 0.0;  // half a turn downhill gains at most this
+    if (least < -body.gain) return 0.0;  // W gains at most this in half a turn downhill
     if (from.omega > 0) {
         // The path to the next unstable equilibrium is at least the angle to it times the short
         // semi-axis.
@@ -177,7 +177,7 @@ SlopeRun slope_run(const SlopeBody& body, const Datum& start, const SlopePlace& 
     // A grade is about the tanh of the imaginary part of the nearest singularity of dt/dphi.
     const double at_flat = grade_at_flat(body);
     // The singularities near the flat position may be closer to the unstable equilibrium (the hill)
-    // than its own.
+    // than the singularities of the hill itself.
     const double to_flat = half_pi - std::abs(hill);
     const double from_hill = curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
     const double at_hill = std::tanh(std::min(from_hill, to_flat / 2));

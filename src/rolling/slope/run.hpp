@@ -1,7 +1,7 @@
 // Many half turns down or up a slope, at a cost independent of their number.
 //
-// From one half turn to the next, W = D omega^2/2, a function of the angle, grows by a constant w.
-// Hence n half turns take, physics (59),
+// From one half turn to the next, W = D omega^2/2 at each angle grows by the same amount w. Hence n
+// half turns take, physics (59),
 //     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn.
 // The sum is a difference of Hurwitz zeta functions, computed by the Euler-Maclaurin formula. The
 // integrand has complex singularities near the flat position, where D = 0, and near the point of
@@ -43,7 +43,8 @@ struct RunPart {
     PartArray level;    // W at the nodes in the first half turn
     double lasts;       // time of the part in the first half turn
 
-    bool turns() const { return middle == half; }  // in a swing: if it starts at a turning point
+    // In a swing: whether the part starts at a turning point.
+    bool turns() const { return middle == half; }
 };
 
 struct SlopeRun {
@@ -85,11 +86,12 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, const S
 // the part.
 PartArray node_times(const RunPart& part, double gained);
 
-// The approximate number of half turns in a time after `from`, as if W grew linearly with the
-// angle.
+// The approximate number of half turns in a time after `from`, assuming that W grows linearly with
+// the angle.
 double about(const SlopeRun& run, double since);
 
-// Durations of n half turns of a complete run. The first terms of a sum are stored for later sums.
+// The duration of the first n half turns of a complete run. The first terms of the sum are stored
+// for later calls.
 class RunTimes {
   public:
     explicit RunTimes(const SlopeRun& run) : run_(run) {}

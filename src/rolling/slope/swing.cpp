@@ -107,15 +107,16 @@ Reached reached(const SlopeBody& body, const WellPanel& panel, double v) {
 
 // ------------------------------------------------------------------------- turning points
 
-// The change of W from the centre of a panel to a coordinate, and its two derivatives with respect
-// to the coordinate.
+// The change of W from the centre of a panel to the coordinate v, and its first two derivatives
+// with respect to v.
 struct Change {
     double energy;
     double rate;
     double bend;
 };
 
-// The complex zeros of D and h are pi/2 away, so that the error of the rule is 1e-17.
+// Integrates dW/dv by Gauss-Legendre quadrature. The complex zeros of D and h are pi/2 away, so
+// that 12 nodes per part have an error of 1e-17.
 ROLLING_ELLIPSE_WIDE Change change_of_energy(const SlopeBody& body, const WellPanel& panel,
                                              double to) {
     static_assert(lanes == 4);
@@ -226,7 +227,7 @@ std::optional<TurningPoints> turning_points(const SlopeBody& body, const Well& w
             if (i == here) found.ahead = found.to_bottom[i] - away;
             continue;
         }
-        if (energy > 0) {  // computed from the start, which may be near the turning point
+        if (energy > 0) {  // found from the start, which may be near the turning point
             const double seen = outwards(i) * angle;
             WellPanel local =
                 flat_panel(body, seen, sine_cosine(seen), sine_cosine(away - well.to_rim[i]));
@@ -280,7 +281,7 @@ ROLLING_ELLIPSE_WIDE double add_part(const SlopeBody& body, WellSide& side, std:
 // A side of a well, given the angles from both turning points to the bottom.
 WellSide side_of_well(const SlopeBody& body, const Well& well, std::size_t i,
                       const std::array<double, 2>& to_bottoms) {
-    constexpr double widest_gap = 0.6;   // beyond it the rim has no effect on the turning point
+    constexpr double widest_gap = 0.6;   // beyond it, the rim has no effect near the turning point
     constexpr double widest_part = 1.0;  // the complex zeros of D and h are at least pi/2 away
     constexpr double safe = 1.5;         // largest ratio of width to distance from a singularity
     const double to_bottom = to_bottoms[i];
@@ -348,8 +349,8 @@ Ahead ahead_at(const WellSide& side, double angle, double to_bottom) {
 
 // -------------------------------------------------------------------------------- reading
 
-// The side and the part in which the body is at a given time, the time between then and the end of
-// the part nearer the turning point, and the direction of motion: +1 towards the bottom.
+// The side and the part in which the body is at a given time, the time between the given time and
+// the end of the part nearer the turning point, and the direction of motion: +1 towards the bottom.
 struct Phase {
     std::size_t side;
     std::size_t part;

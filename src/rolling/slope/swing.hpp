@@ -19,8 +19,9 @@
 
 namespace rolling_ellipse {
 
-// A panel about any centre, where v = 0: tan(angle from the rim or from the flat position) = grade
-// f(v), with f(v) = cosh(v) for the rim and f(v) = sinh(v + a constant) for the flat position.
+// A panel about an arbitrary centre, at which v = 0: tan(angle from the rim or from the flat
+// position) = grade f(v), with f(v) = cosh(v) for the rim and f(v) = sinh(v + a constant) for the
+// flat position.
 struct WellPanel {
     double angle;  // angle of the centre ahead of the flat position
     SineCosine at;
@@ -31,8 +32,8 @@ struct WellPanel {
     SineCosine from_rim;   // sine and cosine of the angle from the rim behind to the centre
 };
 
-// Adds a polynomial for W or, in a part that starts at a turning point, for W/(1 + s)^2, where s is
-// the position in the part.
+// A PartReading with a polynomial for W or, in a part that starts at a turning point, for W/(1 +
+// s)^2, where s is the position in the part.
 struct WellReading : PartReading {
     std::array<double, part_order + 1> level;
 };

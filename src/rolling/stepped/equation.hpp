@@ -133,8 +133,8 @@ class RollingEquation {
         double c2;  // a^2 - b^2
     };
 
-    // The acceleration from physics (18) times h^4, with one square root and one division, which
-    // does not depend on the root. With u = h^2, p = h h',
+    // The acceleration, from physics (18) multiplied by h^4, takes one square root and one
+    // division, neither of which waits for the other. With u = h^2, p = h h',
     //     theta'' (u^2 (k^2 + u) + u p^2)
     //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
     [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,

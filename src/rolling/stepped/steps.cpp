@@ -115,8 +115,8 @@ class PathSeries {
     }
 
     // An interval that contains an angle, obtained by halving [n, n + 1) until the width is at most
-    // 1/3.5 of the distance from a root of h, so that 17 terms omit less than 1e-17 of h times the
-    // width.
+    // 1/3.5 of the distance from a root of h, so that a series of 17 terms has an error of less
+    // than 1e-17 times h times the width.
     Interval interval_at(double angle) const {
         constexpr double share = 3.5;
         Interval interval;
@@ -156,8 +156,9 @@ class PathSeries {
     std::vector<Interval> known_;
 };
 
-// States at points of a motion. The points of a step share what is computed at its knot. x is
-// computed later, for several points at once, so that their paths are computed side by side.
+// States at points of a motion. The angle at a knot, and the path of the half turns before the
+// knot, are computed only once for all points of its step. x is computed later, for several points
+// at once, so that their paths are computed side by side.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -203,7 +204,7 @@ class StepView {
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
     double path_before_ = 0.0;                 // path of the half turns before the knot
-    std::array<double, most_waiting> angles_;  // angles beyond the half turns
+    std::array<double, most_waiting> angles_;  // angles left after whole half turns
     std::array<FlowSample*, most_waiting> samples_;
     std::size_t waiting_ = 0;
 };

@@ -1,4 +1,4 @@
-// Rolling by numerical integration: the state at any time.
+// Rolling by numerical integration, with the state available at any time.
 #pragma once
 
 #include <stdexcept>
@@ -11,8 +11,8 @@
 
 namespace rolling_ellipse {
 
-// Rolling in steps. The angle is integrated as half turns, after which the ellipse looks the same,
-// and a remainder, so that it stays precise however far the body rolls.
+// A rolling motion integrated in steps. The angle is stored as half turns, after which the ellipse
+// looks the same, and a remainder, so that it stays precise however far the body rolls.
 struct SteppedRolling {
     RollingEquation equation;
     Axes axes;
@@ -40,8 +40,8 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
-// Energies at points along a motion; `evaluations` is the number of evaluations that it took. The
-// constraint residuals are 0.
+// Energies at points along a motion; `evaluations` is the number of evaluations of the equation
+// that the integration took. The constraint residuals are 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse

@@ -33,7 +33,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         target, old = _target(name)
         new = _beside(target) if old is None or stat.S_ISREG(old.st_mode) else None
-    except OSError as error:  # it may name a file other than `path`
+    except OSError as error:  # the error may name a file other than `path`
         raise OSError(error.errno, error.strerror, name) from None
     if new is None:
         yield Path(name)

@@ -122,9 +122,10 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) -> _Made:
-    """Return the trajectory for a file's JSON values and arrays, if `save` would write the same.
+    """Return the trajectory for a file's JSON values and arrays.
 
-    Hence no value is converted, filled in or ignored, even if the classes would accept it.
+    Raise ValueError unless `save` would write the same values and arrays. Hence no value is
+    converted, filled in or ignored, even if the classes would accept it.
     """
     if about["schema"] == _WITHOUT_RESISTANCE:
         about |= {"schema": _WITHOUT_BLOWS, "scene": strict.with_resistance(about["scene"])}
@@ -158,7 +159,7 @@ def _restored(kind: type[_Made], about: dict[str, Any], arrays: dict[str, Any]) 
 
 
 def _with_blows(about: dict[str, Any]) -> dict[str, Any]:
-    """Return the values that are missing from a file of the schema without blows."""
+    """Return the current schema, settings and events for a file of the schema without blows."""
     events, body = about["events"], strict.scene_of(about["scene"]).core.body
     rows = [event_row([*each, [0.0] * len(_EFFECTS)])[: -len(_EFFECTS)] for each in events]
     known = with_effects(np.reshape(rows, (-1, len(_core.COLUMNS["events"]) - len(_EFFECTS))), body)

@@ -8,7 +8,7 @@ from .atomic import write
 
 
 def write_new(folder: Path, files: dict[str, bytes]) -> list[Path]:
-    """Write files, given by their paths in a folder; return those that did not exist before.
+    """Write files, given by their paths in a folder; return the paths of new files.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Results of many scenes: tables of numbers, from the core or from files, and their contents.
+"""Results of many scenes: tables of numbers from the core or from files, and what they contain.
 
 Tables from files, which may be damaged, are checked before they are split into answers or arrays.
 An answer is a trajectory, or the exception for its scene. Arrays have the axes of the scenes.
@@ -48,14 +48,14 @@ TABLES = ("codes", "numbers", "text", "events", "rolling", "contact", "mode", "q
 # Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-EVENTS = "events"  # can be returned instead of quantities
-DIRECT = ("theta", "omega", "x")  # in this order in the tables of all models
+EVENTS = "events"  # name in `returns` that stands for the events instead of quantities
+DIRECT = ("theta", "omega", "x")  # quantities in the tables of all models, in this order
 _STORED = {"rolling": DIRECT, "contact": _core.COLUMNS["contact"], "multipliers": DIRECT}
-_TOUCH = set(_STORED["contact"]) - set(DIRECT)  # cheap to compute for rolling as well
+_TOUCH = set(_STORED["contact"]) - set(DIRECT)  # these are also cheap to compute for rolling
 _KNOWN = {each.name: each for each in (*QUANTITIES, MODE)}
 HELD = [code for code, each in STATUSES.items() if each in AT_AN_END]
 _LOST = max(STATUSES) + 1  # ending code of a scene whose worker was lost
-# In code order, starting with REFUSED
+# Names of the endings in the order of their codes, starting with REFUSED
 ENDINGS = np.array(["REFUSED", *(each.name for each in STATUSES.values()), "LOST"])
 _UNITS = SCENE_UNITS | _core.FIELDS["Impulse"] | {TIME.name: TIME.unit}
 
@@ -123,7 +123,7 @@ def answers(
 
 
 class _Part:
-    """The motions in tables, each of which is read when it is first used."""
+    """The motions in tables; each motion is read when it is first used."""
 
     def __init__(self, request: Request, scenes: Any, tables: Tables, keep_events: bool) -> None:
         self._request, self._scenes, self._tables = request, scenes, tables

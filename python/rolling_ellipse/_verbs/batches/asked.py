@@ -127,7 +127,7 @@ class SceneGrid:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the axes: that of the only argument that varies along an axis, or "scene"."""
+        """Names of the axes: that of the argument if only one varies along the axis, or "scene"."""
         many = len(self.shape) > 1
         owners: list[list[str]] = [[] for _ in self.shape]
         for name, values in (self._arrays | self._beside).items():
@@ -159,13 +159,13 @@ class SceneGrid:
         return table
 
     def _require_arguments(self) -> None:
-        """Reject invalid arguments if there are no scenes: each alone, and the body's together."""
+        """Reject invalid arguments of a grid without scenes, those of the body in combination."""
         given = {name: values for name, values in self._arrays.items() if values.size}
         for name in filter(given.__contains__, STATE_UNITS):
             require(_entry(name), "finite", given[name], np.isfinite(given[name]))
         body = {name: given[name] for name in NAMES if name in given and name not in STATE_UNITS}
         scaled = {"a", "b"} <= {*body} and ("mass" in body or "mass" not in self._arrays)
-        if "inertia" in body and not scaled:  # its valid range is unknown
+        if "inertia" in body and not scaled:  # the valid range of inertia is unknown
             inertia = body.pop("inertia")
             require(_entry("inertia"), "positive", inertia, inertia > 0)
         size = next((body[name] for name in ("a", "b") if name in body), 1.0)
@@ -208,7 +208,7 @@ def asked(scenes: Any, **beside: FloatArray) -> SceneList | SceneGrid:
 
 
 def name_of(argument: str) -> str:
-    """Return the name of an argument beside quantities of motions: initial values get a 0."""
+    """Return the name of an argument in results; initial values get a 0, as in "omega0"."""
     return f"{argument}0" if argument in STATE_UNITS else argument
 
 

@@ -166,7 +166,8 @@ class Ends(FieldsOnly):
         Parameters
         ----------
         quantity : str
-            "theta", "omega", "x", "z", "x_dot", "z_dot", "mode", "events" or "first".
+            "theta", "omega", "x", "z", "x_dot", "z_dot", "mode", "events", "first", "impacts" or
+            "largest_impulse".
         path, ax, figsize
             As in `rolling_ellipse.plot` and `rolling_ellipse.plot_energy`, including the errors
             raised.
@@ -188,11 +189,11 @@ class Ends(FieldsOnly):
     ) -> Ends:
         """Continue the motions from their states and modes, and return their ends at later times.
 
-        Numbers of events count from the first start. States differ from those of a single run by
-        rounding errors, which the motion may magnify. The events are the same, except that the
-        number of bounces before the sum of infinitely many depends on `rest_speed`. A motion that
-        jammed, or became too fast for doubles, does not change; one that had too many events may
-        have another ``max_events``.
+        Numbers of events and impacts include those before the continuation. States differ from
+        those of a single run by rounding errors, which the motion may magnify. The events are the
+        same, except that the number of bounces before the sum of infinitely many depends on
+        `rest_speed`. A motion that jammed, or became too fast for doubles, does not change; one
+        that ended after ``max_events`` events may have as many again.
 
         Parameters
         ----------
@@ -237,7 +238,7 @@ class Ends(FieldsOnly):
         new["first"] = np.where(first < 0, new["first"], first)
         new["largest_impulse"] = np.fmax(new["largest_impulse"], self.largest_impulse.flat[rows])
         for name in ("events", "impacts"):
-            new[name] = np.maximum(new[name], 0) + old[name].flat[rows]  # -1 where refused
+            new[name] = np.maximum(new[name], 0) + old[name].flat[rows]  # -1 if rejected
         whole = {name: old[name].copy() for name in new}
         for name, values in new.items():
             whole[name].flat[rows] = values
@@ -265,7 +266,7 @@ class Ends(FieldsOnly):
         return self._scenes.table() if isinstance(self._scenes, SceneGrid) else self._scenes
 
     def _coordinates(self) -> list[tuple[str, FloatArray]]:
-        """Return the label of each axis and the values of its argument, or else the indices."""
+        """Return the label of each axis and the values of its argument, otherwise the indices."""
         known = {
             name: (name if unit == "1" else f"{name} [{unit}]", values)
             for name, along, values, unit in coordinates_of(self, self._table(), t=self._asked)
@@ -307,8 +308,8 @@ def ends(
 ) -> Ends:
     """Return the last states and event counts of many motions, bit for bit those of `simulate`.
 
-    The states can be used as starts: as theta, omega, x, z, x_dot and z_dot in a mapping of scenes
-    they continue the motions.
+    The states can be used as starts: a mapping of scenes with these theta, omega, x, z, x_dot and
+    z_dot continues the motions.
 
     Parameters
     ----------

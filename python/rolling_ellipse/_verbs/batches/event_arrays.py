@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class EventArrays(EventTable):
     """The events of many motions: the arrays of `EventTable`, scene by scene.
 
-    The additional array ``scene`` has the index of each event's scene, in C order of their shape.
+    The additional array ``scene`` has the index of each event's scene; scenes are in C order.
 
     Attributes
     ----------

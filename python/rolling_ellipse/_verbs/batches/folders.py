@@ -61,7 +61,7 @@ class Folder:
 
     def __init__(self, path: Any, request: results.Request) -> None:
         self.path = Path(file_name("out", path))
-        self.done = self._chunks = 0  # scenes in files, and chunks checked
+        self.done = self._chunks = 0  # number of scenes in files, and of chunks checked
         about = _about(request)
         self._request, self._samples = _digest_of(about, request.times), request.samples
         is_new = not (self.path / _REQUEST).exists()
@@ -301,7 +301,7 @@ def _about(request: results.Request) -> dict[str, Any]:
     return {
         "schema": _SCHEMA,
         "version": version("rolling-ellipse"),
-        "settings": json.loads(json.dumps(asdict(request.settings))),  # lists for tuples
+        "settings": json.loads(json.dumps(asdict(request.settings))),  # tuples become lists
         "raise_on_failure": request.raise_on_failure,
     }
 

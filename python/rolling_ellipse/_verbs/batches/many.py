@@ -59,7 +59,7 @@ def simulate_many(
     raise_on_failure: bool = True,
     **options: Any,
 ) -> Any:
-    """Return the motions of many scenes; for any workers each equals `simulate` bit for bit.
+    """Return the motions of many scenes, each bit for bit as from `simulate`, for any workers.
 
     The list contains an exception for a scene that cannot be simulated; the others continue. No
     warnings are issued; lost validity is only shown by the status of a trajectory (VALIDITY_LOST).
@@ -179,7 +179,7 @@ def _solved(request: Any, chunks: Iterator[Chunk], workers: Any) -> Iterator[tup
             yield chunk, function(*arguments, threads)
         return
     scenes = 0  # number of scenes in the last task
-    each: int = request.size  # largest size of the results of a scene so far; initially of samples
+    each: int = request.size  # largest size of a scene's results so far; at first of its samples
 
     def tasks() -> Iterator[tuple[Chunk, Task]]:
         nonlocal scenes

@@ -17,10 +17,12 @@ from .film import NORMAL, TRACKS, Film, Unknowns
 
 _SCALES = tuple(0.2 * 1.5**k for k in range(25))  # 0.2 to 5, and up to 4000 pixels per metre
 _LATE = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # times of the first frame in units of sqrt(L/g)
-_TOUCHING = 0.05, 0.5  # quantile of the heights that is on the ground, for a flying or rolling body
-_FAR = 50.0  # a film whose body moves by more than this many of its lengths is not in metres
-_WINDOW, _SURE = 8, 10.0  # least number of frames in a free fall, and least curvature over error
-_NOISE = NORMAL / math.sqrt(20)  # ratio of deviation to median third difference, for normal noise
+_TOUCHING = 0.05, 0.5  # quantile of heights that is taken as the ground, in flight or in rolling
+# A film is not in metres if the median distance of the body from its median place exceeds this
+# multiple of max(a, b)
+_FAR = 50.0
+_WINDOW, _SURE = 8, 10.0  # least number of frames in a free fall; least ratio of curvature to error
+_NOISE = NORMAL / math.sqrt(20)  # standard deviation over median third difference, for normal noise
 _SMOOTH = 1e-4  # smallest noise relative to the range of a track
 
 
@@ -55,7 +57,7 @@ def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], 
     scene, own = unknowns.scene, unknowns.named(unknowns.own)
     grid: dict[str, set[float]] = {}
     if "scale" in own:
-        fall = free_fall(film, scene, least=0.5) or 0.0  # harmless if the body only rocks
+        fall = free_fall(film, scene, least=0.5) or 0.0  # one useless guess if the body only rocks
         grid["scale"] = {own["scale"], *_SCALES, max(fall, own["scale"] / 2)}
     if "clock" in own:
         grid["clock"] = {own["clock"], *(size_of(scene, "t") * late for late in _LATE)}
@@ -73,7 +75,7 @@ def cameras(film: Film, unknowns: Unknowns) -> Iterator[tuple[dict[str, float], 
 
 
 def free_fall(film: Film, scene: Scene, least: float = 1.5) -> float | None:
-    """Return the downward acceleration of a flight over that in the scene, or None.
+    """Return the ratio of the downward acceleration in a flight to that in the scene, or None.
 
     A flight is a parabola to within the noise. It must be higher than `least` times the rise of the
     centre of a rolling body.

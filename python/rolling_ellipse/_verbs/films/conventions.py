@@ -16,13 +16,13 @@ from .judgement import TRACKER, estimated, judged, settled
 from .search import Search
 
 X, Z, THETA = range(3)
-_RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [1/s]; 1000: ms
+_RATES = (24, 25, 30, 50, 60, 100, 120, 200, 240, 300, 480, 500, 960, 1000)  # [frames/s]; 1000: ms
 _SLOWED = (2, 3, 4, 5, 8, 10, 16)  # factors of slow or fast motion, if times are those of playback
-_UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # of time [s]
+_UNITS = [*(1 / rate for rate in (*_SLOWED, *_RATES)), *map(float, _SLOWED)]  # units of time [s]
 _LENGTHS = (100.0, 1000.0)  # centimetres and millimetres per metre
 _WRONG = 3.0  # ratio of free fall to gravity, or inverse, beyond which the units must be wrong
 _NEAR = 1.2  # accepted ratio of a unit to the one that free fall indicates
-_ALIASED = 10.0  # spacing of frames in sqrt(L/g) within which a rocking body turns back
+_ALIASED = 10.0  # frames more than this many sqrt(L/g) apart cannot resolve rocking
 _QUICK, _RUN = 6, 2  # number of starts per reading, and number of readings that are fitted fully
 
 

@@ -13,7 +13,7 @@ from .search import LEAST, Search, decomposed
 
 _FAINT = 25.0  # a rival minimum with a larger rise of chi2 does not count
 _APART = 9.0  # a distant rival with a larger rise of chi2 does not make a parameter undetermined
-_UNEVEN = 0.125  # an error beyond this share of its range requires nonlinear residuals
+_UNEVEN = 0.125  # linearised residuals are not used for errors beyond this share of the range
 _FAR = 30.0  # a parameter whose error exceeds this many natural sizes is undetermined
 _SAME = 0.1  # rise of the cost that no film can resolve
 _AWAY = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)  # fractions of the distance from the guess
@@ -25,8 +25,8 @@ def standard_errors(
     """Return standard errors and covariance of the unknowns, and all solutions that were computed.
 
     Each parameter is moved by three standard errors, and then further, with all others refitted. If
-    the change divided by the square root of the rise of chi2 is larger than the error, it replaces
-    the error. `rivals` are other minima.
+    the change divided by the square root of the rise of chi2 is larger than the error, this
+    quotient replaces the error. `rivals` are other minima.
     """
     unknowns, rivals = search.unknowns, list(rivals)
     _, singular, axes, known = decomposed(best)
@@ -59,7 +59,7 @@ def standard_errors(
 
 
 def _steps_down(search: Search, best: Any, k: int) -> float:
-    """Halve the range of a parameter until chi2 does not resolve the change; return twice the last.
+    """Return the least change of a parameter that chi2 resolves, by repeatedly halving its range.
 
     Linearised residuals cannot resolve restitution near 0, because the height of a hop grows with
     the square of restitution.

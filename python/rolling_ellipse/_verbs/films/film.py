@@ -21,11 +21,12 @@ from ..simulate import sample_times, simulate
 
 TRACKS = ("x", "z", "theta")
 NORMAL = 1.4826  # ratio of the standard deviation to the median magnitude of normal noise
-CAMERA = ("scale", "ground", "clock")  # x_film = scale x, z_film = ground + scale z, t_film + clock
+# x_film = scale x, z_film = ground + scale z, t = t_film + clock
+CAMERA = ("scale", "ground", "clock")
 _BOUNDS = {"friction": (0.0, 1e6), "restitution": (0.0, 1.0), "slope": (-1.5, 1.5)}
 _BOUNDS |= {"scale": (0.01, 1e5), "clock": (0.0, math.inf)}
-_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # 0.1 to 100 times the guess
-_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma over the size of the body, for finite squares
+_POSITIVE = ("a", "b", "mass", "gravity", "inertia")  # bounds: 0.1 to 100 times the guess
+_FINEST, _COARSEST = 1e-15, 1e15  # bounds of sigma relative to the body, for finite squares
 
 
 @dataclass(frozen=True)
@@ -36,14 +37,17 @@ class Film:
     data: FloatArray
     first: float = 0.0  # offset subtracted from the user's times, if the clock is unknown
     adrift: tuple[int, ...] = ()  # tracks whose origin is unknown
-    reading: tuple[str, ...] = ()  # changes of the data, as arguments of `fit_motion`
+    reading: tuple[str, ...] = ()  # how the data were converted, as arguments of `fit_motion`
 
     @cached_property
     def known(self) -> Any:
         return np.isfinite(self.data)
 
     def off(self, motion: Trajectory, factors: Any = 1.0, added: Any = 0.0) -> FloatArray:
-        """Return measured minus computed tracks: angles modulo pi, adrift tracks centred."""
+        """Return measured minus computed tracks.
+
+        Differences of angles are reduced modulo pi; those of `adrift` tracks have mean 0.
+        """
         off: FloatArray = self.data - (added + factors * columns(motion, TRACKS))
         off[:, 2] -= math.pi * np.round(off[:, 2] / math.pi)
         for k in self.adrift:
@@ -103,7 +107,7 @@ class Unknowns:
         sizes |= {"friction": 1.0, "rolling_resistance": 0.1 * min(scene.a, scene.b)}
         try:
             own = [camera[n] if n in camera else value_of(scene, n) for n in names]
-        except ValueError as error:  # the scene has no such number
+        except ValueError as error:  # the scene has no value for some name
             wrong = str(error).removeprefix("wrt")
             raise ValueError(f"free{wrong}: scene must give an initial guess for it") from None
         self.sizes = np.array([sizes.get(n) or size_of(scene, n) for n in names])
@@ -120,7 +124,7 @@ class Unknowns:
         return np.array([scale, scale, 1.0]), np.array([0.0, ground, 0.0])
 
     def motion(self, u: FloatArray, t: FloatArray) -> Trajectory | None:
-        """Return the motion at times of the film, or None if it does not reach the last time."""
+        """Return the motion at times of the film, or None if none reaches the last time."""
         values = self.named(u)
         t = t + values.get("clock", 0.0)
         mine = {name: value for name, value in values.items() if name not in CAMERA}

@@ -13,13 +13,13 @@ from .film import NORMAL, TRACKS, sizes_of
 from .search import LEAST, Search, decomposed
 
 TRACKER = 0.02  # standard deviation of a poor tracker, relative to the size of the body or [rad]
-_ALARM = 3.5  # critical value of T; none of 340 films of the right scene exceeded 2.99
+_ALARM = 3.5  # critical value of T in `judged`; none of 340 films of the right scene exceeded 2.99
 _FEWEST = 8  # least number of pairs of neighbours for a verdict
 _ROUNDING = 1e-8  # residuals with a smaller relative deviation are rounding errors
-_GAP = 1.5  # largest time between neighbouring frames, relative to the median
+_GAP = 1.5  # largest spacing of neighbouring frames, relative to the median spacing
 _WILD = 5.0  # residuals beyond this many sigma are outliers
 _MANY = 0.2  # the scene does not fit if outliers exceed this share of a track
-_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # over min(a, b), or [rad]: no tracker is worse
+_COARSE = {"x": 0.05, "z": 0.05, "theta": 0.1}  # worst deviation of a tracker, in min(a, b) or rad
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Verdict:
 def estimated(search: Search, best: Any, given: FloatArray) -> FloatArray:
     """Return standard deviations of the tracks: as given, or estimated from the residuals.
 
-    The unknowns reduce the degrees of freedom of each track by the trace of its part of the
-    projection. A robust loss uses the median residual instead of the mean square.
+    The unknowns reduce the degrees of freedom of each track by the trace of its block of the
+    projection matrix. A robust loss uses the median residual instead of the mean square.
     """
     residuals, sizes = search.residuals(best.x), sizes_of(search.unknowns.scene)
     directions, _, _, known = decomposed(best)
@@ -91,7 +91,7 @@ def judged(search: Search, best: Any, given: FloatArray) -> Verdict:
 
     T = sqrt(P) sum r r' / sum (r^2 + r'^2)/2 over the P pairs of neighbouring residuals r, r' of a
     track is normally distributed if the residuals are noise. The mean is not removed, because a
-    shifted ground gives residuals of one sign. Outliers have the weights of `search.loss`.
+    shifted ground gives residuals of one sign. For a robust loss, outliers have less weight.
     """
     film, off = search.film, np.full(search.film.data.shape, math.nan)
     off[film.known] = search.residuals(best.x)

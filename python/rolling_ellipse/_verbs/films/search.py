@@ -19,7 +19,8 @@ from .starts import Box, cell, starts
 cost = attrgetter("cost")  # sort key for SciPy's solutions
 LEAST = 1e-9  # smallest singular value, relative to the largest, that the data can resolve
 _SHARES = 0.3, 0.6, 1.0  # shares of the beginning of the film, fitted in this order
-_BEGINNING, _LEAST_SHARE = 12.0, 0.1  # its duration in sqrt(L/g), and its least share of the film
+# Duration of the beginning of the film in units of sqrt(L/g), and its least share of the frames
+_BEGINNING, _LEAST_SHARE = 12.0, 0.1
 _LONGER = 1.6  # factor by which the fitted part grows after the beginning
 _TRIED = 30  # number of starts that are fitted
 _HOPS, _REACH = 20, 5.0  # number of starts around a minimum, and their distance in standard errors
@@ -135,8 +136,9 @@ class Search:
     def _nearest(self, ones: list[Any]) -> Any:
         """Return the best solution; with a free clock, the equally good one nearest the guess.
 
-        A motion may pass a state again: a flight passes its height twice, and a rocking body passes
-        all of its states. Of starts in the same state, the last one before the film is returned.
+        A motion may return to a state: a flight passes each height twice, and a rocking body passes
+        all of its states again. Of starts in the same state, the last one before the film is
+        returned.
         """
         best, unknowns = min(ones, key=cost), self.unknowns
         clock = np.array(unknowns.names) == "clock"

@@ -22,8 +22,8 @@ _GRID = {
     "theta": (-1.2, -0.4, 0.4, 1.2),  # used if no angle is measured
     "rolling_resistance": (0.05, 0.5),  # in units of its natural size
 }
-_CELL = 1.3  # factor from the friction on the grid to the ends of its cell; cells overlap
-_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames: in the first pre-fit, growth factor, maximum
+_CELL = 1.3  # ratio of the ends of a cell to its friction on the grid; cells overlap
+_FEWEST, _MORE, _MOST = 6, 1.5, 200  # frames of the first pre-fit, growth factor, largest number
 _EVERY, _KEPT = 3, 12  # interval of pre-fits with several cameras, and number of cameras kept
 _WEIGHINGS = 20  # rounds of reweighting, each of which reduces the weight of outliers
 _SPINS = 4000  # largest number of angular velocities in a periodogram
@@ -74,7 +74,7 @@ def cell(unknowns: Unknowns, u: FloatArray) -> Box:
 
 
 def _grid(film: Film, unknowns: Unknowns) -> dict[int, list[float]]:
-    """Return the other values to try, by the index of the unknown."""
+    """Return the grid values to try for some of the unknowns, by the index of the unknown."""
     grid = {}
     for k, name in enumerate(unknowns.names):
         if name in _GRID and not (name == "theta" and film.known[:, 2].any()):
@@ -116,7 +116,9 @@ def _known(unknowns: Unknowns, *names: str) -> dict[str, float | None]:
 def _line(
     values: FloatArray, powers: FloatArray, known: dict[str, float | None]
 ) -> dict[str, float]:
-    """Return the unknown coefficients; `known` names all of them, in ascending powers of time.
+    """Return the unknown coefficients of a polynomial in time, by name.
+
+    `known` has all coefficients in ascending powers of time, None for the unknown ones.
 
     The sum of absolute residuals is minimised, so that an outlier has little effect.
     """

@@ -39,7 +39,7 @@ TOLERANCES, STEPS = "tolerances", "steps"
 _RELATIVE = 100.0  # rtol over atol
 _TOLERANCES = [10.0**-k for k in range(2, 15)]
 _MOST = 1_000_000  # largest number of rounds or samples
-_JUDGING = 0.6  # share of max_seconds for the first call of every run, which is judged
+_JUDGING = 0.6  # share of max_seconds for judging the runs, before they are timed
 _SHORTEST = 1e-3  # shortest timing [s]; shorter calls are repeated
 _POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 or higher
 _HELD = ("ROLLING", "REST")
@@ -54,7 +54,7 @@ _ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 @dataclass(frozen=True)
 class Contender:
-    """A method or peer with the interface of peers; its call may have `advice` on its answer."""
+    """A method or peer with the interface of peers; its call may have `advice`, a warning."""
 
     run: Run  # name, model, method, stabilization and tags
     ladder: str | None  # None if the contender has no setting
@@ -88,7 +88,7 @@ class _Simulation:
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
     def sample(self, times: FloatArray) -> Trajectory:
-        """Do the same as `simulate`, but without warnings."""
+        """Return the motion without the warnings of `simulate`; it must be COMPLETED."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise IntegrationError(motion)
@@ -187,7 +187,7 @@ def work_precision(
     samples: int = 64, rounds: int = 20, max_seconds: float = 60.0, peers: Sequence[Any] = (),
     reference: Truth | None = None, progress: bool | Callable[[int, int | None], Any] = False,
 ) -> WorkPrecision:  # fmt: skip
-    """Return a race of many methods for one motion: their errors and their times.
+    """Run a race between many methods for one motion, and return their errors and times.
 
     Every method runs at every setting of its ladder. Each run is judged once against the exact
     motion. Then all runs are timed in rounds, so that other load on the machine affects all of them
@@ -359,7 +359,10 @@ class _Attempt:
         self.call, self.repeats = call, 1 + int(_SHORTEST / self.once)  # calls in one timing
 
     def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
-        """Return the time of a second call and its answer; the excess of the first is set-up."""
+        """Call twice; return the time and the answer of the second call.
+
+        The extra time of the first call counts as set-up.
+        """
         start = time.perf_counter()
         call()
         middle = time.perf_counter()

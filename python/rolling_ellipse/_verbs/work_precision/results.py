@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _SCHEMA = 3
 _WITHOUT_RESISTANCE = 2  # schema whose scenes have no rolling resistance
-_RUNS = 2  # depth of the runs in a file, one per line
+_RUNS = 2  # nesting depth of the runs in a file, where each run has its own line
 _DECADES = tuple(10.0**-k for k in range(2, 15))
 _POOR = 1e-2  # a contender whose errors are all larger is listed in the table of gaps
 _HEAD = ("no answer of", "at setting", "why")
@@ -328,8 +328,8 @@ class WorkPrecision:
         The chart compares two groups: the contenders of `highlight` and all others. Bold stepped
         lines are the fronts of the groups, the least `y` for each error, and arrows show the
         factors between them. Thin lines connect the runs of each contender. Errors above 10 are
-        outside the axes; errors below the attainable one, or that of the reference, are drawn at
-        this limit.
+        outside the axes; errors below the attainable error, or below that of the reference, are
+        drawn at this limit.
 
         Parameters
         ----------
@@ -460,7 +460,7 @@ class WorkPrecision:
 
     @classmethod
     def _restored(cls, content: bytes) -> WorkPrecision:
-        """Return the race stored in a text, if `save` would write the same text for it."""
+        """Return the race stored in a text; raise ValueError unless `save` would write the same."""
         about = strict.parsed("the file", content.decode("utf-8"))
         strict.require_schema("it", about.get("schema"), _WITHOUT_RESISTANCE, _SCHEMA)
         if about["schema"] == _WITHOUT_RESISTANCE:
@@ -475,7 +475,7 @@ class WorkPrecision:
 
 
 def _without_answer(gaps: Gaps) -> Iterator[str]:
-    """Yield a line for each contender that has no answer or a poor one, or was cut short."""
+    """Yield a line for each contender with no answer, poor answers or omitted runs."""
     missing = sorted(gaps, key=lambda gap: gap.status == NOT_RUN)
     late = {gap.name for gap in missing if gap.status == NOT_RUN}
     for gap in missing:

@@ -1,4 +1,4 @@
-"""Runs of a race, their errors, the reference that judges them, and their values in JSON.
+"""Runs of a race, their errors, the reference that they are compared with, and their JSON form.
 
 JSON has neither NaN nor infinite numbers: they become null and the text "inf".
 """
@@ -54,7 +54,7 @@ class Run:
     time: float = math.nan  # shortest time of a call that returns the state at the end [s]
     setup: float = math.nan  # cost of a new scene, with the extra time of a first call [s]
     spread: float = math.nan  # median time over least time, minus 1; NaN for a single timing
-    steps: int = 0  # number of steps in one call, as for the next two fields; 0 if unknown
+    steps: int = 0  # number of steps in one call (0 if unknown, as in the next two fields)
     rejected: int = 0
     evaluations: int = 0  # evaluations of the right-hand side
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
@@ -75,7 +75,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Reference:
-    """Source and error of the true motion by which the runs up to one end are judged.
+    """Source and error of the true motion that the runs up to one end are compared with.
 
     `attainable` is the sum of the changes of the state at the end due to a relative change of
     2.2e-16 of each number of the scene, plus two ulp of the state: no computation with doubles can
@@ -85,12 +85,12 @@ class Reference:
 
     name: str  # source of the true motion
     t_end: float  # [s]
-    floor: float  # error of the reference, as a `final` error; smaller ones cannot be resolved
+    floor: float  # error of the reference, as a `final` error; smaller errors cannot be resolved
     attainable: float
-    growth: float = 1.0  # ratio of both at the worst sample time to those at the end; at least 1
+    growth: float = 1.0  # ratio of both limits at the worst sample time to those at the end
 
     def limits(self, error: str) -> tuple[float, float]:
-        """Return the limits `floor` and `attainable` of an error; 0 if it is not one of states."""
+        """Return `floor` and `attainable` for an error of states, and zeros for other errors."""
         if error not in OF_STATES:
             return 0.0, 0.0
         factor = 1.0 if error == "final" else self.growth

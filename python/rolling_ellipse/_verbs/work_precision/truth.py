@@ -27,7 +27,7 @@ Truth = Callable[[FloatArray], Columns]
 
 _INEXACT = [each.name for each in fields(Scene) if each.name not in ("mass", "x", "impulse")]
 _ROUNDING = 2.2e-16
-_CHANGE = 2.0**-42  # a thousand roundings, so that rounding and second-order terms are negligible
+_CHANGE = 2.0**-42  # relative: a thousand roundings, so that rounding is negligible
 _MOST = 500  # maximum number of times at which the attainable error is computed
 _GOLDEN = (math.sqrt(5) - 1) / 2  # multiples modulo 1 are far from simple fractions of a period
 
@@ -39,8 +39,8 @@ class Judge:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
         self.scene, self.t_end = scene, t_end
-        # `units` bounds the ratio of the error to the attainable error; the test suite checks this
-        # bound against tables of 30 or more digits
+        # The error of `motion` is at most `units` times the attainable error. The test suite checks
+        # this against tables of 30 or more digits.
         name, units, motion = "contact motion at rounding level", 8, _contact
         if rolls_for_certain(scene):
             name, units, motion = "exact rolling", 4, _rolling
@@ -72,7 +72,7 @@ class Judge:
         if sampled is None:
             return Errors(final=final)
         motion = sampled
-        if not isinstance(sampled, Trajectory):  # states of rolling give energy and constraints
+        if not isinstance(sampled, Trajectory):  # theta, omega and x of rolling
             motion = Trajectory(
                 self.times, *sampled, scene=self.scene, model="rolling", method="exact",
                 status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
@@ -123,12 +123,12 @@ class Judge:
         for name in _INEXACT:
             value: Any = getattr(scene, name) or 0.0
             change = _CHANGE * (max(1.0, abs(value)) if name == "theta" else value)
-            share = change if name == "theta" else _CHANGE  # relative to the number
+            share = change if name == "theta" else _CHANGE  # relative change, except for theta
             if change == 0 or not math.isfinite(change):
                 continue
             sides = []
             for changed in (value + change, value - change):
-                with suppress(ValueError):  # friction or the ground may forbid the changed start
+                with suppress(ValueError):  # friction or the ground may rule out the changed start
                     sides.append(motion(replace(scene, **{name: changed}), times))
             if sides:
                 apart = self._apart(sides[0], [*sides, middle][1])

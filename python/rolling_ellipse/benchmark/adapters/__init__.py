@@ -14,10 +14,10 @@ from ..._ask.scene import Scene
 from .._problem import problem as known_problem
 from .._results import Result
 
-#: Names of the modules, with what pip installs for each.
+#: Names of the modules, each with the requirement to install with pip.
 ENGINES = dict.fromkeys(("mujoco", "drake", "pymunk"), "rolling-ellipse[engines]")
 ENGINES["newton"] = "newton[sim]"
-Run = tuple[Any, ...]  # what `start` of `engine` returns
+Run = tuple[Any, ...]  # the return value of `start` in `engine`
 
 
 def engine(start: Callable[..., Run]) -> Callable[..., Result]:
@@ -25,7 +25,7 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
 
     ``start(scene, step, **options)`` returns a function that makes a number of steps, a function
     that returns the state (with N and F of the last step if the engine has them), and a note. A
-    scene for which it raises ValueError is not supported.
+    scene for which `start` raises ValueError is not supported.
     """
 
     def simulate(problem: Any, times: FloatArray, setting: Any = None, **options: Any) -> Result:
@@ -45,7 +45,7 @@ def engine(start: Callable[..., Run]) -> Callable[..., Result]:
                 advance(steps)
             rows.append(state())
         table = np.array(rows, dtype=float)
-        table[counts == 0, 6:] = np.nan  # before the first step
+        table[counts == 0, 6:] = np.nan  # forces are unknown before the first step
         forces = dict(zip(("normal_force", "friction_force"), table[:, 6:].T, strict=False))
         return Result(table[:, :6], note="".join(note), **forces)
 

@@ -22,7 +22,7 @@ def simulate(scene: Scene, step: float, approximation: str = "lagged") -> Run:
     at, builder, logger = scene.initial_state, DiagramBuilder(), logging.getLogger("drake")
     config = MultibodyPlantConfig(time_step=step, discrete_contact_approximation=approximation)
     plant, _ = AddMultibodyPlant(config, builder)
-    logger.disabled = True  # it warns about a world's gravity, and about grounds for soft bodies
+    logger.disabled = True  # the parser warns of the world's gravity and of soft contact
     _, body = Parser(builder).AddModelsFromString(scene.to_sdf(), "sdf")
     plant.mutable_gravity_field().set_gravity_vector(gravity(scene))
     plant.Finalize()

@@ -1,7 +1,7 @@
 """Newton with its solver SolverMuJoCo, which is made for robots, and the body of `Scene.to_mjcf`.
 
 Contacts have the settings of `adapters.mujoco`; numbers are in single precision. The first call
-compiles for minutes.
+compiles code for minutes.
 """
 
 import newton
@@ -18,7 +18,7 @@ def simulate(scene: Scene, step: float) -> Run:
     builder, at = newton.ModelBuilder(), scene.initial_state
     builder.add_mjcf(scene.to_mjcf(timestep=step))
     model = builder.finalize()
-    model.set_gravity(gravity(scene))  # the builder keeps only its magnitude
+    model.set_gravity(gravity(scene))  # the builder stores only its magnitude
     solver = newton.solvers.SolverMuJoCo(model)
     control, states = model.control(), [model.state(), model.state()]
     states[0].joint_q.assign([at.x, at.z, at.theta])
