@@ -50,6 +50,7 @@ def test_an_explorer_is_one_small_page(tmp_path: Path) -> None:
     text = (tmp_path / "one.html").read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and explorer._repr_html_() in text
     assert len(text) < 510_000 and explorer.to_html() == text
+    assert "class Explorer" in text and "/**" not in text  # comments stay in the sources
     with pytest.warns(DeprecationWarning, match="live has no effect"):
         assert rl.explore(rl.scenes.report, t_end=1.0, live=False) == explorer
 

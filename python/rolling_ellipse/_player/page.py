@@ -20,6 +20,7 @@ from .._motion.strobe_svg import strobe_svg
 from .._motion.trajectory import Trajectory
 from .._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM, SKY
 
+_COMMENT = re.compile(r"^ *(?://[^\n]*|/\*\*.*?\*/)\n", re.MULTILINE | re.DOTALL)  # in JavaScript
 _FILM = ("track", "strip", "player")
 SCRIPTS = {  # modules and style sheets by the class that starts the page
     "Player": (_FILM, ("player",)),
@@ -64,6 +65,7 @@ def fragment(
     packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half as long
     name = hashlib.sha256(known.encode()).hexdigest()[:12]
     modules = "\n".join([*(packaged(f"{each}.js") for each in scripts), module])
+    modules = _COMMENT.sub("", modules)  # pages need no comments
     light, dark = (Template(packaged("poster.css")).substitute(each) for each in (LIGHT, DARK))
     style = f"<style>{light}@media (prefers-color-scheme: dark) {{ {dark}}}</style>"
     images = [
