@@ -1,6 +1,7 @@
 """Settings of the site; to build it: pip install '.[docs]', then python -m sphinx docs OUT."""
 
 import re
+from enum import EnumType
 from importlib.metadata import metadata
 from pathlib import Path
 from runpy import run_path
@@ -69,7 +70,17 @@ def name_modules(app: Sphinx, *of: Any) -> tuple[str, str] | None:
     return re.sub(r"<module '(\w+)' from [^>]*>", r"\1", signature), returned
 
 
+def list_sentences(
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]
+) -> None:
+    """Append the members of an enumeration whose values are sentences."""
+    if isinstance(thing, EnumType) and all(isinstance(each.value, str) for each in thing):
+        for each in thing:
+            lines += ["", f"``{each.name}``", f"    {each.value[0].upper()}{each.value[1:]}."]
+
+
 def setup(app: Sphinx) -> None:
+    app.connect("autodoc-process-docstring", list_sentences)
     app.connect("autodoc-process-signature", name_modules, priority=400)  # before numpydoc
     app.connect("source-read", lead_to_copies)
     app.connect("builder-inited", keep_pictures_in_the_site)

@@ -21,6 +21,11 @@ ASKED = {  # words for the search, and the page that must come first
     "degrees": "recipes", "csv": "recipes", "parquet": "recipes", "save": "recipes",
     "load": "recipes", "second blow": "recipes", "slow motion": "recipes", "jupyter": "recipes",
     "marimo": "recipes", "latex": "recipes", "cluster": "recipes", "own axes": "recipes",
+    "export csv": "recipes", "default friction value": "start", "theta positive direction": "start",
+    "insufficient friction": "recipes", "not enough friction": "recipes", "ipynb": "recipes",
+    "when does it slip": "recipes", "slip time": "recipes", "compare my solver": "recipes",
+    "ODE solver exact": "recipes", "simulate stop": "recipes", "homework": "course/class",
+    "worksheet": "course/class", "grading answers": "course/class", "EventKind": "api/motion",
     "simulate": "api/motion", "plot_curves": "api/pictures",
 }  # fmt: skip
 WIDE = """[...document.querySelectorAll("mjx-container[display=true]")]
@@ -52,6 +57,18 @@ def test_every_public_name_is_on_an_api_page(site: Path) -> None:
             names |= {path.stem, *(f"{path.stem}.{name}" for name in called)}
     assert len(names) > 100
     assert not [n for n in names if not places.get(f"rolling_ellipse.{n}", "").startswith("api/")]
+
+
+def test_the_page_of_an_enumeration_explains_every_member(site: Path) -> None:
+    for page, names in {
+        "motion": ("EventKind", "Mode", "Status"),
+        "outcome": ("Validity",),
+    }.items():
+        html = (site / f"api/{page}.html").read_text(encoding="utf-8")
+        for name in names:
+            part = html.partition(f'id="rolling_ellipse.{name}"')[2].partition('<dl class="py')[0]
+            told = re.findall(r"<dt><code.*?<span class=\"pre\">(\w+)</span>.*?<dd><p>.{15}", part)
+            assert told == [each.name for each in getattr(rolling_ellipse, name)], name
 
 
 def test_the_site_for_students_leaves_out_the_solutions(site: Path) -> None:
