@@ -189,10 +189,10 @@ def factor(found: WorkPrecision, decade: float) -> str:
     mine = min((time for name, time in least.items() if name not in others), default=math.inf)
     best = min((time for name, time in least.items() if name in others), default=math.inf)
     if math.isinf(mine):
-        return "nobody" if math.isinf(best) else "peers only"
+        return "no program" if math.isinf(best) else "peers only"
     star = "*" if found.not_run(decade) else ""
     ratio = f"{float(f'{best / mine:.3g}'):g}" + BEHIND * (best < mine)  # 6390, not 6.39e+03
-    return ("no peer" if math.isinf(best) else ratio) + star
+    return ("package only" if math.isinf(best) else ratio) + star
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], WorkPrecision]:
