@@ -9,6 +9,13 @@ addEventListener("message", ({ data, source }) => {
 addEventListener("DOMContentLoaded", () => {
   for (const box of document.querySelectorAll("pre, .table-wrapper, mjx-container[display=true]"))
     if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+  // A click on a picture opens its file
+  for (const picture of document.querySelectorAll("article img"))
+    if (!picture.closest("a")) {
+      const link = Object.assign(document.createElement("a"), { href: picture.src });
+      picture.replaceWith(link);
+      link.append(picture);
+    }
   // Sphinx breaks long signatures into lists without terms, and its citation lists have no items
   for (const part of document.querySelectorAll(".sig dl, .sig dd")) part.role = "presentation";
   for (const entry of document.querySelectorAll(".citation-list > .citation")) entry.role = "listitem";

@@ -261,8 +261,8 @@ def chart(race: WorkPrecision, behind: bool) -> str:
     assert leader == "flow" and not others
     least = min(race.least(error)[leader] for error in errors)
     short = (
-        " In short races on slopes a peer can be faster: these cells are marked *behind*, and a second "
-        "table gives the reason."
+        " In short races on slopes a peer can be faster: these cells are marked *behind*, and a "
+        "second table gives the reason."
     )
     text = (
         "`flow` returns the exact state of a rolling body at any array of times, without steps. "

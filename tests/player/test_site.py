@@ -98,18 +98,23 @@ def test_no_page_shows_a_path_on_the_build_machine(pages: dict[Path, str]) -> No
     assert {page.name for page, html in pages.items() if "site-packages" in html} == set()
 
 
-def test_no_line_of_code_or_output_is_cut_off(site: Path, chromium: Any) -> None:
+def test_wide_code_and_output_scrolls_and_is_neither_wrapped_nor_cut_off(
+    site: Path, chromium: Any
+) -> None:
     names = ("architecture", "api/benchmark", "api/pictures", "notebooks/06_speed_and_accuracy",
              "gallery", "recipes", "your_tests")  # fmt: skip
-    wider = (
-        "[...document.querySelectorAll('article pre')].filter(e => e.scrollWidth > e.clientWidth)"
-    )
+    fixed = """[...document.querySelectorAll('article pre')].filter(e => {
+        const { whiteSpace, overflowX } = getComputedStyle(e);
+        return whiteSpace !== 'pre' || overflowX !== 'auto'
+            || (e.scrollWidth > e.clientWidth && e.tabIndex !== 0);
+    }).map(e => e.textContent)"""
     for width in (390, 1280):
         page = chromium.new_page(viewport={"width": width, "height": 800})
         for name in names:
             page.goto((site / f"{name}.html").as_uri())
             assert page.locator("article pre").count()
-            assert page.evaluate(f"{wider}.map(e => e.textContent)") == [], (name, width)
+            assert page.evaluate(fixed) == [], (name, width)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, (name, width)
         page.close()
 
 
