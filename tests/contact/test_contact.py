@@ -396,7 +396,11 @@ STARTS = [
     (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "Friction 0.05 cannot hold"),
     (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
     (IN_BALANCE, Mode.REST, "There is no blow. It rests."),
-    (rl.scenes.report, Mode.ROLLING, "Free in the air it would turn at 5.76 rad/s. It rolls."),
+    (
+        rl.scenes.report,
+        Mode.ROLLING,
+        "In the air, the same blow would turn it at 5.76 rad/s. It rolls.",
+    ),
 ]
 
 

@@ -54,7 +54,7 @@ class InitialState(Listed):
     3.2 m/s, z_dot = 0 m/s>
     >>> print(start.reason)
     The contact sticks during the blow: the ground answers with 32 N s along and 48 N s
-    up. Free in the air it would turn at 5.76 rad/s. It rolls.
+    up. In the air, the same blow would turn it at 5.76 rad/s. It rolls.
     """
 
     _units: ClassVar[dict[str, str]] = _core.FIELDS["InitialState"]

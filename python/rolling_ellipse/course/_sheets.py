@@ -118,7 +118,7 @@ def filled(text: str, seed: int | None) -> str:
 def _written(task: Task) -> str:
     data = [_datum(name, value) for name, value in task.data.items()]
     shared = {"8": ", and the table", "10": ", and the film"}.get(sheet_of(task.number), "")
-    unit = task.unit.replace("^2", "²") or "a number without unit"
+    unit = f"in {task.unit.replace('^2', '²')}" if task.unit else "a number without unit"
     points = f"{task.points} point{'s' * (task.points > 1)}"
     given = f"*Data:* {', '.join(data)}{shared}. *Answer:* {unit}."
     return f"**{task.number}** ({points}) {task.question}\\\n{given}\n"
